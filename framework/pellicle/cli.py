@@ -1,0 +1,283 @@
+"""The command line: parses and prints, nothing else.
+
+Heavy imports are inside the commands, so that ``pellicle --help`` is there at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+from typer.core import TyperGroup
+
+from .errors import PellicleError
+
+if TYPE_CHECKING:
+    from .result import Result
+
+BAD_INPUT, INTERRUPTED = 2, 130
+
+
+class _Group(TyperGroup):
+    """Turns errors into one message and an exit code: no traceback reaches a user."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except PellicleError as error:
+            for line in str(error).splitlines():
+                typer.echo(f"error: {line}", err=True)
+            raise typer.Exit(BAD_INPUT) from None
+        except KeyboardInterrupt:
+            typer.echo("interrupted", err=True)
+            raise typer.Exit(INTERRUPTED) from None
+
+
+app = typer.Typer(
+    cls=_Group,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help="Contact mechanics of soft solids under a tensed skin.",
+)
+
+
+class Format(StrEnum):
+    """File formats of figures."""
+
+    PNG = "png"
+    SVG = "svg"
+    PDF = "pdf"
+
+
+@app.command()
+def run(
+    file: Annotated[Path, typer.Argument(help="TOML file (`pellicle new` writes one).")],
+    directory: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Folder for the results; FILE's name without .toml."),
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", help='Replace a value: --set kernel.tension="5 mN/m".'),
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
+    threads: Annotated[
+        int | None, typer.Option(min=1, help="Threads of the Fourier transforms; all cores.")
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace the result of another configuration.")
+    ] = False,
+) -> None:
+    """Solve a run and leave its results. Exit code 0 only if every step converged."""
+    import warnings
+
+    from .components import Place
+    from .config import Run
+    from .errors import ConvergenceWarning
+    from .orchestrator import execute
+
+    made = Run.from_toml(file, set_ or ())
+    place = Place(directory or Path(file.stem), file.stem, made.to_json(), overwrite)
+    with warnings.catch_warnings():
+        # The table below says it, and the exit code.
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        try:
+            result, files = execute(made, place, progress=not quiet, threads=threads)
+        except KeyboardInterrupt:
+            typer.echo(f"interrupted; finished steps are in {place.directory}", err=True)
+            raise typer.Exit(INTERRUPTED) from None
+    if not quiet:
+        _print_steps(result)
+        for path in files:
+            typer.echo(f"wrote {path}")
+    _exit_by_convergence(result)
+
+
+@app.command()
+def plugins(
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """List the components that are installed, and what is broken and why."""
+    from .plugins import registry
+
+    found = registry()
+    rows = [
+        {
+            "family": family,
+            "type": registered.type,
+            "origin": registered.origin.distribution,
+            "version": registered.origin.version,
+            "description": registered.summary,
+        }
+        for family, members in found.components.items()
+        for registered in members.values()
+    ]
+    broken = [
+        {
+            "entry_point": broken.origin.entry_point,
+            "origin": broken.origin.distribution,
+            "version": broken.origin.version,
+            "error": broken.error,
+        }
+        for broken in found.broken
+    ] + [
+        {
+            "entry_point": f"{family}.{type_}",
+            "origin": ", ".join(owner.distribution for owner in owners),
+            "version": ", ".join(owner.version for owner in owners),
+            "error": f"claimed by {' and by '.join(map(str, owners))}",
+        }
+        for (family, type_), owners in found.clashes.items()
+    ]
+    disabled = [str(origin) for origin in found.disabled]
+    if json:
+        _print_json({"components": rows, "broken": broken, "disabled": disabled})
+        return
+    _print_table(["family", "type", "origin", "version", "description"], rows)
+    if broken:
+        typer.echo("broken:")
+        _print_table(["entry_point", "origin", "version", "error"], broken)
+    for origin in disabled:
+        typer.echo(f"switched off: {origin}")
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON schema of a run file, with all installed components, for editors."""
+    from .config import schema as make_schema
+
+    _print_json(make_schema())
+
+
+@app.command()
+def new(
+    path: Annotated[Path, typer.Argument(help="File to write.")] = Path("indent.toml"),
+) -> None:
+    """Write a commented starter file."""
+    from importlib.resources import files
+
+    from .errors import StorageError
+
+    text = files("pellicle").joinpath("starter.toml").read_text(encoding="utf-8")
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise StorageError(f"{path} exists already; give another name") from None
+    except OSError as error:
+        raise StorageError(f"{path}: cannot be written ({error.strerror})") from None
+    typer.echo(f"wrote {path}; next: pellicle run {path}")
+
+
+@app.command()
+def show(
+    results: Annotated[Path, typer.Argument(help="Result file (.h5).")],
+) -> None:
+    """Print the steps of a result and where it comes from."""
+    from .result import load
+
+    result = load(results)
+    for name in ("title", "date", "versions"):
+        typer.echo(f"{name + ':':10}{result.dataset.attrs.get(name, '')}")
+    wanted, done = _steps_wanted(result), result.dataset.sizes["step"]
+    if done < wanted:
+        typer.echo(f"interrupted: {done} of {wanted} steps")
+    _print_steps(result)
+    _exit_by_convergence(result)
+
+
+@app.command()
+def plot(
+    results: Annotated[Path, typer.Argument(help="Result file (.h5).")],
+    directory: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder; that of the result.")
+    ] = None,
+    formats: Annotated[
+        list[Format] | None, typer.Option("--format", help="png, svg or pdf; repeat for several.")
+    ] = None,
+) -> None:
+    """Draw the figures of a result."""
+    from .plotting import save_figures
+    from .result import load
+
+    chosen = [str(format_) for format_ in formats or [Format.PNG]]
+    for path in save_figures(load(results), directory or results.parent, results.stem, chosen):
+        typer.echo(f"wrote {path}")
+
+
+@app.command()
+def validate() -> None:
+    """Solve the shipped problems of known solution; exit code 0 only if all agree."""
+    from .validation import validate as verdicts
+
+    rows, passed = [], True
+    for verdict in verdicts():
+        case = verdict.case
+        passed &= verdict.passed
+        rows.append(
+            {
+                "case": case.name,
+                "expected": f"{case.expected:.8g} {case.unit}",
+                "computed": f"{verdict.computed:.8g} {case.unit}",
+                "error": f"{verdict.error:.1e}",
+                "allowed": f"{case.tolerance:.0e}",
+                "verdict": "ok" if verdict.passed else "FAILED",
+                "source": case.source,
+            }
+        )
+    _print_table(["case", "expected", "computed", "error", "allowed", "verdict", "source"], rows)
+    raise typer.Exit(0 if passed else 1)
+
+
+def _print_steps(result: Result) -> None:
+    data = result.dataset
+    areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
+    names = ["depth", "force", *areas, "iterations"]
+    rows = []
+    for index in range(data.sizes["step"]):
+        step = data.isel(step=index)
+        row = {name: f"{step[name].item():.6g}" for name in names}
+        rows.append({"step": str(index + 1), **row, "status": str(step["status"].item())})
+    units = {name: data[name].attrs["units"] for name in names}
+    heads = {name: f"{name} [{unit}]" if unit != "1" else name for name, unit in units.items()}
+    _print_table(["step", *names, "status"], rows, heads)
+
+
+def _exit_by_convergence(result: Result) -> None:
+    if not result.converged:
+        failed = int((~result.dataset["converged"]).sum())
+        typer.echo(f"{failed} of {result.dataset.sizes['step']} steps did not converge", err=True)
+        raise typer.Exit(1)
+
+
+def _steps_wanted(result: Result) -> int:
+    loading = result.configuration["loading"]
+    return max(len(values) for values in loading.values())
+
+
+def _print_table(
+    names: list[str], rows: list[dict[str, str]], heads: dict[str, str] | None = None
+) -> None:
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for name in names:
+        table.add_column((heads or {}).get(name, name), overflow="fold")
+    for row in rows:
+        table.add_row(*(row[name] for name in names))
+    # Into a pipe nothing is cut or folded.
+    console = Console(markup=False, highlight=False)
+    if not console.is_terminal:
+        console.width = 1000
+        console.soft_wrap = True
+    console.print(table)
+
+
+def _print_json(value: object) -> None:
+    import json
+
+    json.dump(value, sys.stdout, indent=2, ensure_ascii=False)
+    sys.stdout.write("\n")

@@ -1,0 +1,230 @@
+"""The contracts of the six families of components.
+
+A component is a frozen model: its fields are its parameters in SI, each with a description, its
+methods are pure. The same object is configuration, code, JSON schema and provenance, and it
+pickles to workers. A concrete component declares ``type: Literal["name"] = "name"``.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from .model import Model
+from .problem import Array, Problem
+from .result import Result, Solution, Stop
+from .units import Quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Monitor = Callable[[int, float], None]
+"""Called by a solver with its iteration and its residual over the tolerance, to show progress."""
+
+Task = TypeVar("Task")
+Outcome = TypeVar("Outcome")
+
+
+class Component(Model):
+    """What all families share."""
+
+    family: ClassVar[str]
+
+
+class Kernel(Component):
+    """How the surface yields to pressure: û(q) = G(q) p̂(q).
+
+    A kernel that also has ``greens_function(r)`` [m/N] and ``radial_primitive(r)`` [m²/N], as
+    `pellicle.operators.HasClosedForm` says, works on free boundaries too.
+    """
+
+    family: ClassVar[str] = "kernel"
+
+    @abstractmethod
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) [m/Pa], of the shape of ``q`` > 0 [rad/m]."""
+
+
+class Indenter(Component):
+    """The rigid body that is pressed in."""
+
+    family: ClassVar[str] = "indenter"
+
+    footprint: ClassVar[Literal["unbounded", "domain"]] = "unbounded"
+    """``"domain"`` if the indenter ends where the domain does, so that contact may reach there."""
+
+    @abstractmethod
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return f(x, y) [m]: 0 at the lowest point, negative elsewhere, −inf where there is none.
+
+        ``x`` of shape (nx, 1) and ``y`` of shape (1, ny) are cell centres [m] seen from the centre
+        of the domain; the result is of shape (nx, ny).
+
+        Raises
+        ------
+        ConfigError
+            The indenter cannot be put on these points.
+        """
+
+
+class Solver(Component):
+    """Finds the pressure of one load step."""
+
+    family: ClassVar[str] = "solver"
+
+    tolerance: Annotated[
+        float,
+        Quantity("1", at_least=1e-13, below=1),
+        Field(description="bound on every residual, relative to the indenter's height range"),
+    ] = 1e-8
+
+    @abstractmethod
+    def solve(self, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
+        """Return the pressure that solves ``problem``.
+
+        ``start`` is the pressure [Pa] of the step before, or None. The framework measures the
+        result afresh; what a solver believes of its accuracy is not used.
+        """
+
+
+class IterativeSolver(Solver):
+    """A solver that is a start, a step and a residual; one loop does the rest."""
+
+    max_iterations: Annotated[
+        int,
+        Field(gt=0, description="iterations after which a step is given up, and says so"),
+    ] = 20_000
+
+    @abstractmethod
+    def begin(self, problem: Problem, start: Array | None) -> Any:
+        """Return the first state."""
+
+    @abstractmethod
+    def step(self, problem: Problem, state: Any) -> Any:
+        """Return the next state; it may reuse the memory of ``state``."""
+
+    @abstractmethod
+    def residual(self, problem: Problem, state: Any) -> float:
+        """Return the largest residual of a state, relative as `tolerance` is."""
+
+    @abstractmethod
+    def pressure(self, state: Any) -> Array:
+        """Return the pressure [Pa] of a state."""
+
+    def solve(self, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
+        """Iterate until the tolerance is met, or it is plain that it will not be."""
+        state = self.begin(problem, start)
+        best, best_at, iteration = np.inf, 0, 0
+        while True:
+            residual = self.residual(problem, state)
+            monitor(iteration, residual / self.tolerance)
+            if residual < best:
+                best, best_at = residual, iteration
+            if not np.isfinite(residual):
+                stop = Stop.NOT_FINITE
+            elif residual <= self.tolerance:
+                stop = Stop.DONE
+            elif iteration - best_at >= sum(problem.grid.shape) + 200:
+                # Conjugate gradients need O(N) iterations and may well stagnate for some of them.
+                stop = Stop.STALLED
+            elif iteration >= self.max_iterations:
+                stop = Stop.ITERATION_LIMIT
+            else:
+                state = self.step(problem, state)
+                iteration += 1
+                continue
+            return Solution(self.pressure(state), iteration, stop)
+
+
+class AreaCorrection(Component):
+    """Corrects the area of contact for the discretisation."""
+
+    family: ClassVar[str] = "correction"
+
+    @abstractmethod
+    def area(self, contact: NDArray[np.bool_], spacing: tuple[float, float]) -> float:
+        """Return the area of contact [m²].
+
+        ``contact`` of shape (nx, ny) tells the cells in contact; ``spacing`` [m] their edges.
+        """
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the outputs of a run go."""
+
+    directory: Path
+    name: str
+    """Stem of the file names."""
+    configuration: str
+    """The run, as `Run.to_json` says it."""
+    overwrite: bool = False
+    """Whether a result of another configuration may be replaced."""
+
+    def file(self, ending: str) -> Path:
+        """Return ``directory/name<ending>``."""
+        return self.directory / f"{self.name}{ending}"
+
+
+class Output(Component):
+    """Leaves the result of a run somewhere.
+
+    A run calls `open` once, `step` after each load step, and `close` once, also after an
+    interruption, with the steps done so far.
+    """
+
+    family: ClassVar[str] = "output"
+
+    def open(self, place: Place) -> None:  # noqa: B027 - most outputs have nothing to prepare
+        """Prepare; raise StorageError if it is plain that nothing can be written."""
+
+    def step(self, place: Place, step: xr.Dataset) -> None:  # noqa: B027 - see open
+        """Take one finished step: a dataset with dimension step of length 1."""
+
+    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
+        """Finish and return the files left behind."""
+        return ()
+
+
+class Executor(Component):
+    """Carries out the runs of a study."""
+
+    family: ClassVar[str] = "executor"
+
+    @abstractmethod
+    def map(
+        self, work: Callable[[Task], Outcome], tasks: Iterable[Task]
+    ) -> Iterator[tuple[Task, Outcome]]:
+        """Yield each task with what ``work`` returned for it, as they finish."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case of known truth: one row of ``pellicle validate``."""
+
+    name: str
+    """What is solved, e.g. ``"Hertz sphere: force"``."""
+    configuration: dict[str, Any]
+    """The run, as a TOML file would say it."""
+    computed: Callable[[Result], float]
+    """Takes the quantity out of the result, SI."""
+    expected: float
+    """Its true value, SI."""
+    unit: str
+    tolerance: float
+    """Relative error that is allowed."""
+    source: str
+    """Where the true value comes from: author, year."""
+
+
+FAMILIES: dict[str, type[Component]] = {
+    family.family: family for family in (Kernel, Indenter, Solver, AreaCorrection, Output, Executor)
+}
+"""The base class of each family, by name."""

@@ -1,0 +1,319 @@
+"""The configuration of a run: frozen models whose components come from the registry.
+
+The configuration *is* the objects that compute; TOML, JSON and keyword arguments all make the
+same `Run`.
+"""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar
+
+from pydantic import BaseModel, Field, model_validator
+from pydantic_core import core_schema
+
+from .components import AreaCorrection, Component, Indenter, Kernel, Output, Solver
+from .errors import ConfigError
+from .grid import Grid
+from .model import Model, paths_relative_to
+from .plugins import registry
+from .units import Quantity
+
+if TYPE_CHECKING:
+    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+    from pydantic.json_schema import JsonSchemaValue
+
+AnyComponent = TypeVar("AnyComponent", bound=Component)
+DEFAULT_SOLVER = "conjugate_gradient"
+
+
+class _FromRegistry:
+    """Annotation of a field that holds a component: any registered one of the field's family."""
+
+    def __get_pydantic_core_schema__(
+        self, source: type[Component], handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(
+            lambda given: registry().make(source, given),
+            serialization=core_schema.plain_serializer_function_ser_schema(
+                lambda component, info: component.model_dump(mode=info.mode), info_arg=True
+            ),
+            metadata={"family": source.family},
+        )
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        found = registry().components[schema["metadata"]["family"]]
+        return {
+            "oneOf": [
+                handler(registered.component.__pydantic_core_schema__)
+                | {"required": ["type", *_required(registered.component)]}
+                for registered in found.values()
+            ]
+        }
+
+
+def _required(model: type[BaseModel]) -> list[str]:
+    return [name for name, info in model.model_fields.items() if info.is_required()]
+
+
+@dataclass(frozen=True)
+class _Steps:
+    """Annotation of load steps: one value, a list, or ``{start, stop, num}``."""
+
+    quantity: Quantity
+
+    def __call__(self, given: object) -> tuple[float, ...]:
+        if isinstance(given, Mapping):
+            return self._ramp(given)
+        values = given if isinstance(given, (list, tuple)) or hasattr(given, "__len__") else [given]
+        if isinstance(values, str):
+            values = [values]
+        if not len(values):
+            raise ValueError("is empty; give at least one load step")
+        return tuple(self.quantity(value) for value in values)
+
+    def _ramp(self, given: Mapping[Any, Any]) -> tuple[float, ...]:
+        wanted = {"start", "stop", "num"}
+        if set(given) != wanted:
+            raise ValueError(f"a ramp has start, stop and num, and this has {sorted(given)}")
+        num = given["num"]
+        if not isinstance(num, int) or isinstance(num, bool) or num < 2:
+            raise ValueError(f"num = {num!r} is not allowed; give a whole number of steps ≥ 2")
+        start, stop = self.quantity(given["start"]), self.quantity(given["stop"])
+        return tuple(start + (stop - start) * i / (num - 1) for i in range(num - 1)) + (stop,)
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(self)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        one = self.quantity.__get_pydantic_json_schema__(schema, handler)
+        ramp = {
+            "type": "object",
+            "properties": {"start": one, "stop": one, "num": {"type": "integer", "minimum": 2}},
+            "required": ["start", "stop", "num"],
+            "additionalProperties": False,
+        }
+        return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}, ramp]}
+
+
+class Loading(Model):
+    """The load steps: exactly one of depth, force and mean pressure."""
+
+    depth: Annotated[
+        tuple[float, ...] | None,
+        _Steps(Quantity("m", at_least=0)),
+        Field(
+            description="depth of the indenter's lowest point [m] below the undeformed surface, "
+            "or below the mean plane on a periodic grid: a value, a list or {start, stop, num}"
+        ),
+    ] = None
+    force: Annotated[
+        tuple[float, ...] | None,
+        _Steps(Quantity("N", at_least=0)),
+        Field(description="force on the domain [N]: a value, a list or {start, stop, num}"),
+    ] = None
+    mean_pressure: Annotated[
+        tuple[float, ...] | None,
+        _Steps(Quantity("Pa", at_least=0)),
+        Field(
+            description="force over the area of a periodic domain [Pa]: a value, a list or "
+            "{start, stop, num}"
+        ),
+    ] = None
+
+    @model_validator(mode="after")
+    def _one_prescription(self) -> Self:
+        given = [name for name in Loading.model_fields if getattr(self, name) is not None]
+        if len(given) != 1:
+            what = f"prescribes {' and '.join(given)}" if given else "prescribes nothing"
+            raise ValueError(f"{what}; give exactly one of depth, force, mean_pressure")
+        return self
+
+    @property
+    def prescribed(self) -> Literal["depth", "force", "mean_pressure"]:
+        """The name of what is prescribed."""
+        if self.depth is not None:
+            return "depth"
+        return "force" if self.force is not None else "mean_pressure"
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The load steps in order, SI."""
+        return self.depth or self.force or self.mean_pressure or ()
+
+
+class Run(Model):
+    """One contact problem with its load steps."""
+
+    title: Annotated[str, Field(description="a line for figures and listings")] = ""
+    grid: Annotated[Grid, Field(description="the domain and its cells")]
+    kernel: Annotated[Kernel, _FromRegistry(), Field(description="how the surface yields")]
+    indenter: Annotated[Indenter, _FromRegistry(), Field(description="what is pressed in")]
+    loading: Annotated[Loading, Field(description="the load steps")]
+    solver: Annotated[
+        Solver,
+        _FromRegistry(),
+        Field(
+            description="how it is solved",
+            default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER}),
+        ),
+    ]
+    corrections: Annotated[
+        tuple[Annotated[AreaCorrection, _FromRegistry()], ...],
+        Field(description="corrections of the contact area"),
+    ] = ()
+    outputs: Annotated[
+        tuple[Annotated[Output, _FromRegistry()], ...] | None,
+        Field(description="what the run leaves behind; all the standard outputs if not given"),
+    ] = None
+
+    @model_validator(mode="after")
+    def _pressure_needs_period(self) -> Self:
+        if self.loading.prescribed == "mean_pressure" and self.grid.boundary == "free":
+            raise ConfigError(
+                'is not defined on an infinite surface (grid.boundary = "free"); prescribe force '
+                'or depth, or set grid.boundary = "periodic"',
+                "loading.mean_pressure",
+            )
+        return self
+
+    @classmethod
+    def from_toml(cls, path: str | Path, overrides: Iterable[str] = ()) -> Self:
+        """Return the run that a TOML file describes.
+
+        Parameters
+        ----------
+        path
+            The file; relative paths in it are seen from its folder.
+        overrides
+            Texts such as ``'kernel.tension="5 mN/m"'`` that replace what the file says.
+
+        Raises
+        ------
+        ConfigError
+            The file cannot be read or used; all its problems are named at once.
+        PluginError
+            A component that it asks for is broken.
+        """
+        path = Path(path)
+        data = _read_toml(path)
+        for text in overrides:
+            _override(data, text)
+        with paths_relative_to(path.parent):
+            return cls(**data)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Return the run that a JSON text describes, such as `to_json` gives.
+
+        Raises
+        ------
+        ConfigError
+            The text is not JSON, or not a run.
+        """
+        try:
+            data = json.loads(text)
+        except json.JSONDecodeError as error:
+            raise ConfigError(f"not JSON: {error}") from None
+        if not isinstance(data, dict):
+            raise ConfigError("a run is a JSON object with the keys grid, kernel, …")
+        return cls(**data)
+
+    def to_json(self) -> str:
+        """Return the whole configuration as JSON, defaults included, SI floats."""
+        return self.model_dump_json(exclude_none=True)
+
+    def to_toml(self) -> str:
+        """Return the whole configuration as TOML, defaults included, SI floats."""
+        return "".join(_toml_lines(json.loads(self.to_json()), ""))
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigError(
+            f"{path}: {error.strerror}; give a TOML file (`pellicle new` writes one)"
+        ) from None
+    except UnicodeDecodeError:
+        raise ConfigError(f"{path}: not a text file; give a TOML file in UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(f"{path}: not valid TOML: {error}") from None
+
+
+def _override(data: dict[str, Any], text: str) -> None:
+    """Apply ``a.b=value``; the value is TOML, or a plain text where it is not."""
+    key, equals, value = text.partition("=")
+    names = key.strip().split(".")
+    if not equals or not all(names):
+        raise ConfigError(f'--set {text!r} is not of the form a.b=value, e.g. grid.points=128')
+    at: Any = data
+    for depth, name in enumerate(names):
+        where = ".".join(names[:depth])
+        if isinstance(at, list):
+            if not name.isdigit() or int(name) >= len(at):
+                raise ConfigError(f"--set {text!r}: {where} has {len(at)} entries, from 0")
+            at_key: Any = int(name)
+        elif isinstance(at, dict):
+            at_key = name
+        else:
+            raise ConfigError(f"--set {text!r}: {where} = {at!r} is not a table")
+        if depth == len(names) - 1:
+            at[at_key] = _toml_value(value)
+        elif isinstance(at, dict):
+            at = at.setdefault(at_key, {})
+        else:
+            at = at[at_key]
+
+
+def _toml_value(text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text.strip()
+
+
+def _toml_lines(table: Mapping[str, Any], path: str) -> Iterable[str]:
+    """Yield the TOML of a table whose values are JSON's: plain values first, then its tables."""
+    tables = {k: v for k, v in table.items() if _is_table(v)}
+    for key, value in table.items():
+        if key not in tables:
+            yield f"{key} = {json.dumps(value, ensure_ascii=False)}\n"
+    for key, value in tables.items():
+        inner = f"{path}{key}"
+        for entry in value if isinstance(value, list) else [value]:
+            yield f"\n[[{inner}]]\n" if isinstance(value, list) else f"\n[{inner}]\n"
+            yield from _toml_lines(entry, f"{inner}.")
+
+
+def _is_table(value: object) -> bool:
+    is_list_of_tables = isinstance(value, list) and value and isinstance(value[0], dict)
+    return isinstance(value, dict) or bool(is_list_of_tables)
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of a run file, with every component that is installed."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | Run.model_json_schema()
+
+
+def component(base: type[AnyComponent], type_: str, fields: Mapping[str, Any]) -> AnyComponent:
+    """Return a component of ``base``'s family by its type and fields.
+
+    Raises
+    ------
+    ConfigError, PluginError
+        As for a run.
+    """
+    return registry().make(base, {"type": type_, **fields})
+
+

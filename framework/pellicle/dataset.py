@@ -1,0 +1,90 @@
+"""One measured load step as an xarray dataset: the form in which results are kept everywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .grid import Grid
+from .problem import Equilibrium
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DESCRIPTIONS = {
+    "pressure": ("Pa", "contact pressure"),
+    "displacement": ("m", "surface displacement, positive into the solid"),
+    "gap": ("m", "gap between surface and indenter"),
+    "contact": ("1", "whether the cell is in contact"),
+    "depth": ("m", "depth of the indenter's lowest point"),
+    "force": ("N", "force on the indenter"),
+    "mean_pressure": ("Pa", "force over the area of the domain"),
+    "contact_area": ("m2", "area of the cells in contact"),
+    "contact_fraction": ("1", "contact area over the area of the domain"),
+    "iterations": ("1", "iterations of the solver"),
+    "operator_applications": ("1", "applications of the operator on the finest grid"),
+    "residual_contact": ("1", "largest gap in contact over the indenter's height range there"),
+    "residual_penetration": ("1", "largest penetration outside the contact over the same"),
+    "residual_complementarity": ("1", "pressure-weighted mean gap over the same"),
+    "residual_load": ("1", "relative error of the prescribed force"),
+    "converged": ("1", "whether every residual is under the tolerance"),
+    "status": ("", "how the step ended"),
+    "wall_time": ("s", "time that the step took"),
+}
+"""Unit and meaning of each variable of a result."""
+
+
+def step_dataset(
+    grid: Grid, index: int, found: Equilibrium, scalars: Mapping[str, object]
+) -> xr.Dataset:
+    """Return load step ``index`` with dimensions (step: 1, x: nx, y: ny).
+
+    ``scalars`` adds what is not in the equilibrium; an unknown name is taken to be an area [m²].
+    """
+    import xarray as xr
+
+    contact = found.contact
+    area = np.count_nonzero(contact) * grid.cell_area
+    fields = {
+        "pressure": found.pressure,
+        "displacement": found.displacement,
+        "gap": found.gap,
+        "contact": contact,
+    }
+    values: dict[str, object] = {
+        "depth": found.depth,
+        "force": found.force,
+        "mean_pressure": found.force / grid.area,
+        "contact_area": area,
+        "contact_fraction": area / grid.area,
+        "residual_contact": found.residual_contact,
+        "residual_penetration": found.residual_penetration,
+        "residual_complementarity": found.residual_complementarity,
+        "residual_load": found.residual_load,
+        **scalars,
+    }
+    x, y = grid.coordinates()
+    coordinates = {
+        "step": ("step", [index], {"long_name": "load step"}),
+        "x": ("x", x[:, 0], {"units": "m", "long_name": "x of the cell centres"}),
+        "y": ("y", y[0], {"units": "m", "long_name": "y of the cell centres"}),
+    }
+    variables = {
+        name: (("step", "x", "y"), value[None], _attributes(name)) for name, value in fields.items()
+    } | {
+        name: (
+            ("step",),
+            np.array([value], dtype=object if isinstance(value, str) else None),
+            _attributes(name),
+        )
+        for name, value in values.items()
+    }
+    return xr.Dataset(variables, coordinates)
+
+
+def _attributes(name: str) -> dict[str, str]:
+    corrected = ("m2", f"contact area, {name.removeprefix('contact_area_')} correction")
+    unit, meaning = DESCRIPTIONS.get(name, corrected)
+    return {"long_name": meaning} | ({"units": unit} if unit else {})

@@ -1,0 +1,66 @@
+"""What can go wrong, said to the user: every error names the field, the value and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+
+class PellicleError(Exception):
+    """Base of all errors that pellicle raises on purpose."""
+
+
+class Problem(NamedTuple):
+    """One thing wrong with a configuration."""
+
+    field: str
+    """Dotted path of the field, e.g. ``kernel.tension``; empty for the whole."""
+    message: str
+    """What was asked, what is allowed, what to do."""
+
+    def __str__(self) -> str:
+        return f"{self.field}: {self.message}" if self.field else self.message
+
+
+class ConfigError(PellicleError, ValueError):
+    """A configuration, or an argument of the library, that cannot be used.
+
+    Parameters
+    ----------
+    problems
+        All that is wrong, or one message.
+    field
+        Dotted path of the field that a single message speaks of.
+    """
+
+    def __init__(self, problems: Iterable[Problem] | str, field: str = "") -> None:
+        self.problems: tuple[Problem, ...] = (
+            (Problem(field, problems),) if isinstance(problems, str) else tuple(problems)
+        )
+        super().__init__("\n".join(map(str, self.problems)))
+
+    def __reduce__(self) -> tuple[type[ConfigError], tuple[tuple[Problem, ...]]]:
+        return type(self), (self.problems,)
+
+    def within(self, field: str) -> ConfigError:
+        """Return the same problems, seen from one level further out."""
+        return type(self)(
+            Problem(f"{field}.{inner}" if inner else field, message)
+            for inner, message in self.problems
+        )
+
+
+class PluginError(PellicleError):
+    """A plugin that a configuration asks for is broken, or two claim its name."""
+
+
+class ConvergenceError(PellicleError):
+    """A result of the asked accuracy could not be had."""
+
+
+class StorageError(PellicleError):
+    """A result file or folder that cannot be read or written."""
+
+
+class ConvergenceWarning(UserWarning):
+    """A step of a run is kept but marked: its numbers are not what was asked."""

@@ -1,0 +1,95 @@
+"""The grid: a rectangle of surface cut into equal rectangular cells."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from pydantic import BeforeValidator, Field
+
+from .model import Model
+from .units import Length
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+Boundary = Literal["free", "periodic"]
+
+
+def _pair(value: object) -> object:
+    return value if isinstance(value, (list, tuple)) else (value, value)
+
+
+def _whole(value: object) -> int:
+    number = value.item() if hasattr(value, "item") else value
+    if not isinstance(number, int) or isinstance(number, bool) or number < 1:
+        raise ValueError(f"{value!r} is not allowed; give a whole number of cells ≥ 1")
+    return number
+
+
+_Points = Annotated[int, BeforeValidator(_whole)]
+
+
+class Grid(Model):
+    """Cells of a surface rectangle whose centre is the origin; fields lie at cell centres."""
+
+    points: Annotated[
+        tuple[_Points, _Points],
+        BeforeValidator(_pair),
+        Field(description="number of cells: one whole number, or two as [along x, along y]"),
+    ]
+    size: Annotated[
+        tuple[Length, Length],
+        BeforeValidator(_pair),
+        Field(description="edge length of the domain [m]: one, or two as [along x, along y]"),
+    ]
+    boundary: Annotated[
+        Boundary,
+        Field(
+            description='"free": an isolated contact on an infinite surface; '
+            '"periodic": the domain repeats in both directions'
+        ),
+    ] = "free"
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Cells along x and y: the shape of every field."""
+        return self.points
+
+    @property
+    def spacing(self) -> tuple[float, float]:
+        """Edge lengths of a cell [m]."""
+        return self.size[0] / self.points[0], self.size[1] / self.points[1]
+
+    @property
+    def cell_area(self) -> float:
+        """Area of a cell [m²]."""
+        return self.spacing[0] * self.spacing[1]
+
+    @property
+    def area(self) -> float:
+        """Area of the domain [m²]."""
+        return self.size[0] * self.size[1]
+
+    def coordinates(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return x of shape (nx, 1) and y of shape (1, ny) of the cell centres [m]."""
+        import numpy as np
+
+        x, y = (
+            (np.arange(n) - (n - 1) / 2) * spacing
+            for n, spacing in zip(self.points, self.spacing, strict=True)
+        )
+        return x[:, None], y[None, :]
+
+    def wavenumbers(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return q_x of shape (nx, 1) and q_y of shape (1, ny//2 + 1) [rad/m].
+
+        They are those of ``scipy.fft.rfft2`` over a field of the grid's shape.
+        """
+        import numpy as np
+        import scipy.fft
+
+        (nx, ny), (dx, dy) = self.points, self.spacing
+        qx = 2 * np.pi * scipy.fft.fftfreq(nx, dx)
+        qy = 2 * np.pi * scipy.fft.rfftfreq(ny, dy)
+        return qx[:, None], qy[None, :]

@@ -1,0 +1,47 @@
+"""The hooks a plugin may implement. Signatures only; mark yours with `pellicle.hookimpl`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pluggy
+
+from .components import AreaCorrection, Case, Executor, Indenter, Kernel, Output, Solver
+
+hookspec = pluggy.HookspecMarker("pellicle")
+hookimpl = pluggy.HookimplMarker("pellicle")
+
+
+@hookspec
+def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
+    """Call ``register`` with each kernel class of the plugin."""
+
+
+@hookspec
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Call ``register`` with each indenter class of the plugin."""
+
+
+@hookspec
+def register_solvers(register: Callable[[type[Solver]], None]) -> None:
+    """Call ``register`` with each solver class of the plugin."""
+
+
+@hookspec
+def register_corrections(register: Callable[[type[AreaCorrection]], None]) -> None:
+    """Call ``register`` with each area correction class of the plugin."""
+
+
+@hookspec
+def register_outputs(register: Callable[[type[Output]], None]) -> None:
+    """Call ``register`` with each output class of the plugin."""
+
+
+@hookspec
+def register_executors(register: Callable[[type[Executor]], None]) -> None:
+    """Call ``register`` with each executor class of the plugin."""
+
+
+@hookspec
+def register_validations(register: Callable[[Case], None]) -> None:
+    """Call ``register`` with each case of known truth for ``pellicle validate``."""

@@ -1,0 +1,53 @@
+"""How much memory a run takes, and how much there is: said before starting, not found out."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from .errors import ConfigError
+from .grid import Grid
+
+# Peak of a run counted in float64 arrays, measured by tests/benchmarks.
+_PADDED_ARRAYS = {"free": 6.5, "periodic": 3.5}
+_CELL_ARRAYS = 18
+_ARRAYS_KEPT_PER_STEP = 3.2
+
+
+def estimate(grid: Grid, steps: int) -> float:
+    """Return the memory [bytes] that a run on ``grid`` needs at its peak."""
+    cells = float(grid.points[0]) * grid.points[1]
+    padded = 4 * cells if grid.boundary == "free" else cells
+    kept = 2 * _ARRAYS_KEPT_PER_STEP * steps
+    return 8 * (_PADDED_ARRAYS[grid.boundary] * padded + (_CELL_ARRAYS + kept) * cells)
+
+
+def available() -> float | None:
+    """Return the memory [bytes] that this machine can still give, or None if it does not say."""
+    meminfo = Path("/proc/meminfo")
+    if meminfo.is_file():
+        for line in meminfo.read_text(encoding="ascii").splitlines():
+            if line.startswith("MemAvailable:"):
+                return float(line.split()[1]) * 1024
+    try:
+        return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):
+        return None
+
+
+def require(grid: Grid, steps: int) -> None:
+    """Refuse a run that does not fit.
+
+    Raises
+    ------
+    ConfigError
+        The estimate is over what is available.
+    """
+    needed, there = estimate(grid, steps), available()
+    if there is not None and needed > there:
+        nx, ny = grid.points
+        raise ConfigError(
+            f"{nx} × {ny} with {steps} step{'s' * (steps > 1)} needs about {needed / 1e9:.3g} GB, "
+            f"and {there / 1e9:.3g} GB are available; use fewer points or fewer steps",
+            "grid.points",
+        )

@@ -1,0 +1,177 @@
+"""Pressure to displacement by FFT, on a periodic or on a free boundary.
+
+Convention: û(q) = G(q) p̂(q), displacement u positive into the solid, transforms as in scipy.fft.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+
+from .errors import ConfigError
+from .grid import Grid
+from .influence import cell_coefficients
+
+Array = NDArray[np.float64]
+
+
+class HasCompliance(Protocol):
+    """What an operator needs of a kernel on a periodic boundary."""
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) [m/Pa] for wavenumbers q > 0 [rad/m]."""
+        ...
+
+
+@runtime_checkable
+class HasClosedForm(Protocol):
+    """What an operator needs of a kernel on a free boundary."""
+
+    def greens_function(self, r: Array) -> Array:
+        """Return the displacement at distances r > 0 [m] from a unit force [m/N]."""
+        ...
+
+    def radial_primitive(self, r: Array) -> Array:
+        """Return ∫₀^r G(r') r' dr' [m²/N] for r ≥ 0 [m]."""
+        ...
+
+
+class Operator(ABC):
+    """The linear map from pressure [Pa] to displacement [m], both of the grid's shape.
+
+    Linear, symmetric and positive; ``applications`` counts its uses.
+    """
+
+    fixes_mean: bool
+    """Whether a uniform pressure has a displacement; if not, the mean displacement is zero."""
+
+    def __init__(self, grid: Grid) -> None:
+        self.grid = grid
+        self.applications = 0
+
+    def __call__(self, pressure: Array) -> Array:
+        """Return the displacement [m], a new array, for a pressure [Pa]."""
+        self.applications += 1
+        return self._apply(pressure)
+
+    @abstractmethod
+    def _apply(self, pressure: Array) -> Array: ...
+
+
+class PeriodicOperator(Operator):
+    """G(q) sampled on the wavenumbers of the FFT; the mean displacement is zero."""
+
+    fixes_mean = False
+
+    def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
+        super().__init__(grid)
+        qx, qy = grid.wavenumbers()
+        q = np.hypot(qx, qy)
+        q[0, 0] = np.inf
+        self._symbol = np.zeros(q.shape)
+        resolved = np.isfinite(q)
+        self._symbol[resolved] = _checked(kernel.compliance(q[resolved]))
+
+    def _apply(self, pressure: Array) -> Array:
+        transform = scipy.fft.rfft2(pressure)
+        transform *= self._symbol
+        return _real(scipy.fft.irfft2(transform, s=self.grid.shape, overwrite_x=True))
+
+
+class FreeOperator(Operator):
+    """Discrete convolution with influence coefficients, zero-padded: no periodic image.
+
+    Exact for a pressure that is uniform in each cell, at the cell centres (Liu, Wang & Liu 2000).
+    """
+
+    fixes_mean = True
+
+    def __init__(self, kernel: HasClosedForm, grid: Grid) -> None:
+        super().__init__(grid)
+        cells = _checked(
+            cell_coefficients(
+                kernel.greens_function, kernel.radial_primitive, grid.shape, grid.spacing
+            )
+        )
+        self._padded = tuple(scipy.fft.next_fast_len(2 * n - 1, real=True) for n in grid.shape)
+        # Even in both directions, so the transform of the wrapped coefficients is real.
+        self._symbol = scipy.fft.rfft2(_wrap(cells, self._padded)).real.copy()
+
+    def _apply(self, pressure: Array) -> Array:
+        (nx, ny), (px, py) = self.grid.shape, self._padded
+        # Row by row, so that the rows of zeros are never transformed along y.
+        rows = scipy.fft.rfft(pressure, n=py, axis=1)
+        transform = scipy.fft.fft(rows, n=px, axis=0)
+        transform *= self._symbol
+        columns = scipy.fft.ifft(transform, axis=0, overwrite_x=True)[:nx]
+        return _real(scipy.fft.irfft(columns, n=py, axis=1)[:, :ny])
+
+
+def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
+    """Return the operator of ``kernel`` on ``grid``.
+
+    Raises
+    ------
+    ConfigError
+        The kernel cannot work on this boundary, or its values are not finite and positive.
+    """
+    if grid.boundary == "periodic":
+        return PeriodicOperator(kernel, grid)
+    if not isinstance(kernel, HasClosedForm):
+        raise ConfigError(
+            f"'free' needs a closed form, and {type(kernel).__name__} gives only compliance(q); "
+            "use boundary = 'periodic', or give the kernel greens_function(r) and "
+            "radial_primitive(r)",
+            "grid.boundary",
+        )
+    return FreeOperator(kernel, grid)
+
+
+def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array:
+    """Return the surface displacement [m] of shape (nx, ny) under a pressure [Pa] of that shape.
+
+    One application of the operator; on a periodic grid the mean displacement is zero.
+
+    Raises
+    ------
+    ConfigError
+        The pressure is not a finite real array of the grid's shape.
+    """
+    given = np.asarray(pressure)
+    if given.shape != grid.shape or given.dtype.kind not in "fiu":
+        raise ConfigError(
+            f"is of shape {given.shape} and type {given.dtype}; give a real array of shape "
+            f"{grid.shape}, the grid's",
+            "pressure",
+        )
+    if not np.isfinite(given).all():
+        raise ConfigError("holds NaN or infinite values; give finite ones in Pa", "pressure")
+    return make_operator(kernel, grid)(given.astype(np.float64))
+
+
+def _wrap(cells: Array, padded: tuple[int, ...]) -> Array:
+    """Return coefficients at offsets 0 … n−1 in wrap-around order on the padded grid."""
+    (nx, ny), (px, py) = cells.shape, padded
+    wrapped = np.zeros((px, py))
+    wrapped[:nx, :ny] = cells
+    wrapped[px - nx + 1 :, :ny] = cells[:0:-1]
+    wrapped[:, py - ny + 1 :] = wrapped[:, ny - 1 : 0 : -1]
+    return wrapped
+
+
+def _checked(values: Array) -> Array:
+    if not (np.isfinite(values).all() and (values >= 0).all()):
+        raise ConfigError(
+            "the compliance has values that are negative, NaN or infinite; check the parameters, "
+            "or the formula if the kernel is yours",
+            "kernel",
+        )
+    return values
+
+
+def _real(values: object) -> Array:
+    return np.asarray(values, dtype=np.float64)

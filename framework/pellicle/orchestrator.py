@@ -1,0 +1,288 @@
+"""A run from configuration to result: compose, solve every load step, hand to the outputs."""
+
+from __future__ import annotations
+
+import os
+import re
+import time
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import memory
+from .components import Component, Monitor, Output, Place
+from .config import Run
+from .dataset import step_dataset
+from .errors import ConfigError, ConvergenceWarning
+from .operators import Array, Operator, make_operator
+from .plugins import registry
+from .problem import Equilibrium, Problem, measure
+from .progress import Progress
+from .result import Result, Solution, Status, Stop
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+DEFAULT_OUTPUTS = ("hdf5", "csv", "figures")
+
+
+def run(
+    configuration: Run | Mapping[str, Any] | str | Path,
+    *,
+    directory: str | Path | None = None,
+    progress: bool = True,
+    threads: int | None = None,
+    overwrite: bool = False,
+) -> Result:
+    """Solve every load step of a run.
+
+    Parameters
+    ----------
+    configuration
+        A `Run`, the path of a TOML file, or a mapping of the same form.
+    directory
+        Where the outputs go. Without it nothing is written, unless the configuration names
+        outputs: these go to the current folder.
+    progress
+        Show a bar, if there is a terminal.
+    threads
+        Threads of the Fourier transforms; all cores if None.
+    overwrite
+        Whether a result of another configuration may be replaced.
+
+    Raises
+    ------
+    ConfigError, PluginError, StorageError
+        The run cannot be made; what was computed before is kept.
+
+    Warns
+    -----
+    ConvergenceWarning
+        A step is in the result but marked as not converged.
+    """
+    made, name = _as_run(configuration)
+    place = None
+    if directory is not None or made.outputs:
+        place = Place(Path(directory or "."), name, made.to_json(), overwrite)
+    result, _ = execute(made, place, progress=progress, threads=threads)
+    return result
+
+
+def execute(
+    run: Run, place: Place | None, *, progress: bool = False, threads: int | None = None
+) -> tuple[Result, tuple[Path, ...]]:
+    """Return the result of ``run`` and the files that its outputs left at ``place``.
+
+    On an interruption the outputs still get the steps that are finished.
+    """
+    import scipy.fft
+
+    outputs = _outputs(run) if place is not None else ()
+    memory.require(run.grid, len(run.loading.values))
+    steps: list[xr.Dataset] = []
+    files: list[Path] = []
+    with (
+        scipy.fft.set_workers(threads or _cores()),
+        Progress(len(run.loading.values), progress) as bar,
+    ):
+        try:
+            problems = _problems(run)
+            for output in outputs:
+                output.open(place)
+            # closing: the generator's arrays go before the outputs draw.
+            with closing(_solve_steps(run, problems, bar)) as solved:
+                for step in solved:
+                    steps.append(step)
+                    for output in outputs:
+                        output.step(place, step)
+        except MemoryError:
+            raise ConfigError(
+                f"{run.grid.points} cells do not fit in memory; use fewer points", "grid.points"
+            ) from None
+        finally:
+            if steps:
+                result = Result.join(steps)
+                for output in outputs:
+                    files.extend(output.close(place, result))
+    return result, tuple(files)
+
+
+def _as_run(configuration: Run | Mapping[str, Any] | str | Path) -> tuple[Run, str]:
+    if isinstance(configuration, Run):
+        return configuration, file_stem(configuration.title)
+    if isinstance(configuration, Mapping):
+        made = Run(**configuration)
+        return made, file_stem(made.title)
+    return Run.from_toml(configuration), Path(configuration).stem
+
+
+def file_stem(title: str) -> str:
+    """Return a file name made of a title."""
+    return re.sub(r"\W+", "-", title).strip("-").lower() or "run"
+
+
+def _outputs(run: Run) -> Sequence[Output]:
+    if run.outputs is not None:
+        return run.outputs
+    return [registry().make(Output, {"type": type_}) for type_ in DEFAULT_OUTPUTS]
+
+
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _problems(run: Run) -> list[Problem]:
+    """Return the problem of each load step; they share operator and profile.
+
+    Raises
+    ------
+    ConfigError
+        Kernel, indenter or loading do not fit the grid.
+    """
+    operator = make_operator(run.kernel, run.grid)
+    profile = _profile(run)
+    loading = run.loading
+    if loading.prescribed == "depth":
+        _check_depths(loading.values, profile, operator)
+        return [Problem(run.grid, operator, profile, "depth", value) for value in loading.values]
+    area = run.grid.area if loading.prescribed == "mean_pressure" else 1.0
+    return [Problem(run.grid, operator, profile, "force", v * area) for v in loading.values]
+
+
+def _profile(run: Run) -> Array:
+    x, y = run.grid.coordinates()
+    try:
+        profile = np.asarray(run.indenter.profile(x, y), dtype=np.float64)
+    except ConfigError as error:
+        raise error.within("indenter") from None
+    if profile.shape != run.grid.shape:
+        raise ConfigError(
+            f"the profile is of shape {profile.shape}, the grid of shape {run.grid.shape}; check "
+            "profile(x, y)",
+            "indenter",
+        )
+    if not (profile <= 0).all() or not np.isfinite(profile).any():
+        raise ConfigError(
+            "the profile has values that are positive or NaN, or none that is finite; it must be "
+            "≤ 0 everywhere and 0 at the lowest point",
+            "indenter",
+        )
+    return profile
+
+
+def _check_depths(depths: Sequence[float], profile: Array, operator: Operator) -> None:
+    """Refuse a depth against the mean plane that no load reaches."""
+    if operator.fixes_mean:
+        return
+    full = -float(profile.mean())
+    for index, depth in enumerate(depths):
+        if depth >= full:
+            raise ConfigError(
+                f"{depth:g} m is beyond full contact: on a periodic grid the depth is measured "
+                f"from the mean plane, and this indenter's is {full:g} m above its lowest point, "
+                "at any load; give less, or prescribe mean_pressure",
+                f"loading.depth.{index}",
+            )
+
+
+def _solve_steps(run: Run, problems: Sequence[Problem], bar: Progress) -> Iterator[xr.Dataset]:
+    """Yield each load step as soon as it is solved, started from the one before."""
+    origin = _provenance(run)
+    pressure: Array | None = None
+    for index, problem in enumerate(problems):
+        started = time.perf_counter()
+        before = problem.operator.applications
+        solution = _solve(run, problem, pressure, bar.step(index))
+        used = problem.operator.applications - before
+        pressure = solution.pressure
+        found = measure(problem, pressure)
+        status, message = _judge(run, found, solution.stop, problem, index)
+        if status is not Status.CONVERGED:
+            warnings.warn(f"step {index + 1}: {message}", ConvergenceWarning, stacklevel=2)
+        areas = {
+            f"contact_area_{correction.type}": correction.area(  # type: ignore[attr-defined]
+                found.contact, run.grid.spacing
+            )
+            for correction in run.corrections
+        }
+        scalars = {
+            **areas,
+            "iterations": solution.iterations,
+            "operator_applications": used,
+            "converged": status is Status.CONVERGED,
+            "status": message,
+            "wall_time": time.perf_counter() - started,
+        }
+        yield step_dataset(run.grid, index, found, scalars).assign_attrs(origin)
+
+
+def _solve(run: Run, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
+    if not problem.touches:
+        return Solution(np.zeros(run.grid.shape), 0)
+    return run.solver.solve(problem, start, monitor)
+
+
+def _judge(
+    run: Run, found: Equilibrium, stop: Stop, problem: Problem, index: int
+) -> tuple[Status, str]:
+    """Return the status of a step by its measured residuals, and what the user is told."""
+    tolerance = run.solver.tolerance
+    if not np.isfinite(found.force):
+        return Status.NOT_FINITE, Status.NOT_FINITE.value
+    if (lowest := float(found.pressure.min())) < 0:
+        share = -lowest / float(found.pressure.max())
+        return Status.NEGATIVE_PRESSURE, Status.NEGATIVE_PRESSURE.value.format(measure=share)
+    for status, residual in (
+        (Status.LOAD, found.residual_load),
+        (Status.CONTACT_RESIDUAL, found.residual_contact),
+        (Status.PENETRATION, found.residual_penetration),
+        (Status.COMPLEMENTARITY, found.residual_complementarity),
+    ):
+        if not residual <= tolerance:
+            return status, status.value.format(
+                measure=residual, tolerance=tolerance, remedy=stop.value
+            )
+    if run.indenter.footprint == "unbounded" and _touches_edge(found.contact):
+        nx, ny = run.grid.size
+        value = run.loading.values[index]
+        unit = {"depth": "m", "force": "N", "mean_pressure": "Pa"}[run.loading.prescribed]
+        return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
+            size=f"{nx:g} × {ny:g} m",
+            prescribed=f"loading.{run.loading.prescribed} = {value:g} {unit}",
+        )
+    return Status.CONVERGED, Status.CONVERGED.value
+
+
+def _touches_edge(contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> bool:
+    """Whether a cell at the border is in contact; a grid one cell wide has no border across."""
+    across = [axis for axis in (0, 1) if contact.shape[axis] > 1]
+    return any(np.take(contact, [0, -1], axis=axis).any() for axis in across)
+
+
+def _provenance(run: Run) -> dict[str, str]:
+    """Return the attributes that say where a result comes from."""
+    used: list[Component] = [run.kernel, run.indenter, run.solver, *run.corrections]
+    owners = {
+        registered.origin.distribution: registered.origin.version
+        for family in registry().components.values()
+        for registered in family.values()
+        if any(type(component) is registered.component for component in used)
+    }
+    versions = {"pellicle": version("pellicle"), "numpy": version("numpy")} | {
+        "scipy": version("scipy"),
+        **owners,
+    }
+    return {
+        "title": run.title,
+        "configuration": run.to_json(),
+        "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+    }

@@ -1,0 +1,176 @@
+"""Figures of a result, drawn on matplotlib Axes in real units."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .errors import StorageError
+from .operators import Array
+from .result import Result
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f"}
+
+
+def axis_unit(values: Array, unit: str) -> tuple[float, str]:
+    """Return the factor and the name that bring ``values`` (in ``unit``) near 1 … 1000."""
+    finite = np.abs(np.asarray(values)[np.isfinite(values)])
+    highest = float(finite.max(initial=0.0))
+    if unit == "m2":
+        # The prefix of a square counts twice: 1 mm² is 1e-6 m².
+        exponent = 3 * int(np.floor(np.log10(np.sqrt(highest)) / 3)) if highest else 0
+        exponent = min(max(exponent, -15), 0)
+        return 10.0 ** (-2 * exponent), f"{_PREFIXES[exponent]}m²"
+    exponent = 3 * int(np.floor(np.log10(highest) / 3)) if highest else 0
+    exponent = min(max(exponent, -15), 9)
+    return 10.0**-exponent, f"{_PREFIXES[exponent]}{unit}"
+
+
+def pressure_map(result: Result, axes: Axes, step: int = -1) -> None:
+    """Draw the pressure of a load step over the domain."""
+    data = result.dataset.isel(step=step)
+    pressure = data["pressure"].values
+    length, length_name = axis_unit(np.append(data["x"].values, data["y"].values), "m")
+    scale, name = axis_unit(pressure, "Pa")
+    edges = [[edge * length for edge in _edges(data[axis].values)] for axis in ("x", "y")]
+    image = axes.imshow(
+        np.ma.masked_equal(pressure.T * scale, 0.0),
+        origin="lower",
+        extent=(edges[0][0], edges[0][1], edges[1][0], edges[1][1]),
+        cmap="viridis",
+        vmin=0.0,
+        interpolation="nearest",
+    )
+    axes.set_facecolor("0.93")
+    axes.set(xlabel=f"x [{length_name}]", ylabel=f"y [{length_name}]")
+    axes.set_title(_caption(result, step))
+    figure = axes.get_figure()
+    if figure is not None:
+        figure.colorbar(image, ax=axes, label=f"contact pressure [{name}]", shrink=0.85)
+
+
+def profile(result: Result, axes: Axes, step: int = -1) -> None:
+    """Draw pressure and gap along x through the centre of the domain."""
+    data = result.dataset.isel(step=step)
+    centre = data.sizes["y"] // 2
+    line = data.isel(y=centre)
+    gap = line["gap"].values
+    near = gap <= max(float(data["depth"]), 0.0) * 2
+    length, length_name = axis_unit(line["x"].values, "m")
+    scale, name = axis_unit(line["pressure"].values, "Pa")
+    gap_scale, gap_name = axis_unit(gap[near], "m")
+    x = line["x"].values * length
+    axes.plot(x, line["pressure"].values * scale, color="C0")
+    axes.set(xlabel=f"x [{length_name}] at y = {line['y'].item() * length:.3g} {length_name}")
+    axes.set_ylabel(f"contact pressure [{name}]", color="C0")
+    axes.set_title(_caption(result, step))
+    beside = axes.twinx()
+    beside.plot(x, np.where(near, gap * gap_scale, np.nan), color="C1", linestyle="--")
+    beside.set_ylabel(f"gap [{gap_name}]", color="C1")
+    for side in (axes, beside):
+        side.set_ylim(bottom=0.0)
+
+
+def force_depth(result: Result, axes: Axes) -> None:
+    """Draw force against depth over the load steps."""
+    _curve(result, axes, [("force", "force", "o-")], "force", "N", "depth", "m")
+
+
+def area_force(result: Result, axes: Axes) -> None:
+    """Draw the contact area, as counted and as corrected, against force."""
+    corrected = [
+        (str(name), f"{str(name).removeprefix('contact_area_')} correction", "s--")
+        for name in result.dataset.data_vars
+        if str(name).startswith("contact_area_")
+    ]
+    series = [("contact_area", "cells in contact", "o-"), *corrected]
+    _curve(result, axes, series, "contact area", "m2", "force", "N")
+    axes.legend()
+
+
+FIGURES: dict[str, Callable[[Result, Axes], None]] = {
+    "pressure": pressure_map,
+    "profile": profile,
+    "force_depth": force_depth,
+    "area_force": area_force,
+}
+"""What is drawn of a run, by the ending of the file name."""
+
+
+def save_figures(
+    result: Result, directory: Path, name: str, formats: Iterable[str]
+) -> tuple[Path, ...]:
+    """Write every figure as ``directory/name-figure.format`` and return the files.
+
+    Raises
+    ------
+    StorageError
+        A file cannot be written.
+    """
+    import matplotlib.style
+    from matplotlib.figure import Figure
+
+    files = []
+    for ending, draw in FIGURES.items():
+        with matplotlib.style.context("default"):
+            figure = Figure(figsize=(5.4, 4.2), dpi=150, layout="constrained")
+            draw(result, figure.add_subplot())
+            for format_ in formats:
+                path = directory / f"{name}-{ending}.{format_}"
+                try:
+                    directory.mkdir(parents=True, exist_ok=True)
+                    figure.savefig(path)
+                except OSError as error:
+                    raise StorageError(
+                        f"{path}: cannot be written ({error.strerror}); choose another folder"
+                    ) from None
+                files.append(path)
+    return tuple(files)
+
+
+def _curve(
+    result: Result,
+    axes: Axes,
+    series: list[tuple[str, str, str]],
+    what: str,
+    unit: str,
+    against: str,
+    against_unit: str,
+) -> None:
+    data = result.dataset
+    scale, name = axis_unit(data[series[0][0]].values, unit)
+    x_scale, x_name = axis_unit(data[against].values, against_unit)
+    good = data["converged"].values.astype(bool)
+    for variable, label, style in series:
+        x, y = data[against].values * x_scale, data[variable].values * scale
+        (line,) = axes.plot(x, y, style, label=label, markersize=4)
+        axes.plot(x[~good], y[~good], "x", color="red", markersize=9, label="_not converged")
+        line.set_markerfacecolor("white")
+    axes.set(xlabel=f"{against} [{x_name}]", ylabel=f"{what} [{name}]")
+    axes.set_xlim(left=0.0)
+    axes.set_ylim(bottom=0.0)
+    axes.grid(alpha=0.3)
+    axes.set_title(result.dataset.attrs.get("title", ""))
+    if not good.all():
+        axes.annotate("× not converged", (0.02, 0.95), xycoords="axes fraction", color="red")
+
+
+def _caption(result: Result, step: int) -> str:
+    data = result.dataset.isel(step=step)
+    scale, name = axis_unit(data["depth"].values, "m")
+    caption = f"depth {data['depth'].item() * scale:.4g} {name}"
+    title = result.dataset.attrs.get("title", "")
+    if not bool(data["converged"]):
+        caption += ", NOT CONVERGED"
+    return f"{title}\n{caption}" if title else caption
+
+
+def _edges(centres: Array) -> tuple[float, float]:
+    half = (centres[1] - centres[0]) / 2 if centres.size > 1 else 0.5
+    return float(centres[0] - half), float(centres[-1] + half)

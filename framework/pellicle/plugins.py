@@ -1,0 +1,240 @@
+"""Finds the components that are installed.
+
+pluggy's own loader stops at the first broken plugin, silently drops the second of two equal names
+and leaves half of a failing plugin registered; so each entry point is loaded here on its own, and
+what is wrong with it is written down instead of raised.
+"""
+
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any, Literal, TypeVar, cast, get_args, get_origin
+
+import pluggy
+
+from . import hookspecs
+from .components import FAMILIES, Case, Component
+from .errors import ConfigError, PluginError
+from .model import nearest
+
+GROUP = "pellicle"
+DISABLE = "PELLICLE_DISABLE_PLUGINS"
+_HOOK_OF_FAMILY = {
+    "kernel": "register_kernels",
+    "indenter": "register_indenters",
+    "solver": "register_solvers",
+    "correction": "register_corrections",
+    "output": "register_outputs",
+    "executor": "register_executors",
+}
+AnyComponent = TypeVar("AnyComponent", bound=Component)
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a component comes from."""
+
+    entry_point: str
+    distribution: str
+    version: str
+
+    @classmethod
+    def of(cls, entry: EntryPoint) -> Origin:
+        """Return the origin that an entry point states."""
+        if entry.dist is None:
+            return cls(entry.name, "unknown distribution", "?")
+        return cls(entry.name, entry.dist.name, entry.dist.version)
+
+    def __str__(self) -> str:
+        return f"{self.distribution} {self.version} (entry point {self.entry_point!r})"
+
+
+@dataclass(frozen=True)
+class Registered:
+    """A component that can be used."""
+
+    component: type[Component]
+    type: str
+    origin: Origin
+
+    @property
+    def summary(self) -> str:
+        """The first line of the component's documentation."""
+        return (inspect.getdoc(self.component) or "").partition("\n")[0]
+
+
+@dataclass(frozen=True)
+class Broken:
+    """A plugin that cannot be used, and why."""
+
+    origin: Origin
+    error: str
+
+
+@dataclass(frozen=True)
+class Registry:
+    """All components by family and type, all cases of known truth, and what is broken."""
+
+    components: Mapping[str, Mapping[str, Registered]]
+    cases: tuple[Case, ...] = ()
+    broken: tuple[Broken, ...] = ()
+    clashes: Mapping[tuple[str, str], tuple[Origin, ...]] = field(default_factory=dict)
+    """Types claimed by more than one plugin; none of the claimants is in `components`."""
+    disabled: tuple[Origin, ...] = ()
+
+    def find(self, family: str, type_: object) -> type[Component]:
+        """Return the class of a component.
+
+        Raises
+        ------
+        ConfigError
+            No such type.
+        PluginError
+            Its plugin is broken or disabled, or two plugins claim it.
+        """
+        known = self.components[family]
+        if isinstance(type_, str) and type_ in known:
+            return known[type_].component
+        if owners := self.clashes.get((family, str(type_))):
+            raise PluginError(
+                f"{family} {type_!r} is claimed by {' and by '.join(map(str, owners))}; uninstall "
+                f"one, or name its distribution in {DISABLE}"
+            )
+        for broken in self.broken:
+            if broken.origin.entry_point == f"{family}.{type_}":
+                raise PluginError(f"{family} {type_!r} is broken: {broken.origin}: {broken.error}")
+        for origin in self.disabled:
+            if origin.entry_point == f"{family}.{type_}":
+                raise PluginError(f"{family} {type_!r} of {origin} is switched off by {DISABLE}")
+        others = f"; {len(self.broken)} broken: see `pellicle plugins`" if self.broken else ""
+        raise ConfigError(f"{type_!r} is no {family}; {nearest(type_, known)}{others}", "type")
+
+    def make(self, base: type[AnyComponent], given: object) -> AnyComponent:
+        """Return the component of ``base``'s family that ``given`` describes.
+
+        ``given`` is a table with ``type`` and the component's fields, or the component itself.
+
+        Raises
+        ------
+        ConfigError, PluginError
+            See `find`, and whatever the fields do not allow.
+        """
+        if isinstance(given, base):
+            return given
+        if not isinstance(given, Mapping) or "type" not in given:
+            known = ", ".join(sorted(self.components[base.family]))
+            what = "has no type" if isinstance(given, Mapping) else f"{given!r} is not a table"
+            raise ConfigError(f"{what}; give a {base.family} with type = one of: {known}")
+        found = self.find(base.family, given["type"])
+        return cast("type[AnyComponent]", found)(**given)
+
+
+@cache
+def registry() -> Registry:
+    """Return the registry of everything that is installed here."""
+    return load(entry_points(group=GROUP), os.environ.get(DISABLE, ""))
+
+
+def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
+    """Load plugins, each on its own.
+
+    Parameters
+    ----------
+    entries
+        Entry points whose objects implement hooks of `pellicle.hookspecs`.
+    disable
+        ``"1"`` or ``"all"`` switches off every plugin that is not pellicle's own; otherwise a
+        comma-separated list of distributions or entry points to switch off.
+    """
+    claims: dict[tuple[str, str], list[Registered]] = {}
+    cases: list[Case] = []
+    broken: list[Broken] = []
+    disabled: list[Origin] = []
+    for entry in sorted(set(entries), key=lambda entry: (entry.name, entry.value)):
+        origin = Origin.of(entry)
+        if _is_disabled(origin, disable):
+            disabled.append(origin)
+            continue
+        try:
+            components, its_cases = _call_hooks(entry.load(), origin)
+        except KeyboardInterrupt:
+            raise
+        # A plugin may fail in any way, sys.exit() at import included; it must not take us along.
+        except BaseException as error:
+            broken.append(Broken(origin, f"{type(error).__name__}: {error}"))
+            continue
+        cases.extend(its_cases)
+        for registered in components:
+            claims.setdefault((registered.component.family, registered.type), []).append(registered)
+    found: dict[str, dict[str, Registered]] = {family: {} for family in FAMILIES}
+    for (family, type_), owners in claims.items():
+        if len(owners) == 1:
+            found[family][type_] = owners[0]
+    return Registry(
+        components=found,
+        cases=tuple(cases),
+        broken=tuple(broken),
+        clashes={
+            name: tuple(owner.origin for owner in owners)
+            for name, owners in claims.items()
+            if len(owners) > 1
+        },
+        disabled=tuple(disabled),
+    )
+
+
+def _is_disabled(origin: Origin, disable: str) -> bool:
+    if origin.distribution == "pellicle":
+        return False
+    named = {name.strip() for name in disable.split(",")} - {""}
+    return bool(named & {"1", "true", "all", origin.distribution, origin.entry_point})
+
+
+def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[Case]]:
+    """Return what one plugin registers, or raise what is wrong with it."""
+    manager = pluggy.PluginManager(GROUP)
+    manager.add_hookspecs(hookspecs)
+    manager.register(plugin)
+    manager.check_pending()
+    if not manager.get_hookcallers(plugin):
+        raise PluginError(
+            "implements no hook; decorate with @pellicle.hookimpl one of "
+            f"{', '.join([*_HOOK_OF_FAMILY.values(), 'register_validations'])}"
+        )
+    components: list[Registered] = []
+    cases: list[Case] = []
+    for family, hook in _HOOK_OF_FAMILY.items():
+
+        def register(component: type[Component], family: str = family) -> None:
+            components.append(Registered(component, _check(component, family), origin))
+
+        getattr(manager.hook, hook)(register=register)
+    manager.hook.register_validations(register=cases.append)
+    return components, cases
+
+
+def _check(component: Any, family: str) -> str:
+    """Return the type of a component class that keeps its contract, or raise PluginError."""
+    base = FAMILIES[family]
+    if not (isinstance(component, type) and issubclass(component, base)):
+        raise PluginError(f"{component!r} is no subclass of pellicle.{base.__name__}")
+    name = component.__name__
+    annotation = component.model_fields["type"].annotation if "type" in component.model_fields else 0
+    names = get_args(annotation)
+    if get_origin(annotation) is not Literal or len(names) != 1:
+        raise PluginError(f'{name} needs a field: type: Literal["…"] = "…"')
+    if component.model_fields["type"].default != names[0]:
+        raise PluginError(f'{name}.type needs the default "{names[0]}"')
+    if missing := sorted(component.__abstractmethods__):
+        raise PluginError(f"{name} lacks the method {', '.join(missing)}")
+    if not (component.__doc__ or "").strip():
+        raise PluginError(f"{name} lacks a docstring: its first line is shown to users")
+    for field_, info in component.model_fields.items():
+        if field_ != "type" and not info.description:
+            raise PluginError(f"{name}.{field_} lacks Field(description=…) with its unit")
+    return str(names[0])

@@ -1,0 +1,109 @@
+"""The problem of one load step: all that a solver may see, and how well it is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from .grid import Grid
+from .operators import Array, Operator
+
+# An indenter that is flat over the contact has no height range there to measure by.
+_FLAT = 1e-3
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Find p ≥ 0 with gap = u − δ − f ≥ 0 and p·gap = 0, for a given depth or force."""
+
+    grid: Grid
+    operator: Operator
+    profile: Array
+    """Indenter profile f ≤ 0 [m] of the grid's shape; −inf where there is no indenter."""
+    prescribed: Literal["depth", "force"]
+    value: float
+    """Depth δ [m] or force [N]."""
+
+    @property
+    def touches(self) -> bool:
+        """Whether anything has to be solved: the undeformed surface is not already the answer."""
+        lowest = self.profile.max()
+        return bool(self.value > (0.0 if self.prescribed == "force" else -lowest))
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A pressure measured against its problem, by one fresh application of the operator."""
+
+    pressure: Array
+    displacement: Array
+    """u [m]."""
+    gap: Array
+    """u − δ − f [m]; +inf where there is no indenter."""
+    depth: float
+    """δ [m]."""
+    force: float
+    """[N]."""
+    residual_contact: float
+    """max |gap| in contact, over the height range of the indenter in contact."""
+    residual_penetration: float
+    """max(0, −min gap) outside the contact, over the same."""
+    residual_complementarity: float
+    """Σ p|gap| / Σ p, over the same."""
+    residual_load: float
+    """|force − prescribed| / prescribed; 0 when the depth is prescribed."""
+
+    @property
+    def contact(self) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+        """Where pressure acts, bool of the grid's shape."""
+        return self.pressure > 0
+
+
+def measure(problem: Problem, pressure: Array) -> Equilibrium:
+    """Return what ``pressure`` [Pa] really achieves."""
+    contact = pressure > 0
+    total = float(pressure.sum())
+    force = total * problem.grid.cell_area
+    displacement = problem.operator(pressure)
+    aloft = displacement - problem.profile
+    depth = problem.value
+    if problem.prescribed == "force":
+        # The pressure-weighted mean is the depth at which the work of the force is right.
+        depth = float((pressure[contact] * aloft[contact]).sum()) / total if total else _touch(aloft)
+    gap = aloft - depth
+    scale = height_scale(problem.profile, contact, depth)
+    inside = np.abs(gap[contact])
+    missed = abs(force - problem.value) if problem.prescribed == "force" else 0.0
+    return Equilibrium(
+        pressure=pressure,
+        displacement=displacement,
+        gap=gap,
+        depth=depth,
+        force=force,
+        residual_contact=float(inside.max(initial=0.0)) / scale,
+        residual_penetration=max(0.0, -float(gap.min(initial=0.0, where=~contact))) / scale,
+        residual_complementarity=float((pressure[contact] * inside).sum()) / total / scale
+        if total
+        else 0.0,
+        residual_load=missed / problem.value if missed else 0.0,
+    )
+
+
+def height_scale(
+    profile: Array, contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]], depth: float
+) -> float:
+    """Return the length [m] by which gaps are judged: the indenter's height range in contact.
+
+    Where the indenter is flat over the contact (a punch, a single cell) it is the depth.
+    """
+    heights = profile[contact]
+    if heights.size and (in_contact := float(np.ptp(heights))) > _FLAT * abs(depth):
+        return in_contact
+    indenter = profile[np.isfinite(profile)]
+    return abs(depth) or float(np.ptp(indenter)) or 1.0
+
+
+def _touch(aloft: Array) -> float:
+    return float(aloft.min())

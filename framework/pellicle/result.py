@@ -1,0 +1,123 @@
+"""What comes out: the status of a step, what a solver returns, and the result of a run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import storage
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+    from numpy.typing import NDArray
+
+
+class Status(Enum):
+    """How a step ended; the value is what the user is told."""
+
+    CONVERGED = "converged"
+    NOT_FINITE = (
+        "the pressure became NaN or infinite; check the kernel's compliance and the profile for "
+        "extreme values"
+    )
+    NEGATIVE_PRESSURE = "the solver returned a negative pressure, {measure:.1e} of the highest"
+    CONTACT_RESIDUAL = (
+        "the surface misses the indenter inside the contact by {measure:.1e} of the indenter's "
+        "height range there, over the tolerance {tolerance:.1e}; {remedy}"
+    )
+    PENETRATION = (
+        "the surface penetrates the indenter outside the contact by {measure:.1e} of the height "
+        "range in contact, over the tolerance {tolerance:.1e}; {remedy}"
+    )
+    COMPLEMENTARITY = (
+        "pressure acts across a gap: complementarity {measure:.1e} is over the tolerance "
+        "{tolerance:.1e}; {remedy}"
+    )
+    LOAD = "the force misses the prescribed one by {measure:.1e}, over {tolerance:.1e}; {remedy}"
+    CONTACT_AT_EDGE = (
+        "the contact reaches the edge of the domain, where the indenter does not end, so force "
+        "and area are wrong; enlarge grid.size = {size} or prescribe less than {prescribed}"
+    )
+
+
+class Stop(Enum):
+    """Why a solver stopped; the value is the remedy if the result is not good enough."""
+
+    DONE = "tighten the solver's own criterion"
+    ITERATION_LIMIT = "the limit of iterations was reached: raise solver.max_iterations"
+    STALLED = "no progress any more: the tolerance is below round-off here, loosen solver.tolerance"
+    NOT_FINITE = "the iteration met a value that is not finite"
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What a solver returns for one step."""
+
+    pressure: NDArray[np.float64]
+    """Contact pressure ≥ 0 [Pa], of the grid's shape."""
+    iterations: int
+    stop: Stop = Stop.DONE
+
+
+@dataclass(frozen=True)
+class Result:
+    """The result of a run: all steps, their fields, and where they came from."""
+
+    dataset: xr.Dataset
+    """Dimensions (step, x, y); units in the attributes of each variable."""
+
+    @classmethod
+    def join(cls, steps: Sequence[xr.Dataset]) -> Result:
+        """Return the result made of datasets of one step each."""
+        import xarray as xr
+
+        if len(steps) == 1:
+            return cls(steps[0])
+        # Coordinates are the same objects in all steps, so nothing needs comparing.
+        return cls(
+            xr.concat(
+                steps,
+                "step",
+                data_vars="all",
+                coords="minimal",
+                compat="override",
+                join="override",
+                combine_attrs="override",
+            )
+        )
+
+    @property
+    def configuration(self) -> dict[str, Any]:
+        """The full configuration that was run, SI floats."""
+        return json.loads(self.dataset.attrs["configuration"])  # type: ignore[no-any-return]
+
+    @property
+    def converged(self) -> bool:
+        """Whether every step converged."""
+        return bool(self.dataset["converged"].all())
+
+    def save(self, path: str | Path) -> None:
+        """Write the result to an HDF5 (NetCDF-4) file.
+
+        Raises
+        ------
+        StorageError
+            The file cannot be written.
+        """
+        storage.write(self.dataset, Path(path))
+
+
+def load(path: str | Path) -> Result:
+    """Return the result in a file that `Result.save` or the output ``hdf5`` wrote.
+
+    Raises
+    ------
+    StorageError
+        No such file, not a result, or of another schema version.
+    """
+    return Result(storage.read(Path(path)))

@@ -1,0 +1,173 @@
+"""Field types that accept ``0.01``, ``"10 kPa"`` or a pint quantity, and hold SI floats.
+
+Units exist at this edge only: inside pellicle every number is SI.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from functools import cache
+from numbers import Real
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic_core import core_schema
+
+if TYPE_CHECKING:
+    import pint
+    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+    from pydantic.json_schema import JsonSchemaValue
+
+_EXAMPLES = {
+    "m": "10 um",
+    "Pa": "10 kPa",
+    "N/m": "50 mN/m",
+    "N": "2 uN",
+    "rad": "70 degree",
+}
+_NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+
+
+@cache
+def _registry() -> pint.UnitRegistry[float]:
+    # pint takes a fifth of a second to import: only a text with a unit pays for it.
+    import pint
+
+    return pint.get_application_registry()  # type: ignore[return-value]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Annotation of a float field: its SI unit and the values that make sense.
+
+    Parameters
+    ----------
+    unit
+        SI unit, e.g. ``"Pa"``; ``"1"`` for a pure number.
+    above, at_least, below, at_most
+        Bounds in that unit, the first and third excluded.
+    """
+
+    unit: str
+    above: float | None = None
+    at_least: float | None = None
+    below: float | None = None
+    at_most: float | None = None
+
+    def __call__(self, value: object) -> float:
+        """Return ``value`` in SI.
+
+        Raises
+        ------
+        ValueError
+            Not a number, of another dimension, without a unit, not finite or out of bounds.
+        """
+        number = self._magnitude(value)
+        if not math.isfinite(number):
+            raise ValueError(f"{value!r} is not finite; give {self._wanted()}")
+        if not self._within(number):
+            raise ValueError(f"{value!r} is not allowed; give {self._wanted()}")
+        return number
+
+    def _magnitude(self, value: object) -> float:
+        if isinstance(value, Real) and not isinstance(value, bool):
+            return float(value)
+        if hasattr(value, "magnitude") and hasattr(value, "units"):
+            value = f"{value.magnitude!r} {value.units}"
+        if not isinstance(value, str):
+            raise ValueError(f"{value!r} is not a number; give {self._wanted()}")
+        if value.strip().lower().lstrip("+-") in ("nan", "inf", "infinity"):
+            return float(value)
+        match = _NUMBER_AND_UNIT.fullmatch(value)
+        if match is None:
+            raise ValueError(f"{value!r} is not a number with a unit; give {self._wanted()}")
+        number, unit = match.groups()
+        if self.unit == "1":
+            if unit:
+                raise ValueError(f"{value!r} has a unit; give {self._wanted()}")
+            return float(number)
+        if not unit:
+            raise ValueError(f"{value!r} is text without a unit; give {self._wanted()}")
+        return self._convert(float(number), unit, value)
+
+    def _convert(self, number: float, unit: str, value: str) -> float:
+        registry = _registry()
+        try:
+            return float(registry.Quantity(number, unit).to(self.unit).magnitude)
+        except Exception as error:
+            # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
+            kind = type(error).__name__
+            why = (
+                f"measures {registry.Unit(unit).dimensionality}, not {self._dimension()}"
+                if kind == "DimensionalityError"
+                else f"has no unit that is known ({unit!r})"
+            )
+            raise ValueError(f"{value!r} {why}; give {self._wanted()}") from None
+
+    def _dimension(self) -> str:
+        return str(_registry().Unit(self.unit).dimensionality)
+
+    def _within(self, number: float) -> bool:
+        return not (
+            (self.above is not None and number <= self.above)
+            or (self.at_least is not None and number < self.at_least)
+            or (self.below is not None and number >= self.below)
+            or (self.at_most is not None and number > self.at_most)
+        )
+
+    def _wanted(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        bounds = [
+            f"{sign} {bound:g}{unit}"
+            for sign, bound in (
+                (">", self.above),
+                ("≥", self.at_least),
+                ("<", self.below),
+                ("≤", self.at_most),
+            )
+            if bound is not None
+        ]
+        range_ = f" {' and '.join(bounds)}" if bounds else ""
+        if self.unit == "1":
+            return f"a plain number{range_}"
+        example = f", such as {_EXAMPLES[self.unit]!r}" if self.unit in _EXAMPLES else ""
+        return f"a value{range_} with its unit{example}, or a bare number in {self.unit}"
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(self)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        bounds = {
+            "exclusiveMinimum": self.above,
+            "minimum": self.at_least,
+            "exclusiveMaximum": self.below,
+            "maximum": self.at_most,
+        }
+        number = {"type": "number"} | {k: v for k, v in bounds.items() if v is not None}
+        if self.unit == "1":
+            return number
+        text = {"type": "string", "pattern": r"^\s*[-+]?[0-9.].*[A-Za-zµ°]"}
+        if self.unit in _EXAMPLES:
+            text["examples"] = [_EXAMPLES[self.unit]]  # type: ignore[assignment]
+        return {"anyOf": [number, text], "unit": self.unit}
+
+
+Length = Annotated[float, Quantity("m", above=0)]
+"""A length > 0 [m]."""
+Depth = Annotated[float, Quantity("m", at_least=0)]
+"""A depth ≥ 0 [m], positive into the solid."""
+Modulus = Annotated[float, Quantity("Pa", above=0)]
+"""An elastic modulus > 0 [Pa]."""
+Pressure = Annotated[float, Quantity("Pa", at_least=0)]
+"""A pressure ≥ 0 [Pa]."""
+Tension = Annotated[float, Quantity("N/m", at_least=0)]
+"""A surface tension ≥ 0 [N/m]."""
+Force = Annotated[float, Quantity("N", at_least=0)]
+"""A force ≥ 0 [N]."""
+PoissonsRatio = Annotated[float, Quantity("1", above=-1, at_most=0.5)]
+"""Poisson's ratio, above −1 and at most ½."""

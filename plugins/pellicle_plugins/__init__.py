@@ -1,0 +1,1 @@
+"""The components that pellicle ships, each registered as a stranger's would be."""

@@ -1,0 +1,63 @@
+"""Contact of a rigid flat-ended cylinder with a half-space without tension.
+
+Boussinesq (1885); Sneddon (1965); Johnson (1985), section 3.4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .checks import exactly_one, not_negative, positive
+
+
+@dataclass(frozen=True)
+class FlatPunchContact:
+    """Contact of a flat punch; the pressure is infinite at its edge."""
+
+    contact_radius: float
+    """a, the radius of the punch [m]."""
+    depth: float
+    """δ [m]."""
+    force: float
+    """F [N]."""
+
+    def pressure(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Return p = F / (2πa sqrt(a² − r²)) [Pa] at r ≥ 0 [m]; infinite at a, 0 beyond."""
+        ratio = np.asarray(r, dtype=float) / self.contact_radius
+        inside = ratio < 1
+        root = np.sqrt(np.where(inside, (1 - ratio) * (1 + ratio), 1.0))
+        value = self.force / (2 * np.pi * self.contact_radius**2) / root
+        edge = np.inf if self.force > 0 else 0.0
+        return np.where(inside, value, np.where(ratio == 1, edge, 0.0))
+
+
+def flat_punch(
+    radius: float,
+    reduced_modulus: float,
+    *,
+    depth: float | None = None,
+    force: float | None = None,
+) -> FlatPunchContact:
+    """Return the contact of a flat punch, F = 2 E* a δ, one quantity being given.
+
+    Parameters
+    ----------
+    radius
+        a [m].
+    reduced_modulus
+        E* = E / (1 − ν²) [Pa].
+    depth, force
+        δ [m] or F [N].
+    """
+    positive(radius=radius, reduced_modulus=reduced_modulus)
+    exactly_one(depth=depth, force=force)
+    stiffness = 2 * reduced_modulus * radius
+    if depth is None:
+        assert force is not None
+        not_negative(force=force)
+        depth = force / stiffness
+    not_negative(depth=depth)
+    return FlatPunchContact(contact_radius=radius, depth=depth, force=stiffness * depth)

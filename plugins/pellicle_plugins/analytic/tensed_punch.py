@@ -1,0 +1,109 @@
+"""Contact of a rigid flat punch with a half-space under surface tension.
+
+The integral equation of the ``axisymmetric`` module with a flat profile,
+∫_{−a}^{a} φ(t) K(x − t) dt = E* δ, P = π ∫ φ.  Its solution goes as C (a² − t²)^(−1/2)
+at the edge, which is a line load of total π² C on the rim of the punch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pellicle.errors import ConvergenceError
+
+from .axisymmetric import NEGLIGIBLE
+from .checks import exactly_one, not_negative, positive
+from .panels import Points, clustering, collocation, gauss, graded, joined
+from .tension_kernel import auxiliary_g
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 1e-9
+RING_TOLERANCE = 1e-6
+_LEVELS = ((12, 1e-3), (16, 3e-4), (22, 1e-4))
+
+
+@dataclass(frozen=True)
+class TensedPunch:
+    """Contact of a flat punch; its pressure distribution is not worked out."""
+
+    contact_radius: float
+    """a, the radius of the punch [m]."""
+    depth: float
+    """δ [m]."""
+    force: float
+    """P [N], the ring force included."""
+    ring_force: float
+    """Part of the force that the rim carries as a line load [N]; 0 without tension."""
+
+
+def _unit(ratio: float, level: int) -> tuple[float, float]:
+    """Return P and the ring force over E* a δ at s/a = ratio."""
+    if not ratio:
+        return 2.0, 0.0
+    order, finest = _LEVELS[level]
+    panels = graded(order, finest * np.sqrt(min(1.0, ratio)), 1.0)
+
+    def influence(distance: Array, _source: Points, _target: Points) -> Array:
+        return auxiliary_g(distance / ratio) / ratio
+
+    matrix = collocation(panels, influence, clustering(ratio), 1)
+    y = np.linalg.solve(matrix, np.ones(joined(panels).psi.size)).reshape(len(panels), order)
+    _, unit, to_legendre = gauss(order)
+    halves = np.array([panel.length / 2 for panel in panels])
+    force = 2 * np.pi * float(halves @ y @ unit)
+    return force, np.pi**2 * float(np.sum(to_legendre @ y[-1]))
+
+
+def punch(
+    radius: float,
+    reduced_modulus: float,
+    tension: float,
+    *,
+    depth: float | None = None,
+    force: float | None = None,
+) -> TensedPunch:
+    """Return the contact of a flat punch, depth or force being given.
+
+    Parameters
+    ----------
+    radius
+        a [m].
+    reduced_modulus
+        E* = E / (1 − ν²) [Pa].
+    tension
+        τ₀ [N/m], zero included.
+    depth, force
+        δ [m] or P [N].
+
+    Raises
+    ------
+    pellicle.errors.ConvergenceError
+        If two resolutions differ by more than 1e-9 in force or 1e-6 in ring force.
+    """
+    positive(radius=radius, reduced_modulus=reduced_modulus)
+    not_negative(tension=tension)
+    exactly_one(depth=depth, force=force)
+    ratio = 2 * tension / reduced_modulus / radius
+    ratio = ratio if ratio > NEGLIGIBLE else 0.0
+    levels = [_unit(ratio, level) for level in (0, 1)]
+    if not _agree(*levels):
+        levels.append(_unit(ratio, 2))
+        if not _agree(*levels[1:]):
+            raise ConvergenceError(f"the punch at s/a = {ratio:g} does not converge: {levels}")
+    stiffness, ring = (value * reduced_modulus * radius for value in levels[-1])
+    if depth is None:
+        assert force is not None
+        depth = force / stiffness
+    not_negative(depth=depth)
+    return TensedPunch(radius, depth, stiffness * depth, ring * depth)
+
+
+def _agree(old: tuple[float, float], new: tuple[float, float]) -> bool:
+    return (
+        abs(new[0] - old[0]) <= TOLERANCE * new[0]
+        and abs(new[1] - old[1]) <= RING_TOLERANCE * new[1]
+    )

@@ -1,0 +1,1 @@
+"""Corrections of the contact area for the discretisation."""

@@ -1,0 +1,1 @@
+"""Indenters: the rigid bodies that are pressed in."""

@@ -1,0 +1,36 @@
+"""The cone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi, tan
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Indenter
+from pellicle.operators import Array
+from pellicle.units import Quantity
+
+
+class Cone(Indenter):
+    """Cone with its tip down."""
+
+    type: Literal["cone"] = "cone"
+    half_angle: Annotated[
+        float,
+        Quantity("rad", above=0, below=pi / 2),
+        Field(description="angle between axis and side [rad], or as '70 degree'"),
+    ]
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return −r cot α [m]."""
+        return -np.hypot(x, y) / tan(self.half_angle)
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the cone."""
+    register(Cone)

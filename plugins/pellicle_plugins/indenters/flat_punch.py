@@ -1,0 +1,31 @@
+"""The flat-ended cylinder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Indenter
+from pellicle.operators import Array
+from pellicle.units import Length
+
+
+class FlatPunch(Indenter):
+    """Flat-ended circular cylinder; a cell belongs to it if its centre does."""
+
+    type: Literal["flat_punch"] = "flat_punch"
+    radius: Annotated[Length, Field(description="radius of the flat end [m]")]
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return 0 under the punch and −inf beside it [m]."""
+        return np.where(x**2 + y**2 <= self.radius**2, 0.0, -np.inf)
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the flat punch."""
+    register(FlatPunch)

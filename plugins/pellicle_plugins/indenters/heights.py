@@ -1,0 +1,179 @@
+"""Heights from a file or an array."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field, PrivateAttr, model_validator
+
+from pellicle import hookimpl
+from pellicle.components import Indenter
+from pellicle.errors import ConfigError
+from pellicle.model import InputPath
+from pellicle.operators import Array
+from pellicle.units import Length
+
+
+class Heights(Indenter):
+    """Rough punch given by its heights at the cell centres; peaks touch first, it ends at the edge.
+
+    From the library, ``values`` takes an array instead of a file; the configuration then records
+    its content hash only.
+    """
+
+    footprint: ClassVar[Literal["unbounded", "domain"]] = "domain"
+    type: Literal["heights"] = "heights"
+    path: Annotated[
+        InputPath | None,
+        Field(description="file with a 2-D array: .npy, text (.txt, .csv, .dat) or .h5"),
+    ] = None
+    unit: Annotated[
+        Length, Field(description="length that a height of 1 in the data stands for [m]: '1 um'")
+    ]
+    dataset: Annotated[
+        str | None, Field(description="name of the array in an HDF5 file that holds several")
+    ] = None
+    sha256: Annotated[
+        str | None,
+        Field(description="hash of the heights as float64 in C order; checked if given"),
+    ] = None
+    values: Annotated[
+        Any, Field(description="array of heights, from the library only", exclude=True, repr=False)
+    ] = None
+    _heights: Array = PrivateAttr()
+
+    @model_validator(mode="after")
+    def _read(self) -> Self:
+        if (self.path is None) == (self.values is None):
+            hint = (
+                f" (the configuration records only the hash {self.sha256} of an array that was in "
+                "memory: give values again)"
+                if self.sha256 and self.path is None
+                else ""
+            )
+            raise ConfigError(f"give either a file or, from the library, values{hint}", "path")
+        field = "values" if self.path is None else "path"
+        raw = self.values if self.path is None else _load(self.path, self.dataset)
+        heights = _checked(raw, str(self.path or "the array"), field)
+        digest = hashlib.sha256(heights.tobytes()).hexdigest()
+        if self.sha256 is not None and self.sha256 != digest:
+            raise ConfigError(
+                f"{self.sha256} is not the hash {digest} of the heights: they have changed; remove "
+                "sha256 to use them as they are",
+                "sha256",
+            )
+        heights.setflags(write=False)
+        # The model is frozen for its users; this is still its construction.
+        object.__setattr__(self, "sha256", digest)
+        object.__setattr__(self, "values", None)
+        self._heights = heights
+        return self
+
+    def __eq__(self, other: object) -> bool:
+        """Compare the configuration; the hash stands for the heights."""
+        return isinstance(other, Heights) and self.model_dump() == other.model_dump()
+
+    def __hash__(self) -> int:
+        """Return a hash that agrees with equality."""
+        return hash((self.unit, self.sha256))
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return (heights − highest) · unit [m].
+
+        Raises
+        ------
+        ConfigError
+            The array is not of the grid's shape.
+        """
+        shape = np.broadcast_shapes(x.shape, y.shape)
+        if self._heights.shape != shape:
+            raise ConfigError(
+                f"{self.path or 'the array'} is of shape {self._heights.shape}, and the grid of "
+                f"shape {shape}; set grid.points = {list(self._heights.shape)}, or resample it",
+                "path",
+            )
+        return (self._heights - self._heights.max()) * self.unit
+
+
+def _load(path: Path, dataset: str | None) -> Any:
+    if not path.is_file():
+        raise ConfigError(f"{path}: no such file", "path")
+    if path.stat().st_size == 0:
+        raise ConfigError(f"{path} is empty", "path")
+    readers = {".npy": _load_npy, ".h5": _load_hdf5, ".hdf5": _load_hdf5, ".nc": _load_hdf5}
+    reader = readers.get(path.suffix.lower(), _load_text)
+    try:
+        return reader(path, dataset)
+    except ConfigError:
+        raise
+    except (OSError, ValueError, EOFError, UnicodeDecodeError) as error:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise ConfigError(
+            f"{path} cannot be read as {reader.__name__.removeprefix('_load_')} ({reason}); give a "
+            "2-D array of numbers as .npy, text or .h5",
+            "path",
+        ) from None
+
+
+def _load_npy(path: Path, dataset: str | None) -> Any:
+    try:
+        return np.load(path, allow_pickle=False)
+    except ValueError as error:
+        if "pickle" not in str(error).lower():
+            raise
+        raise ConfigError(
+            f"{path} is pickled or no .npy file, and a pickle can run any code; save a plain array "
+            "with numpy.save(…, allow_pickle=False)",
+            "path",
+        ) from None
+
+
+def _load_text(path: Path, dataset: str | None) -> Any:
+    delimiter = "," if "," in path.read_text(encoding="utf-8", errors="strict") else None
+    return np.loadtxt(path, delimiter=delimiter, ndmin=2)
+
+
+def _load_hdf5(path: Path, dataset: str | None) -> Any:
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        names: list[str] = []
+        file.visititems(
+            lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None
+        )
+        if dataset is None and len(names) == 1:
+            dataset = names[0]
+        if dataset is None or dataset not in names:
+            asked = f"no array {dataset!r}" if dataset else "more than one array"
+            raise ConfigError(
+                f"{path} has {asked}; give dataset = one of: {', '.join(names) or 'none there'}",
+                "dataset",
+            )
+        return file[dataset][...]
+
+
+def _checked(raw: Any, name: str, field: str) -> Array:
+    """Return heights as a fresh float64 array, or say what is wrong with them."""
+    given = np.asarray(raw)
+    problem = None
+    if given.dtype.kind not in "fiu":
+        kind = "complex" if given.dtype.kind == "c" else str(given.dtype)
+        problem = f"holds {kind} values; give real numbers"
+    elif given.ndim != 2 or given.size == 0:
+        problem = f"is of shape {given.shape}; give a 2-D array [along x, along y]"
+    elif not np.isfinite(given).all():
+        count = np.count_nonzero(~np.isfinite(given))
+        problem = f"holds {count} NaN or infinite heights; fill or crop them first"
+    if problem:
+        raise ConfigError(f"{name} {problem}", field)
+    return np.array(given, dtype=np.float64, order="C")
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the heights."""
+    register(Heights)

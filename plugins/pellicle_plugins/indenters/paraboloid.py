@@ -1,0 +1,30 @@
+"""The paraboloid of revolution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Indenter
+from pellicle.operators import Array
+from pellicle.units import Length
+
+
+class Paraboloid(Indenter):
+    """Paraboloid of revolution, the shallow limit of a sphere."""
+
+    type: Literal["paraboloid"] = "paraboloid"
+    radius: Annotated[Length, Field(description="radius of curvature R at the tip [m]")]
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return −(x² + y²)/2R [m]."""
+        return -(x**2 + y**2) / (2 * self.radius)
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the paraboloid."""
+    register(Paraboloid)

@@ -1,0 +1,31 @@
+"""The general quadric."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Indenter
+from pellicle.operators import Array
+from pellicle.units import Length
+
+
+class Quadric(Indenter):
+    """Paraboloid with different radii of curvature along x and y."""
+
+    type: Literal["quadric"] = "quadric"
+    radius_x: Annotated[Length, Field(description="radius of curvature in the x–z plane [m]")]
+    radius_y: Annotated[Length, Field(description="radius of curvature in the y–z plane [m]")]
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return −(x²/2R_x + y²/2R_y) [m]."""
+        return -(x**2 / (2 * self.radius_x) + y**2 / (2 * self.radius_y))
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the quadric."""
+    register(Quadric)

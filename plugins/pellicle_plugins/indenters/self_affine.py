@@ -1,0 +1,172 @@
+"""The self-affine random rough surface."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil, pi
+from typing import Annotated, ClassVar, Literal, NamedTuple, Self
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from pellicle import hookimpl
+from pellicle.components import Indenter
+from pellicle.errors import ConfigError
+from pellicle.operators import Array
+from pellicle.units import Length, Quantity
+
+# Wavelengths that fit the domain exactly must not be lost to rounding.
+_ROUNDING = 1e-9
+
+
+class SelfAffine(Indenter):
+    """Self-affine rough punch with random phases; it ends where the domain does.
+
+    The heights are a Fourier series fixed by the seed and the spectrum alone, so a finer grid
+    samples the same surface: C(q) = C₀ q^{−2(H+1)} for q₀ ≤ q ≤ q_s and 0 elsewhere (Yuan & Wang
+    2019, eq. 12), q₀ = 2π/roll_off_wavelength, q_s = 2π/cutoff_wavelength.
+    """
+
+    footprint: ClassVar[Literal["unbounded", "domain"]] = "domain"
+    type: Literal["self_affine"] = "self_affine"
+    rms_height: Annotated[Length, Field(description="root mean square of the heights [m]")]
+    hurst: Annotated[
+        float, Quantity("1", at_least=0, at_most=1), Field(description="Hurst exponent H")
+    ]
+    cutoff_wavelength: Annotated[Length, Field(description="shortest wavelength 2π/q_s [m]")]
+    roll_off_wavelength: Annotated[
+        Length | None,
+        Field(description="longest wavelength 2π/q₀ [m]; the longer edge of the domain if absent"),
+    ] = None
+    seed: Annotated[int, Field(ge=0, description="seed of the random phases")] = 0
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.roll_off_wavelength and self.roll_off_wavelength < self.cutoff_wavelength:
+            raise ConfigError(
+                f"{self.roll_off_wavelength:g} m is shorter than cutoff_wavelength = "
+                f"{self.cutoff_wavelength:g} m; give a longer one",
+                "roll_off_wavelength",
+            )
+        return self
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return heights minus their maximum [m]; ``x`` and ``y`` are a whole period apart.
+
+        Raises
+        ------
+        ConfigError
+            The spacing cannot resolve the shortest wavelength, or no wavelength fits the domain.
+        """
+        axes = _Axis.of(x.ravel()), _Axis.of(y.ravel())
+        series = self._series(axes[0].period, axes[1].period)
+        coarsest = max(axis.period / axis.count for axis in axes)
+        if 2 * coarsest >= self.cutoff_wavelength * (1 - _ROUNDING):
+            raise ConfigError(
+                f"{self.cutoff_wavelength:g} m cannot be resolved by cells of {coarsest:g} m; use "
+                "more grid.points, or a cut-off above two cells",
+                "cutoff_wavelength",
+            )
+        return _sample(series, *axes) - _maximum(series, *axes)
+
+    def _series(self, period_x: float, period_y: float) -> _Series:
+        """Return the modes of one half of the wave vectors, longest first."""
+        longest = self.roll_off_wavelength or max(period_x, period_y)
+        q_low = 2 * pi / longest * (1 - _ROUNDING)
+        q_high = 2 * pi / self.cutoff_wavelength * (1 + _ROUNDING)
+        reach = [ceil(period / self.cutoff_wavelength) + 1 for period in (period_x, period_y)]
+        m, n = np.meshgrid(
+            np.arange(-reach[0], reach[0] + 1), np.arange(reach[1] + 1), indexing="ij"
+        )
+        q = np.hypot(2 * pi / period_x * m, 2 * pi / period_y * n)
+        # One of each pair ±q: a real surface has the other.
+        kept = (q >= q_low) & (q <= q_high) & ((n > 0) | (m > 0))
+        if not kept.any():
+            raise ConfigError(
+                f"no wavelength between {self.cutoff_wavelength:g} m and {longest:g} m fits the "
+                f"domain of {period_x:g} × {period_y:g} m; widen the range or the domain",
+                "roll_off_wavelength",
+            )
+        m, n, q = m[kept], n[kept], q[kept]
+        # Phases are drawn in order of wave number: a longer spectrum keeps the ones it had.
+        order = np.lexsort((n, m, q))
+        m, n, q = m[order], n[order], q[order]
+        amplitude = q ** -(self.hurst + 1)
+        amplitude *= self.rms_height / np.sqrt(2 * np.sum(amplitude**2))
+        phase = np.random.default_rng(self.seed).uniform(0, 2 * pi, q.size)
+        return _Series(m, n, amplitude * np.exp(1j * phase))
+
+
+class _Axis(NamedTuple):
+    """Equally spaced points that sample one period."""
+
+    first: float
+    count: int
+    period: float
+
+    @classmethod
+    def of(cls, points: Array) -> _Axis:
+        if points.size < 2:
+            raise ConfigError("needs a grid of at least 2 points each way", "type")
+        spacing = (points[-1] - points[0]) / (points.size - 1)
+        return cls(float(points[0]), points.size, float(spacing * points.size))
+
+    def finer(self, factor: int) -> _Axis:
+        return self._replace(count=self.count * factor)
+
+
+class _Series(NamedTuple):
+    """h(x, y) = 2 Re Σ c exp(2πi(m x/L_x + n y/L_y)), n ≥ 0."""
+
+    m: NDArray[np.int64]
+    n: NDArray[np.int64]
+    c: NDArray[np.complex128]
+
+
+def _sample(series: _Series, x: _Axis, y: _Axis) -> Array:
+    """Return the heights [m] at the points of two axes, shape (x.count, y.count)."""
+    shift = np.exp(2j * pi * (series.m * (x.first / x.period) + series.n * (y.first / y.period)))
+    modes = np.zeros((x.count, y.count // 2 + 1), dtype=np.complex128)
+    modes[series.m % x.count, series.n] = series.c * shift
+    # irfft2 supplies the conjugate of each column n > 0; column 0 needs both halves written.
+    on_edge = series.n == 0
+    modes[-series.m[on_edge] % x.count, 0] = np.conj(series.c * shift)[on_edge]
+    heights = scipy.fft.irfft2(modes, s=(x.count, y.count), norm="forward", overwrite_x=True)
+    return np.asarray(heights, dtype=np.float64)
+
+
+def _maximum(series: _Series, x: _Axis, y: _Axis) -> float:
+    """Return the maximum [m] of the series itself, not of its samples.
+
+    A maximum of the samples would put first touch at a different depth on each grid.
+    """
+    shortest = max(int(np.abs(series.m).max()), int(series.n.max()), 1)
+    x, y = (axis.finer(max(1, ceil(8 * shortest / axis.count))) for axis in (x, y))
+    heights = _sample(series, x, y)
+    tops = np.argsort(heights, axis=None)[-4:]
+    i, j = np.unravel_index(tops, heights.shape)
+    points = np.stack(
+        [x.first + i * (x.period / x.count), y.first + j * (y.period / y.count)], axis=1
+    )
+    return max(float(heights.max()), *(_climb(series, x, y, point) for point in points))
+
+
+def _climb(series: _Series, x: _Axis, y: _Axis, point: Array) -> float:
+    """Return the height [m] at the maximum next to ``point``, by Newton's method."""
+    q = 2 * pi * np.stack([series.m / x.period, series.n / y.period], axis=1)
+    for _ in range(4):
+        wave = 2 * series.c * np.exp(1j * (q @ point))
+        slope = -(q.T @ wave.imag)
+        curvature = -(q.T * wave.real) @ q
+        if np.linalg.det(curvature) <= 0:
+            break
+        point = point - np.linalg.solve(curvature, slope)
+    return float(2 * np.sum((series.c * np.exp(1j * (q @ point))).real))
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the self-affine punch."""
+    register(SelfAffine)

@@ -1,0 +1,36 @@
+"""The sphere, exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Indenter
+from pellicle.operators import Array
+from pellicle.units import Length
+
+
+class Sphere(Indenter):
+    """Sphere with its exact profile, not the paraboloid's; nothing beyond its equator."""
+
+    type: Literal["sphere"] = "sphere"
+    radius: Annotated[Length, Field(description="radius R [m]")]
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return √(R² − x² − y²) − R [m], −inf beyond the equator."""
+        under_root = self.radius**2 - (x**2 + y**2)
+        inside = under_root >= 0
+        root = np.sqrt(under_root, where=inside, out=np.zeros_like(under_root))
+        # −r²/(R + root) instead of root − R, which cancels near the tip.
+        shape = -(x**2 + y**2) / (self.radius + root)
+        return np.where(inside, shape, -np.inf)
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the sphere."""
+    register(Sphere)

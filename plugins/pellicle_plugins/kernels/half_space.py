@@ -1,0 +1,38 @@
+"""The elastic half-space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+
+from pellicle import hookimpl
+from pellicle.components import Kernel
+from pellicle.operators import Array
+
+from .elastic_solid import ElasticSolid
+
+
+class HalfSpace(ElasticSolid):
+    """Elastic half-space without surface tension (Boussinesq 1885)."""
+
+    type: Literal["half_space"] = "half_space"
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) = 2/(E* q) [m/Pa]; Johnson 1985, section 13.2."""
+        return 2.0 / (self.reduced_modulus * q)
+
+    def greens_function(self, r: Array) -> Array:
+        """Return G(r) = 1/(π E* r) [m/N]; Johnson 1985, eq. 3.22a."""
+        return 1.0 / (np.pi * self.reduced_modulus * r)
+
+    def radial_primitive(self, r: Array) -> Array:
+        """Return ∫₀^r G r dr = r/(π E*) [m²/N]."""
+        return r / (np.pi * self.reduced_modulus)
+
+
+@hookimpl
+def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
+    """Register the half-space."""
+    register(HalfSpace)

@@ -1,0 +1,53 @@
+"""The elastic half-space whose surface carries a tension."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Kernel
+from pellicle.operators import Array
+from pellicle.units import Tension
+
+from .elastic_solid import ElasticSolid
+from .struve import struve_minus_bessel, struve_minus_bessel_primitive
+
+
+class TensedMembrane(ElasticSolid):
+    """Elastic half-space under a skin of constant equi-biaxial tension (Hajji 1978)."""
+
+    type: Literal["tensed_membrane"] = "tensed_membrane"
+    tension: Annotated[Tension, Field(description="tension τ₀ of the surface [N/m], 0 for none")]
+
+    @property
+    def elastocapillary_length(self) -> float:
+        """s = 2τ₀/E* [m], below which the tension outweighs the elasticity."""
+        return 2 * self.tension / self.reduced_modulus
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) = 1/(E* q/2 + τ₀ q²) [m/Pa]; Hajji 1978."""
+        return 1.0 / (self.reduced_modulus * q / 2 + self.tension * q**2)
+
+    def greens_function(self, r: Array) -> Array:
+        """Return G(r) = [H₀(r/s) − Y₀(r/s)]/(2 s E*) [m/N]; Hajji 1978."""
+        s = self.elastocapillary_length
+        if s == 0:
+            return 1.0 / (np.pi * self.reduced_modulus * r)
+        return struve_minus_bessel(r / s) / (2 * s * self.reduced_modulus)
+
+    def radial_primitive(self, r: Array) -> Array:
+        """Return ∫₀^r G r dr = (s/2E*)[z(H₁(z) − Y₁(z)) − 2/π], z = r/s [m²/N]."""
+        s = self.elastocapillary_length
+        if s == 0:
+            return r / (np.pi * self.reduced_modulus)
+        return struve_minus_bessel_primitive(r / s) * (s / (2 * self.reduced_modulus))
+
+
+@hookimpl
+def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
+    """Register the tensed half-space."""
+    register(TensedMembrane)

@@ -1,0 +1,58 @@
+"""The numbers of each step as a table."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from pellicle import hookimpl
+from pellicle.components import Output, Place
+from pellicle.errors import StorageError
+from pellicle.result import Result
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Csv(Output):
+    """Table with one row a step; units in the header."""
+
+    type: Literal["csv"] = "csv"
+
+    def step(self, place: Place, step: xr.Dataset) -> None:
+        """Write the row of the step, the first with a header."""
+        path = place.file(".csv")
+        row = {
+            _header(str(name), variable): variable.item()
+            for name, variable in step.data_vars.items()
+            if variable.dims == ("step",)
+        }
+        index = step["step"].item()
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with path.open("a" if index else "w", newline="", encoding="utf-8") as file:
+                writer = csv.DictWriter(file, ["step", *row])
+                if index == 0:
+                    writer.writeheader()
+                writer.writerow({"step": index, **row})
+        except OSError as error:
+            raise StorageError(
+                f"{path}: cannot be written ({error.strerror}); choose another folder"
+            ) from None
+
+    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
+        """Name the file, which is complete."""
+        return (place.file(".csv"),)
+
+
+def _header(name: str, variable: xr.DataArray) -> str:
+    unit = variable.attrs.get("units", "1")
+    return name if unit == "1" else f"{name} [{unit}]"
+
+
+@hookimpl
+def register_outputs(register: Callable[[type[Output]], None]) -> None:
+    """Register the table."""
+    register(Csv)

@@ -1,0 +1,34 @@
+"""Pictures of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Output, Place
+from pellicle.plotting import save_figures
+from pellicle.result import Result
+
+
+class Figures(Output):
+    """Pressure map, profiles through the centre, force and area curves."""
+
+    type: Literal["figures"] = "figures"
+    formats: Annotated[
+        tuple[Literal["png", "svg", "pdf"], ...],
+        Field(min_length=1, description="file formats to write: png, svg, pdf"),
+    ] = ("png",)
+
+    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
+        """Draw the result and return the files."""
+        return save_figures(result, place.directory, place.name, self.formats)
+
+
+@hookimpl
+def register_outputs(register: Callable[[type[Output]], None]) -> None:
+    """Register the figures."""
+    register(Figures)

@@ -1,0 +1,51 @@
+"""All fields and numbers in one HDF5 file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from pellicle import hookimpl, storage
+from pellicle.components import Output, Place
+from pellicle.errors import StorageError
+from pellicle.result import Result
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Hdf5(Output):
+    """HDF5 (NetCDF-4) file with all steps, whole after each of them."""
+
+    type: Literal["hdf5"] = "hdf5"
+
+    def open(self, place: Place) -> None:
+        """Refuse to replace the result of another configuration."""
+        path = place.file(".h5")
+        storage.check_writable(path)
+        if place.overwrite or not path.exists():
+            return
+        if storage.read(path).attrs.get("configuration") != place.configuration:
+            raise StorageError(
+                f"{path} holds the result of another configuration; choose another folder "
+                "(-o DIR), or allow it to be replaced (--overwrite)"
+            )
+
+    def step(self, place: Place, step: xr.Dataset) -> None:
+        """Write the step behind the ones before it."""
+        path = place.file(".h5")
+        if step["step"].item() == 0:
+            storage.write(step, path)
+        else:
+            storage.append(step, path)
+
+    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
+        """Name the file, which is complete."""
+        return (place.file(".h5"),)
+
+
+@hookimpl
+def register_outputs(register: Callable[[type[Output]], None]) -> None:
+    """Register the HDF5 file."""
+    register(Hdf5)

@@ -1,0 +1,156 @@
+"""Influence coefficients against reference values, closed forms and exact integral identities."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pellicle.influence import cell_coefficients
+from pellicle_plugins.kernels.struve import struve_minus_bessel, struve_minus_bessel_primitive
+
+Array = NDArray[np.float64]
+Radial = Callable[[Array], Array]
+
+DATA = Path(__file__).resolve().parents[1] / "data" / "kernel_cells.csv"
+LENGTHS = [0.0, 1e-6, 1e-3, 0.1, 1.0, 10.0, 1e3, 1e6]
+
+
+def membrane(s: float) -> tuple[Radial, Radial]:
+    """G and its radial primitive for E* = 1; s = 0 is the half-space."""
+    if s == 0:
+        return (lambda r: 1 / (np.pi * r)), (lambda r: r / np.pi)
+    return (
+        lambda r: struve_minus_bessel(r / s) / (2 * s),
+        lambda r: s / 2 * struve_minus_bessel_primitive(r / s),
+    )
+
+
+def reference_rows() -> list[list[float]]:
+    """Rows s/D, i, j, K E*/D of the reference table."""
+    lines = [line for line in DATA.read_text().splitlines() if not line.startswith("#")]
+    return [[float(word) for word in line.split(",")] for line in lines[1:]]
+
+
+def love(x: Array, y: Array) -> Array:
+    """Love's corner integral of 1/(pi r) over the rectangle from the origin to (x, y)."""
+    return (x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))) / np.pi
+
+
+@pytest.mark.parametrize("s", sorted({row[0] for row in reference_rows()}))
+def test_reference_values(s: float) -> None:
+    """Every tabulated coefficient is met to 1e-11."""
+    rows = np.array([row for row in reference_rows() if row[0] == s])
+    i, j = rows[:, 1].astype(int), rows[:, 2].astype(int)
+    coefficients = cell_coefficients(*membrane(s), (1001, 58), (1.0, 1.0))
+    np.testing.assert_allclose(coefficients[i, j], rows[:, 3], rtol=1e-11)
+
+
+@pytest.mark.parametrize("spacing", [(1.0, 1.0), (2.0, 1.0), (0.3, 3.0)])
+def test_half_space_equals_loves_closed_form(spacing: tuple[float, float]) -> None:
+    """Half-space coefficients of square and slender cells equal Love's rectangle formula."""
+    shape = (90, 50)
+    x: Array = (np.arange(shape[0] + 1, dtype=np.float64)[:, None] - 0.5) * spacing[0]
+    y: Array = (np.arange(shape[1] + 1, dtype=np.float64)[None, :] - 0.5) * spacing[1]
+    exact = np.diff(np.diff(love(x, y), axis=0), axis=1)
+    coefficients = cell_coefficients(*membrane(0.0), shape, spacing)
+    np.testing.assert_allclose(coefficients, exact, rtol=1e-10)
+
+
+@pytest.mark.parametrize("s", LENGTHS)
+def test_three_slender_cells_make_a_square_one(s: float) -> None:
+    """Cells of sides 1/3 and 1, summed in threes, give the square cells at all distances."""
+    square = cell_coefficients(*membrane(s), (60, 50), (1.0, 1.0))
+    slender = cell_coefficients(*membrane(s), (180, 50), (1 / 3, 1.0))
+    middle = 3 * np.arange(60)
+    total = sum(slender[np.abs(middle + a)] for a in (-1, 0, 1))
+    np.testing.assert_allclose(total, square, rtol=3e-11)
+
+
+@pytest.mark.parametrize("spacing", [(1.0, 1.0), (1.0, 4.0), (10.0, 1.0)])
+@pytest.mark.parametrize("s", LENGTHS)
+def test_blocks_of_nine_cells_make_the_large_cell(s: float, spacing: tuple[float, float]) -> None:
+    """Sums over 3 x 3 cells equal the cells three times as large, across all tier borders."""
+    coarse_shape = (40, 36)
+    large = (3 * spacing[0], 3 * spacing[1])
+    coarse = cell_coefficients(*membrane(s), coarse_shape, large)
+    fine = cell_coefficients(*membrane(s), (120, 108), spacing)
+    i, j = 3 * np.arange(40), 3 * np.arange(36)
+    steps = (-1, 0, 1)
+    total = sum(fine[np.ix_(np.abs(i + a), np.abs(j + b))] for a in steps for b in steps)
+    np.testing.assert_allclose(total, coarse, rtol=3e-11)
+
+
+@pytest.mark.parametrize("shape", [(70, 70), (90, 41), (41, 90), (1, 60), (60, 1), (1, 1)])
+def test_symmetric_short_cut_equals_full_evaluation(shape: tuple[int, int]) -> None:
+    """Square cells equal cells that are square but for rounding, which take the full route."""
+    short = cell_coefficients(*membrane(2.0), shape, (1.0, 1.0))
+    full = cell_coefficients(*membrane(2.0), shape, (1.0, float(np.nextafter(1.0, 2.0))))
+    assert short.shape == shape
+    np.testing.assert_allclose(short, full, rtol=2e-13)
+
+
+def test_square_cells_are_mirror_symmetric() -> None:
+    """Exchanging the offsets changes nothing on square cells."""
+    coefficients = cell_coefficients(*membrane(5.0), (300, 280), (1.0, 1.0))
+    square = coefficients[:280]
+    np.testing.assert_allclose(square, square.T, rtol=2e-13)
+
+
+def test_swapping_the_sides_transposes() -> None:
+    """Exchanging the sides and the numbers of cells transposes the coefficients."""
+    wide = cell_coefficients(*membrane(0.7), (75, 130), (2.5, 1.0))
+    tall = cell_coefficients(*membrane(0.7), (130, 75), (1.0, 2.5))
+    np.testing.assert_allclose(wide, tall.T, rtol=1e-12)
+
+
+@pytest.mark.parametrize("spacing", [(1.0, 1.0), (1.0, 3.0)])
+def test_small_grids_are_corners_of_large_ones(spacing: tuple[float, float]) -> None:
+    """The number of offsets asked for does not change the coefficients."""
+    large = cell_coefficients(*membrane(3.0), (400, 350), spacing)
+    for shape in [(1, 1), (3, 7), (200, 5), (9, 340), (50, 50)]:
+        small = cell_coefficients(*membrane(3.0), shape, spacing)
+        np.testing.assert_allclose(small, large[: shape[0], : shape[1]], rtol=2e-13)
+
+
+def test_vanishing_tension_tends_to_the_half_space() -> None:
+    """A tiny s lowers the loaded cell by 2 s/E* and leaves the others, to second order in s."""
+    s = 1e-6
+    tensed = cell_coefficients(*membrane(s), (60, 40), (1.0, 1.0))
+    bare = cell_coefficients(*membrane(0.0), (60, 40), (1.0, 1.0))
+    assert (bare[0, 0] - tensed[0, 0]) / (2 * s) == pytest.approx(1, abs=1e-5)
+    tensed[0, 0] = bare[0, 0]
+    np.testing.assert_allclose(tensed, bare, rtol=2e-11)
+
+
+@pytest.mark.parametrize("factor", [3.7e-9, 2.9e5])
+def test_coefficients_scale_with_length(factor: float) -> None:
+    """Scaling every length scales the coefficients in proportion, in metres or nanometres."""
+    unit = cell_coefficients(*membrane(4.0), (50, 45), (1.0, 1.5))
+    scaled = cell_coefficients(*membrane(4.0 * factor), (50, 45), (factor, 1.5 * factor))
+    np.testing.assert_allclose(scaled, factor * unit, rtol=1e-12)
+
+
+@pytest.mark.parametrize("s", LENGTHS)
+def test_coefficients_are_positive_and_fall_with_distance(s: float) -> None:
+    """Every coefficient is positive and lower than its neighbour nearer to the load."""
+    coefficients = cell_coefficients(*membrane(s), (70, 64), (1.0, 1.2))
+    assert (coefficients > 0).all()
+    assert (np.diff(coefficients, axis=0) < 0).all()
+    assert (np.diff(coefficients, axis=1) < 0).all()
+
+
+def test_integer_spacing_is_accepted() -> None:
+    """Sides given as integers count as floating-point numbers."""
+    integer = cell_coefficients(*membrane(1.0), (40, 3), (1, 2))
+    np.testing.assert_array_equal(integer, cell_coefficients(*membrane(1.0), (40, 3), (1.0, 2.0)))
+
+
+@pytest.mark.parametrize(
+    ("shape", "spacing"), [((0, 4), (1.0, 1.0)), ((4, 4), (1.0, 0.0)), ((4, 4), (-1.0, 1.0))]
+)
+def test_impossible_grids_are_refused(shape: tuple[int, int], spacing: tuple[float, float]) -> None:
+    """Grids without offsets and cells without area raise a ValueError."""
+    with pytest.raises(ValueError, match="positive"):
+        cell_coefficients(*membrane(1.0), shape, spacing)

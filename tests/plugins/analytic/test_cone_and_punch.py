@@ -1,0 +1,64 @@
+"""Cone and flat punch without tension."""
+
+import numpy as np
+import pytest
+
+from pellicle_plugins.analytic.cone import cone
+from pellicle_plugins.analytic.flat_punch import flat_punch
+
+E = 3.0e4
+
+
+def test_cone_pressure_carries_the_force() -> None:
+    """The pressure of the cone integrates to its force."""
+    contact = cone(1.2, E, depth=2e-4)
+    nodes, weights = np.polynomial.legendre.leggauss(200)
+    u = (nodes + 1) / 2
+    r = contact.contact_radius * (1 - (1 - u**2) ** 2)
+    jacobian = contact.contact_radius * 4 * u * (1 - u**2) / 2
+    force = weights @ (2 * np.pi * r * contact.pressure(r) * jacobian)
+    assert force == pytest.approx(contact.force, rel=1e-10)
+
+
+def test_cone_stiffness_is_twice_modulus_times_radius() -> None:
+    """dF/dδ = 2 E* a for the cone."""
+    low, high = (cone(1.2, E, depth=2e-4 * (1 + h)) for h in (-1e-3, 1e-3))
+    slope = (high.force - low.force) / (high.depth - low.depth)
+    assert slope == pytest.approx(2 * E * cone(1.2, E, depth=2e-4).contact_radius, rel=1e-9)
+
+
+def test_cone_pressure_at_apex_edge_and_beyond() -> None:
+    """The pressure is infinite at the apex, and zero at the edge and beyond."""
+    contact = cone(1.2, E, contact_radius=1e-3)
+    assert contact.pressure([0.0, 1e-3, 2e-3]).tolist() == [np.inf, 0.0, 0.0]
+
+
+def test_cone_given_force_returns_given_depth() -> None:
+    """Depth → force → depth closes."""
+    assert cone(1.2, E, force=cone(1.2, E, depth=2e-4).force).depth == pytest.approx(2e-4)
+
+
+def test_punch_pressure_carries_the_force() -> None:
+    """The pressure of the punch integrates to its force, and δ = F / 2E*a."""
+    contact = flat_punch(1e-3, E, force=0.7)
+    nodes, weights = np.polynomial.legendre.leggauss(30)
+    theta = np.pi / 4 * (nodes + 1)
+    r = 1e-3 * np.sin(theta)
+    force = weights @ (2 * np.pi * r * contact.pressure(r) * 1e-3 * np.cos(theta)) * np.pi / 4
+    assert force == pytest.approx(0.7, rel=1e-10)
+
+
+def test_punch_surface_is_flat_at_its_depth() -> None:
+    """The pressure displaces the centre of the punch by δ."""
+    contact = flat_punch(1e-3, E, depth=1e-5)
+    nodes, weights = np.polynomial.legendre.leggauss(30)
+    theta = np.pi / 4 * (nodes + 1)
+    # u(0) = (1 / πE*) ∫ p / r dA
+    pressure = contact.pressure(1e-3 * np.sin(theta))
+    centre = weights @ (2 / E * pressure * 1e-3 * np.cos(theta)) * np.pi / 4
+    assert centre == pytest.approx(1e-5, rel=1e-10)
+
+
+def test_punch_pressure_at_its_edge_and_beyond() -> None:
+    """The pressure is infinite on the rim and zero beyond."""
+    assert flat_punch(1e-3, E, depth=1e-5).pressure([1e-3, 2e-3]).tolist() == [np.inf, 0.0]

@@ -1,0 +1,108 @@
+"""Struve-minus-Bessel functions against high-precision values and their own identities."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pellicle_plugins.kernels.struve import struve_minus_bessel, struve_minus_bessel_primitive
+
+Function = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+DATA = Path(__file__).resolve().parents[2] / "data" / "struve.csv"
+
+
+@pytest.fixture(scope="module")
+def reference() -> NDArray[np.float64]:
+    """Columns z, difference and primitive of the reference table."""
+    lines = [line for line in DATA.read_text().splitlines() if not line.startswith("#")]
+    return np.loadtxt(lines[1:], delimiter=",").T
+
+
+def test_difference_matches_high_precision_values(reference: NDArray[np.float64]) -> None:
+    """H0 - Y0 is right to 5e-14 over 24 decades."""
+    z, difference, _ = reference
+    np.testing.assert_allclose(struve_minus_bessel(z), difference, rtol=5e-14)
+
+
+def test_primitive_matches_high_precision_values(reference: NDArray[np.float64]) -> None:
+    """The primitive is right to 5e-14 over 24 decades."""
+    z, _, primitive = reference
+    np.testing.assert_allclose(struve_minus_bessel_primitive(z), primitive, rtol=5e-14)
+
+
+def test_reference_spans_both_regimes_and_the_promised_range(
+    reference: NDArray[np.float64],
+) -> None:
+    """The table reaches from 1e-12 to 1e12 and brackets the border at 4."""
+    z = reference[0]
+    assert z.min() == 1e-12
+    assert z.max() == 1e12
+    assert ((z > 3.99) & (z < 4)).any()
+    assert ((z > 4) & (z < 4.01)).any()
+
+
+def test_primitive_is_the_integral_of_t_times_the_difference() -> None:
+    """Gauss integrals of t (H0 - Y0) between random limits equal differences of the primitive."""
+    rng = np.random.default_rng(11)
+    lower = 10.0 ** rng.uniform(-3, 3, 200)
+    upper = lower * rng.uniform(1.2, 1.8, 200)
+    x, weights = np.polynomial.legendre.leggauss(24)
+    t = (upper + lower)[:, None] / 2 + (upper - lower)[:, None] / 2 * x
+    integral = (t * struve_minus_bessel(t)) @ weights * (upper - lower) / 2
+    rise = struve_minus_bessel_primitive(upper) - struve_minus_bessel_primitive(lower)
+    np.testing.assert_allclose(rise, integral, rtol=1e-12)
+
+
+def test_primitive_vanishes_at_zero() -> None:
+    """The primitive starts from exactly zero."""
+    assert struve_minus_bessel_primitive(np.zeros(3)).tolist() == [0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("function", [struve_minus_bessel, struve_minus_bessel_primitive])
+def test_regimes_meet_without_a_jump(function: Function) -> None:
+    """Neighbouring doubles on both sides of the border give the same value to rounding."""
+    below, above = function(np.array([np.nextafter(4.0, 0.0), 4.0]))
+    assert abs(above / below - 1) < 3e-14
+
+
+@pytest.mark.parametrize("function", [struve_minus_bessel, struve_minus_bessel_primitive])
+def test_large_mixed_arrays_equal_piecewise_evaluation(function: Function) -> None:
+    """A shuffled array of several blocks gives what short arrays of one regime give."""
+    rng = np.random.default_rng(12)
+    z = 10.0 ** rng.uniform(-2, 3, (31, 700))
+    values = function(z)
+    assert values.shape == z.shape
+    picks = rng.integers(0, z.size, 40)
+    single = [function(z.flat[k : k + 1])[0] for k in picks]
+    np.testing.assert_allclose(values.flat[picks], single, rtol=1e-14)
+
+
+@pytest.mark.parametrize("function", [struve_minus_bessel, struve_minus_bessel_primitive])
+def test_shapes_are_kept(function: Function) -> None:
+    """Empty, zero-dimensional and strided arguments keep their shape."""
+    assert function(np.empty((0, 3))).shape == (0, 3)
+    assert function(np.array(2.0)).shape == ()
+    z = np.linspace(1, 9, 24).reshape(4, 6)
+    np.testing.assert_allclose(function(z.T[::2]), function(z).T[::2], rtol=1e-14)
+
+
+def test_extreme_arguments_raise_no_floating_point_signal() -> None:
+    """From 1e-300 to 1e300 nothing overflows, divides by zero or is invalid."""
+    z = 10.0 ** np.arange(-300.0, 301.0, 10.0)
+    with np.errstate(all="raise", under="ignore"):
+        difference = struve_minus_bessel(z)
+        primitive = struve_minus_bessel_primitive(np.append(0.0, z))
+    assert (difference > 0).all()
+    assert (np.diff(difference) < 0).all()
+    assert (np.diff(primitive[primitive > 0]) > 0).all()
+
+
+def test_leading_asymptotes() -> None:
+    """H0 - Y0 tends to -(2/pi)(ln(z/2) + gamma) at small and to 2/(pi z) at large arguments."""
+    small, large = np.array([1e-9, 1e-11]), np.array([1e9, 1e11])
+    logarithm = -(2 / np.pi) * (np.log(small / 2) + np.euler_gamma)
+    np.testing.assert_allclose(struve_minus_bessel(small), logarithm, rtol=1e-9)
+    np.testing.assert_allclose(struve_minus_bessel(large), 2 / (np.pi * large), rtol=2e-14)
