@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 
 from pellicle.errors import ConvergenceError
 
-from .axisymmetric import NEGLIGIBLE
+from .axisymmetric_equation import LEVELS, without_negligible
 from .checks import exactly_one, not_negative, positive
-from .panels import Points, clustering, collocation, gauss, graded, joined
+from .panels import Points, gauss, graded, joined
+from .product_integration import clustering, collocation
 from .tension_kernel import auxiliary_g
 
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-9
 RING_TOLERANCE = 1e-6
-_LEVELS = ((12, 1e-3), (16, 3e-4), (22, 1e-4))
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def _unit(ratio: float, level: int) -> tuple[float, float]:
     """Return P and the ring force over E* a δ at s/a = ratio."""
     if not ratio:
         return 2.0, 0.0
-    order, finest = _LEVELS[level]
+    order, finest = LEVELS[level]
     panels = graded(order, finest * np.sqrt(min(1.0, ratio)), 1.0)
 
     def influence(distance: Array, _source: Points, _target: Points) -> Array:
@@ -87,8 +87,7 @@ def punch(
     positive(radius=radius, reduced_modulus=reduced_modulus)
     not_negative(tension=tension)
     exactly_one(depth=depth, force=force)
-    ratio = 2 * tension / reduced_modulus / radius
-    ratio = ratio if ratio > NEGLIGIBLE else 0.0
+    ratio = without_negligible(2 * tension / reduced_modulus / radius)
     levels = [_unit(ratio, level) for level in (0, 1)]
     if not _agree(*levels):
         levels.append(_unit(ratio, 2))

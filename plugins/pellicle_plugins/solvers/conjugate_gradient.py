@@ -14,24 +14,36 @@ from pellicle.components import IterativeSolver, Solver
 from pellicle.operators import Array
 from pellicle.problem import Problem, height_scale
 
+# Contact is added only where penetration is at least this share of the error inside.
+_PROPORTION = 0.3
+# Stands for −inf in products with 0.
+_NO_INDENTER = -1e200
+
 
 @dataclass
 class _State:
-    """Arrays of the grid's shape; reused from step to step."""
+    """Arrays of the grid's shape, reused from step to step."""
 
+    profile: Array
     pressure: Array
     displacement: Array
     """A p, by recurrence or afresh."""
-    gap: Array
-    """u − δ − f; −inf profile makes it +inf."""
-    contact: NDArray[np.bool_]
-    gap_in_contact: Array
-    direction: Array
-    energy: float
-    """Σ gap² over the contact at the last step; 0 starts from steepest descent."""
-    scale: float
     fresh: bool
     """Whether the displacement was just computed and not updated."""
+    contact: NDArray[np.bool_]
+    direction: Array
+    energy: float = 0.0
+    """Σ gap² over the contact at the last step; 0 starts from steepest descent."""
+    gap: Array = None  # type: ignore[assignment]
+    inner_gap: Array = None  # type: ignore[assignment]
+    """The gap in contact, 0 elsewhere."""
+    scratch: Array = None  # type: ignore[assignment]
+    scale: float = 1.0
+    """Height range of the indenter in contact [m]."""
+    inside: float = 0.0
+    """max |gap| in contact [m]."""
+    outside: float = 0.0
+    """Penetration outside the contact [m]."""
 
 
 class ConjugateGradient(IterativeSolver):
@@ -39,7 +51,9 @@ class ConjugateGradient(IterativeSolver):
 
     Departures from the papers: (1) the displacement is updated by the recurrence u ← u − τ A t and
     applied afresh only where pressure was clipped or contact added, and before the end; (2) it
-    ends on the residuals that a run reports, not on the change of the pressure.
+    ends on the residuals that a run reports, not on the change of the pressure; (3) contact is
+    added only when the penetration is no longer small against the error inside: adding at once
+    lets cells at the edge flip for ever when the tension is high.
     """
 
     type: Literal["conjugate_gradient"] = "conjugate_gradient"
@@ -49,30 +63,27 @@ class ConjugateGradient(IterativeSolver):
         pressure = _guess(problem) if start is None or not start.any() else start.copy()
         if problem.prescribed == "force":
             pressure *= problem.value / (pressure.sum() * problem.grid.cell_area)
-        contact = pressure > 0
         state = _State(
+            profile=np.maximum(problem.profile, _NO_INDENTER),
             pressure=pressure,
             displacement=problem.operator(pressure),
-            gap=np.empty_like(pressure),
-            contact=contact,
-            gap_in_contact=np.empty_like(pressure),
-            direction=np.zeros_like(pressure),
-            energy=0.0,
-            scale=1.0,
             fresh=True,
+            contact=pressure > 0,
+            direction=np.zeros_like(pressure),
         )
+        state.gap, state.inner_gap, state.scratch = (np.empty_like(pressure) for _ in range(3))
         _open_gap(problem, state, contact_changed=True)
         return state
 
     def residual(self, problem: Problem, state: _State) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""
-        residual = _residual(state)
+        residual = max(state.inside, state.outside) / state.scale
         if residual <= self.tolerance and not state.fresh:
             # The recurrence gathers round-off; only a fresh displacement may end the iteration.
             state.displacement = problem.operator(state.pressure)
             state.fresh = True
-            _open_gap(problem, state, contact_changed=True)
-            residual = _residual(state)
+            _open_gap(problem, state, contact_changed=False)
+            residual = max(state.inside, state.outside) / state.scale
         return residual
 
     def pressure(self, state: _State) -> Array:
@@ -81,83 +92,76 @@ class ConjugateGradient(IterativeSolver):
 
     def step(self, problem: Problem, state: _State) -> _State:
         """Return the state after one projected step along the conjugate direction."""
-        pressure, gap, direction = state.pressure, state.gap, state.direction
-        energy = float(np.vdot(state.gap_in_contact, state.gap_in_contact))
+        pressure, direction = state.pressure, state.direction
+        energy = float(np.vdot(state.inner_gap, state.inner_gap))
         # Directions of cells that left the contact must go even where the search starts anew.
         direction *= state.contact
         direction *= energy / state.energy if state.energy else 0.0
-        direction += state.gap_in_contact
+        direction += state.inner_gap
         change = problem.operator(direction)
-        curvature = float(np.vdot(direction, change))
-        if problem.prescribed == "force":
-            in_contact = np.count_nonzero(state.contact)
-            curvature -= float(direction.sum()) * float(change[state.contact].sum()) / in_contact
-        slope = float(np.vdot(state.gap_in_contact, direction))
-        length = slope / curvature if curvature > 0 else _unit_step(state)
-        np.multiply(direction, length, out=state.gap_in_contact)
-        pressure -= state.gap_in_contact
-        clipped = float(pressure.min()) < 0
+        length = _step_length(problem, state, change)
+        np.multiply(direction, length, out=state.scratch)
+        pressure -= state.scratch
+        clipped = bool(pressure.min() < 0)
         if clipped:
             np.maximum(pressure, 0, out=pressure)
-        added = not state.contact.all() and float(gap.min()) < 0 and _add(state, length)
+        added = state.outside > _PROPORTION * state.inside and _add(state, length)
         state.energy = 0.0 if added else energy
-        exact = not clipped and not added
-        state.fresh = not exact
         factor = 1.0
         if problem.prescribed == "force":
             factor = problem.value / (float(pressure.sum()) * problem.grid.cell_area)
             pressure *= factor
-        if exact:
+        state.fresh = clipped or added
+        if state.fresh:
+            np.greater(pressure, 0, out=state.contact)
+            state.displacement = problem.operator(pressure)
+        else:
             change *= length
             state.displacement -= change
             state.displacement *= factor
-        else:
-            np.greater(pressure, 0, out=state.contact)
-            state.displacement = problem.operator(pressure)
-        _open_gap(problem, state, contact_changed=not exact)
+        _open_gap(problem, state, contact_changed=state.fresh)
         return state
 
 
 def _guess(problem: Problem) -> Array:
     """Return a pressure that is positive wherever there can be contact, of a sensible size."""
-    lowest = float(problem.profile.max())
     if problem.prescribed == "force":
         return np.isfinite(problem.profile).astype(np.float64)
     overlap = np.maximum(problem.profile + problem.value, 0.0)
-    if lowest + problem.value <= 0:
-        return overlap
     response = problem.operator(overlap)
     # The multiple of the overlap whose displacement comes nearest to it in energy.
-    work = float(np.vdot(overlap, response))
-    return overlap * (float(np.vdot(overlap, overlap)) / work)
+    return overlap * (float(np.vdot(overlap, overlap)) / float(np.vdot(overlap, response)))
+
+
+def _step_length(problem: Problem, state: _State, change: Array) -> float:
+    """Return the step that minimises the energy along the direction, at constant load if given."""
+    slope = float(np.vdot(state.inner_gap, state.direction))
+    curvature = float(np.vdot(state.direction, change))
+    if problem.prescribed == "force":
+        mean = float(np.vdot(change, state.contact)) / np.count_nonzero(state.contact)
+        curvature -= float(state.direction.sum()) * mean
+    if curvature > 0:
+        return slope / curvature
+    # A single cell under a given force has no direction; its own stiffness is a sensible step.
+    displacement = float(np.vdot(state.displacement, state.contact))
+    return float(state.pressure.sum()) / displacement if displacement > 0 else 0.0
 
 
 def _open_gap(problem: Problem, state: _State, *, contact_changed: bool) -> None:
     """Set the gap and what follows from it; with a force prescribed its depth is the mean one."""
-    np.subtract(state.displacement, problem.profile, out=state.gap)
-    if problem.prescribed == "depth":
-        depth = problem.value
-    else:
-        np.copyto(state.gap_in_contact, 0.0)
-        np.copyto(state.gap_in_contact, state.gap, where=state.contact)
-        depth = float(state.gap_in_contact.sum()) / max(np.count_nonzero(state.contact), 1)
-    state.gap -= depth
-    np.copyto(state.gap_in_contact, 0.0)
-    np.copyto(state.gap_in_contact, state.gap, where=state.contact)
+    gap, inner_gap = state.gap, state.inner_gap
+    np.subtract(state.displacement, state.profile, out=gap)
+    depth = problem.value
+    if problem.prescribed == "force":
+        np.multiply(gap, state.contact, out=inner_gap)
+        depth = float(inner_gap.sum()) / max(np.count_nonzero(state.contact), 1)
+    gap -= depth
+    np.multiply(gap, state.contact, out=inner_gap)
+    state.inside = max(float(inner_gap.max()), -float(inner_gap.min()))
+    np.subtract(gap, inner_gap, out=state.scratch)
+    state.outside = -float(state.scratch.min(initial=0.0))
     if contact_changed:
         state.scale = height_scale(problem.profile, state.contact, depth)
-
-
-def _residual(state: _State) -> float:
-    inside = max(float(state.gap_in_contact.max()), 0.0)
-    outside = max(-float(state.gap.min()), 0.0)
-    return max(inside, outside) / state.scale
-
-
-def _unit_step(state: _State) -> float:
-    """Return pressure over displacement: a step length where the direction gives none."""
-    displacement = float(state.displacement[state.contact].sum())
-    return float(state.pressure.sum()) / displacement if displacement > 0 else 0.0
 
 
 def _add(state: _State, length: float) -> bool:

@@ -49,7 +49,6 @@ def test_paraboloid_matches_the_reference(row: tuple[float, ...]) -> None:
 def test_pressure_carries_the_force(indenter: Indenter, tension: float) -> None:
     """The pressure integrates to the force for every profile."""
     contact = indent(indenter, E, tension, contact_radius=3e-4)
-    # Without tension the cone leaves a logarithm that Gauss points see less well.
     assert integrated(contact) == pytest.approx(contact.force, rel=1e-8)
 
 
@@ -85,8 +84,8 @@ def test_little_tension_changes_little(indenter: Indenter) -> None:
     a = 3e-4
     none = indent(indenter, E, 0.0, contact_radius=a)
     little = indent(indenter, E, 1e-6 * a * E / 2, contact_radius=a)
-    assert 0 < little.force / none.force - 1 < 1e-5
-    assert 0 < little.depth / none.depth - 1 < 1e-5
+    assert 0 < little.force / none.force - 1 < 3e-5
+    assert 0 < little.depth / none.depth - 1 < 3e-5
 
 
 def test_strong_tension_limit() -> None:
@@ -102,7 +101,7 @@ def test_strong_tension_limit() -> None:
 
 
 def test_pressure_near_the_edge_has_the_known_logarithm() -> None:
-    """p ≈ p(a⁻) [1 + (e/πs) ln(1/e)] at a small distance e from the edge."""
+    """Near the edge p ≈ p(a⁻) [1 + (e/πs) ln(1/e)] at a small distance e from the edge."""
     contact = indent(Paraboloid(1.0), 1.0, 0.5, contact_radius=1.0)
     e = np.array([1e-4, 2e-4])
     edge = contact.pressure(1.0)
@@ -111,10 +110,10 @@ def test_pressure_near_the_edge_has_the_known_logarithm() -> None:
 
 
 def test_cone_pressure_at_its_apex() -> None:
-    """p r → τ₀ cot α at the apex of a cone, and p(0) is infinite."""
+    """The product p r → τ₀ cot α at the apex of a cone, and p(0) is infinite."""
     contact = indent(Cone(1.2), E, 0.1, contact_radius=3e-4)
-    r = 3e-10
-    assert contact.pressure(r) * r == pytest.approx(0.1 / np.tan(1.2), rel=1e-4)
+    r = 3e-13
+    assert contact.pressure(r) * r == pytest.approx(0.1 / np.tan(1.2), rel=1e-6)
     assert contact.pressure(0.0) == np.inf
 
 
@@ -165,7 +164,8 @@ def test_punch_carries_a_ring_load(ratio: float, share: float) -> None:
 def test_punch_limits() -> None:
     """Boussinesq without tension, and P / 2E*aδ → (πs/2a) / (ln(2s/a) − γ) with much."""
     plain = punch(2e-3, E, 0.0, depth=1e-5)
-    assert (plain.force, plain.ring_force) == (pytest.approx(2 * E * 2e-3 * 1e-5), 0.0)
+    assert plain.force == pytest.approx(2 * E * 2e-3 * 1e-5)
+    assert plain.ring_force == 0.0
     ratio = 1e5
     tensed = punch(1.0, 1.0, ratio / 2, depth=1.0)
     expected = np.pi * ratio / (np.log(2 * ratio) - np.euler_gamma)

@@ -40,19 +40,17 @@ def test_surface_follows_the_ellipsoid(ratio: float) -> None:
     """The potential of the pressure, integrated directly, has the two curvatures."""
     contact = ellipse(R, ratio * R, E, depth=1e-6)
     a, b = contact.semi_x, contact.semi_y
-
-    # u along x or y inside an ellipsoidal pressure: angular integral over chords.
-    theta, weights = np.polynomial.legendre.leggauss(400)
-    # tan θ' = (b/a) sinh-free substitution: put the nodes where the chord turns.
-    angle = np.arctan((b / a) * np.tan(np.pi / 4 * (theta + 1)))
-    jacobian = np.pi / 4 * (b / a) / np.cos(np.pi / 4 * (theta + 1)) ** 2 * np.cos(angle) ** 2
-    inverse = np.cos(angle) ** 2 / a**2 + np.sin(angle) ** 2 / b**2
-    unit = contact.peak_pressure / (np.pi * E) * 4 * weights * jacobian
-    # ∫ over a chord of direction θ through (x, 0): (π/2) (1 − x² sin²θ / (a² b² inv)) / sqrt(inv)
-    chord = np.pi / 2 / np.sqrt(inverse)
-    depth = unit @ (chord / 1) / 2 * 1
-    curvature_x = unit @ (chord * np.sin(angle) ** 2 / (a * b) ** 2 / inverse) / 2
-    curvature_y = unit @ (chord * np.cos(angle) ** 2 / (a * b) ** 2 / inverse) / 2
+    nodes, weights = np.polynomial.legendre.leggauss(400)
+    angle = np.pi / 4 * (nodes + 1)
+    # Directions θ with tan θ = (b/a) tan(angle) follow the ellipse however slender.
+    theta = np.arctan(b / a * np.tan(angle))
+    jacobian = np.pi / 4 * (b / a) / np.cos(angle) ** 2 * np.cos(theta) ** 2
+    inverse = np.cos(theta) ** 2 / a**2 + np.sin(theta) ** 2 / b**2
+    # u = (1 / πE*) ∫ dθ of the pressure along the chord, half an ellipse, through (x, y).
+    chord = contact.peak_pressure / E * weights * jacobian / np.sqrt(inverse)
+    depth = chord.sum()
+    curvature_x = chord @ (np.sin(theta) ** 2 / (a * b) ** 2 / inverse)
+    curvature_y = chord @ (np.cos(theta) ** 2 / (a * b) ** 2 / inverse)
     assert depth == pytest.approx(contact.depth, rel=1e-8)
     assert curvature_x == pytest.approx(1 / (2 * R), rel=1e-8)
     assert curvature_y == pytest.approx(1 / (2 * ratio * R), rel=1e-8)

@@ -1,5 +1,8 @@
 """The auxiliary functions of the tensed half-space."""
 
+import math
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -9,7 +12,7 @@ from pellicle_plugins.analytic.tension_kernel import auxiliary_g, primitive
 
 @pytest.mark.parametrize("y", [1e-6, 0.3, 7.0, 49.0, 51.0, 1e4])
 def test_matches_the_laplace_integrals(y: float) -> None:
-    """g = ∫ t e^(−yt) / (1 + t²) and f = ∫ e^(−yt) / (1 + t²), over t ≥ 0."""
+    """The functions are g = ∫ t e^(−yt) / (1 + t²) and f = ∫ e^(−yt) / (1 + t²), over t ≥ 0."""
 
     # v = y t keeps both integrands of order one; ln v spreads their scales.
     def spread(power: int) -> float:
@@ -18,9 +21,8 @@ def test_matches_the_laplace_integrals(y: float) -> None:
             return float((v / y) ** power * np.exp(-v) / (1 + (v / y) ** 2) * v / y)
 
         breaks = np.arange(-45.0, 6.1, 3.0)
-        return sum(
-            quad(integrand, low, high, epsabs=0, epsrel=1e-12)[0]
-            for low, high in zip(breaks[:-1], breaks[1:], strict=True)
+        return math.fsum(
+            quad(integrand, low, high, epsabs=0, epsrel=1e-12)[0] for low, high in pairwise(breaks)
         )
 
     argument = np.array([y])

@@ -5,7 +5,6 @@ import pytest
 
 from pellicle.errors import ConfigError
 from pellicle_plugins.analytic.full_contact import pressure_amplitude
-from pellicle_plugins.analytic.hertz import sphere
 from pellicle_plugins.analytic.westergaard import wavy
 
 AMPLITUDE, WAVELENGTH, E = 2e-6, 1e-3, 1e5
@@ -33,7 +32,7 @@ def test_surface_follows_the_sine() -> None:
     slope = np.fft.irfft(np.sign(q) * 2j / E * spectrum, n)
     expected = -AMPLITUDE * 2 * np.pi / WAVELENGTH * np.sin(2 * np.pi * x / WAVELENGTH)
     inner = np.abs(x) < 0.25 * WAVELENGTH
-    assert slope[inner] == pytest.approx(-(-expected[inner]), abs=2e-4 * np.abs(expected).max())
+    assert slope[inner] == pytest.approx(expected[inner], abs=2e-4 * np.abs(expected).max())
 
 
 def test_light_contact_is_that_of_a_cylinder() -> None:
@@ -72,5 +71,3 @@ def test_tension_adds_the_laplace_pressure() -> None:
     curvature = AMPLITUDE * (2 * np.pi / WAVELENGTH) ** 2
     plain = pressure_amplitude(AMPLITUDE, WAVELENGTH, E)
     assert tensed - plain == pytest.approx(0.05 * curvature)
-    radius = 1 / curvature
-    assert sphere(radius, E, depth=1e-9).semi_x ** 2 == pytest.approx(1e-9 * radius)

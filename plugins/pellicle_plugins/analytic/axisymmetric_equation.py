@@ -1,0 +1,108 @@
+"""The one-dimensional equation of axisymmetric contact under surface tension.
+
+The Abel transform reduces the contact to ∫_{−a}^{a} φ(t) K(x − t) dt = E* (δ − h(x)),
+K(z) = ∫₀^∞ cos(qz) / (1 + s q) dq, s = 2τ₀/E*, with P = π ∫ φ and φ(±a) = 0.  Its
+derivative in x, with χ = −φ', no longer holds the depth:
+
+    ∫₀^a χ(t) [K(x − t) − K(x + t)] dt = E* h'(x),
+
+and its only solution, which goes as (a − t)^(−1/2) at the edge, has φ(±a) = 0 built
+in.  Then P = 2π ∫ t χ dt, p(r) = ∫_r^a χ / sqrt(t² − r²) dt, and δ is the first
+equation at x = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .axisymmetric_indenters import Indenter
+from .panels import Panel, Points, graded, joined, points_at
+from .product_integration import clustering, collocation, weights
+from .tension_kernel import auxiliary_g, primitive
+
+Array = NDArray[np.float64]
+
+LEVELS = ((12, 1e-3), (16, 3e-4), (22, 1e-4))
+"""Gauss points to a panel, and size of the finest panel over that of the layer."""
+NEGLIGIBLE = 1e-12
+"""s/a below which tension is left out: force and depth would change by less than 1e-11."""
+_CHUNK = 2048
+
+
+@dataclass(frozen=True)
+class Solution:
+    """χ dt = E* y(ψ) t^power dψ at the nodes of the panels, t = sin ψ in units of a."""
+
+    panels: list[Panel]
+    y: Array
+    power: int
+    ratio: float
+
+    def moments(self) -> tuple[float, float]:
+        """Return P / (E* a²) and δ / a."""
+        origin = points_at(np.zeros(1))
+
+        def load(_distance: Array, source: Points, _target: Points) -> Array:
+            return 2 * np.pi * source.t ** (self.power + 1)
+
+        def depth(distance: Array, source: Points, _target: Points) -> Array:
+            reach = primitive(distance / self.ratio) if self.ratio else np.pi / 2
+            return 2 * source.t**self.power * reach
+
+        cluster = clustering(self.ratio)
+        force = delta = 0.0
+        for panel, y in zip(self.panels, self.y, strict=True):
+            force += float(weights(panel, origin, load)[0] @ y)
+            delta += float(weights(panel, origin, depth, power=cluster)[0] @ y)
+        return force, delta
+
+    def pressure(self, t: Array) -> Array:
+        """Return p / E* at positions 0 ≤ t ≤ 1, shape (m,)."""
+        inside = points_at(t)
+        # The limit from inside: at η = 0 itself nothing would be left to integrate.
+        targets = Points(inside.psi, np.maximum(inside.eta, 1e-100))
+
+        def abel(distance: Array, source: Points, _target: Points) -> Array:
+            return source.t**self.power / np.sqrt(distance * (2 * source.t - distance))
+
+        out = np.zeros(t.shape)
+        for first in range(0, t.size, _CHUNK):
+            part = slice(first, first + _CHUNK)
+            for panel, y in zip(self.panels, self.y, strict=True):
+                out[part] += weights(panel, targets[part], abel, above=True) @ y
+        return out
+
+
+def solve(indenter: Indenter, a: float, ratio: float, level: int) -> Solution:
+    """Solve for a contact radius a [m], s/a = ratio (zero included), on a mesh level."""
+    order, finest = LEVELS[level]
+    # Under tension a corner at the apex makes χ ~ 1/t; a smooth apex has χ ~ t.
+    power = (-1 if ratio else 0) if indenter.pointed else 1
+    layer = min(1.0, ratio) if ratio else 1.0
+    panels = graded(order, finest * np.sqrt(layer), finest * layer if indenter.pointed else 1.0)
+    nodes = joined(panels)
+    slope = indenter.slope(a * nodes.t)
+    if not ratio:
+        y: Array = slope / np.pi * np.sin(nodes.eta) / nodes.t**power
+    else:
+
+        def influence(distance: Array, source: Points, target: Points) -> Array:
+            value = auxiliary_g(distance / ratio)
+            if power < 0:
+                # Cancels between a panel and its mirror image, each of which alone
+                # would diverge at the apex.
+                value = value - auxiliary_g(target.t / ratio)
+            weighted: Array = value / ratio * np.abs(source.t) ** power
+            return weighted
+
+        matrix = collocation(panels, influence, clustering(ratio), -1)
+        y = np.asarray(np.linalg.solve(matrix, slope), dtype=np.float64)
+    return Solution(panels, y.reshape(len(panels), order), power, ratio)
+
+
+def without_negligible(ratio: float) -> float:
+    """Return s/a, or exactly 0 if tension is to be left out."""
+    return ratio if ratio > NEGLIGIBLE else 0.0
