@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 from typer.core import TyperGroup
 
-from .errors import PellicleError
+from .errors import PellicleError, PluginError
 
 if TYPE_CHECKING:
     from .result import Result
@@ -231,6 +231,8 @@ def validate() -> None:
             }
         )
     _print_table(["case", "expected", "computed", "error", "allowed", "verdict", "source"], rows)
+    if not rows:
+        raise PluginError("no cases are registered; see what is broken with `pellicle plugins`")
     raise typer.Exit(0 if passed else 1)
 
 

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from .model import Model
-from .problem import Array, Problem
+from .operators import Array
+from .problem import Problem
 from .result import Result, Solution, Stop
 from .units import Quantity
 
@@ -182,10 +183,10 @@ class Output(Component):
 
     family: ClassVar[str] = "output"
 
-    def open(self, place: Place) -> None:  # noqa: B027 - most outputs have nothing to prepare
+    def open(self, place: Place) -> None:
         """Prepare; raise StorageError if it is plain that nothing can be written."""
 
-    def step(self, place: Place, step: xr.Dataset) -> None:  # noqa: B027 - see open
+    def step(self, place: Place, step: xr.Dataset) -> None:
         """Take one finished step: a dataset with dimension step of length 1."""
 
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
@@ -223,6 +224,9 @@ class Case:
     source: str
     """Where the true value comes from: author, year."""
 
+
+Suite = Callable[[], Iterable[Case]]
+"""Makes cases, when somebody wants to see them solved."""
 
 FAMILIES: dict[str, type[Component]] = {
     family.family: family for family in (Kernel, Indenter, Solver, AreaCorrection, Output, Executor)

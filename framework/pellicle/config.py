@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sized
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar, cast
 
 from pydantic import BaseModel, Field, model_validator
 from pydantic_core import core_schema
@@ -71,10 +71,10 @@ class _Steps:
     def __call__(self, given: object) -> tuple[float, ...]:
         if isinstance(given, Mapping):
             return self._ramp(given)
-        values = given if isinstance(given, (list, tuple)) or hasattr(given, "__len__") else [given]
-        if isinstance(values, str):
-            values = [values]
-        if not len(values):
+        # Anything with a length but text: lists, tuples, arrays.
+        several = isinstance(given, Sized) and not isinstance(given, str)
+        values = list(cast("Iterable[object]", given)) if several else [given]
+        if not values:
             raise ValueError("is empty; give at least one load step")
         return tuple(self.quantity(value) for value in values)
 
@@ -86,7 +86,7 @@ class _Steps:
         if not isinstance(num, int) or isinstance(num, bool) or num < 2:
             raise ValueError(f"num = {num!r} is not allowed; give a whole number of steps ≥ 2")
         start, stop = self.quantity(given["start"]), self.quantity(given["stop"])
-        return tuple(start + (stop - start) * i / (num - 1) for i in range(num - 1)) + (stop,)
+        return (*(start + (stop - start) * i / (num - 1) for i in range(num - 1)), stop)
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -256,7 +256,7 @@ def _override(data: dict[str, Any], text: str) -> None:
     key, equals, value = text.partition("=")
     names = key.strip().split(".")
     if not equals or not all(names):
-        raise ConfigError(f'--set {text!r} is not of the form a.b=value, e.g. grid.points=128')
+        raise ConfigError(f"--set {text!r} is not of the form a.b=value, e.g. grid.points=128")
     at: Any = data
     for depth, name in enumerate(names):
         where = ".".join(names[:depth])
@@ -315,5 +315,3 @@ def component(base: type[AnyComponent], type_: str, fields: Mapping[str, Any]) -
         As for a run.
     """
     return registry().make(base, {"type": type_, **fields})
-
-

@@ -76,7 +76,7 @@ class Grid(Model):
         import numpy as np
 
         x, y = (
-            (np.arange(n) - (n - 1) / 2) * spacing
+            (np.arange(n, dtype=np.float64) - (n - 1) / 2) * spacing
             for n, spacing in zip(self.points, self.spacing, strict=True)
         )
         return x[:, None], y[None, :]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pluggy
 
-from .components import AreaCorrection, Case, Executor, Indenter, Kernel, Output, Solver
+from .components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver, Suite
 
 hookspec = pluggy.HookspecMarker("pellicle")
 hookimpl = pluggy.HookimplMarker("pellicle")
@@ -43,5 +43,5 @@ def register_executors(register: Callable[[type[Executor]], None]) -> None:
 
 
 @hookspec
-def register_validations(register: Callable[[Case], None]) -> None:
-    """Call ``register`` with each case of known truth for ``pellicle validate``."""
+def register_validations(register: Callable[[Suite], None]) -> None:
+    """Call ``register`` with a function that yields cases of known truth for `validate`."""

@@ -6,7 +6,7 @@ import os
 import re
 import time
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from contextlib import closing
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -83,7 +83,7 @@ def execute(
     """
     import scipy.fft
 
-    outputs = _outputs(run) if place is not None else ()
+    sinks = [(output, place) for output in _outputs(run)] if place is not None else []
     memory.require(run.grid, len(run.loading.values))
     steps: list[xr.Dataset] = []
     files: list[Path] = []
@@ -93,14 +93,14 @@ def execute(
     ):
         try:
             problems = _problems(run)
-            for output in outputs:
-                output.open(place)
+            for output, there in sinks:
+                output.open(there)
             # closing: the generator's arrays go before the outputs draw.
             with closing(_solve_steps(run, problems, bar)) as solved:
                 for step in solved:
                     steps.append(step)
-                    for output in outputs:
-                        output.step(place, step)
+                    for output, there in sinks:
+                        output.step(there, step)
         except MemoryError:
             raise ConfigError(
                 f"{run.grid.points} cells do not fit in memory; use fewer points", "grid.points"
@@ -108,8 +108,8 @@ def execute(
         finally:
             if steps:
                 result = Result.join(steps)
-                for output in outputs:
-                    files.extend(output.close(place, result))
+                for output, there in sinks:
+                    files.extend(output.close(there, result))
     return result, tuple(files)
 
 
@@ -193,7 +193,9 @@ def _check_depths(depths: Sequence[float], profile: Array, operator: Operator) -
             )
 
 
-def _solve_steps(run: Run, problems: Sequence[Problem], bar: Progress) -> Iterator[xr.Dataset]:
+def _solve_steps(
+    run: Run, problems: Sequence[Problem], bar: Progress
+) -> Generator[xr.Dataset, None, None]:
     """Yield each load step as soon as it is solved, started from the one before."""
     origin = _provenance(run)
     pressure: Array | None = None

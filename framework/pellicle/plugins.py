@@ -18,7 +18,7 @@ from typing import Any, Literal, TypeVar, cast, get_args, get_origin
 import pluggy
 
 from . import hookspecs
-from .components import FAMILIES, Case, Component
+from .components import FAMILIES, Component, Suite
 from .errors import ConfigError, PluginError
 from .model import nearest
 
@@ -78,10 +78,10 @@ class Broken:
 
 @dataclass(frozen=True)
 class Registry:
-    """All components by family and type, all cases of known truth, and what is broken."""
+    """All components by family and type, all suites of known truth, and what is broken."""
 
     components: Mapping[str, Mapping[str, Registered]]
-    cases: tuple[Case, ...] = ()
+    suites: tuple[Suite, ...] = ()
     broken: tuple[Broken, ...] = ()
     clashes: Mapping[tuple[str, str], tuple[Origin, ...]] = field(default_factory=dict)
     """Types claimed by more than one plugin; none of the claimants is in `components`."""
@@ -152,7 +152,7 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
         comma-separated list of distributions or entry points to switch off.
     """
     claims: dict[tuple[str, str], list[Registered]] = {}
-    cases: list[Case] = []
+    suites: list[Suite] = []
     broken: list[Broken] = []
     disabled: list[Origin] = []
     for entry in sorted(set(entries), key=lambda entry: (entry.name, entry.value)):
@@ -161,14 +161,14 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
             disabled.append(origin)
             continue
         try:
-            components, its_cases = _call_hooks(entry.load(), origin)
+            components, its_suites = _call_hooks(entry.load(), origin)
         except KeyboardInterrupt:
             raise
         # A plugin may fail in any way, sys.exit() at import included; it must not take us along.
         except BaseException as error:
             broken.append(Broken(origin, f"{type(error).__name__}: {error}"))
             continue
-        cases.extend(its_cases)
+        suites.extend(its_suites)
         for registered in components:
             claims.setdefault((registered.component.family, registered.type), []).append(registered)
     found: dict[str, dict[str, Registered]] = {family: {} for family in FAMILIES}
@@ -177,7 +177,7 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
             found[family][type_] = owners[0]
     return Registry(
         components=found,
-        cases=tuple(cases),
+        suites=tuple(suites),
         broken=tuple(broken),
         clashes={
             name: tuple(owner.origin for owner in owners)
@@ -195,7 +195,7 @@ def _is_disabled(origin: Origin, disable: str) -> bool:
     return bool(named & {"1", "true", "all", origin.distribution, origin.entry_point})
 
 
-def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[Case]]:
+def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[Suite]]:
     """Return what one plugin registers, or raise what is wrong with it."""
     manager = pluggy.PluginManager(GROUP)
     manager.add_hookspecs(hookspecs)
@@ -207,15 +207,15 @@ def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[
             f"{', '.join([*_HOOK_OF_FAMILY.values(), 'register_validations'])}"
         )
     components: list[Registered] = []
-    cases: list[Case] = []
+    suites: list[Suite] = []
     for family, hook in _HOOK_OF_FAMILY.items():
 
         def register(component: type[Component], family: str = family) -> None:
             components.append(Registered(component, _check(component, family), origin))
 
         getattr(manager.hook, hook)(register=register)
-    manager.hook.register_validations(register=cases.append)
-    return components, cases
+    manager.hook.register_validations(register=suites.append)
+    return components, suites
 
 
 def _check(component: Any, family: str) -> str:
@@ -224,17 +224,17 @@ def _check(component: Any, family: str) -> str:
     if not (isinstance(component, type) and issubclass(component, base)):
         raise PluginError(f"{component!r} is no subclass of pellicle.{base.__name__}")
     name = component.__name__
-    annotation = component.model_fields["type"].annotation if "type" in component.model_fields else 0
-    names = get_args(annotation)
-    if get_origin(annotation) is not Literal or len(names) != 1:
+    info = component.model_fields.get("type")
+    names = get_args(info.annotation) if info else ()
+    if info is None or get_origin(info.annotation) is not Literal or len(names) != 1:
         raise PluginError(f'{name} needs a field: type: Literal["…"] = "…"')
-    if component.model_fields["type"].default != names[0]:
+    if info.default != names[0]:
         raise PluginError(f'{name}.type needs the default "{names[0]}"')
     if missing := sorted(component.__abstractmethods__):
         raise PluginError(f"{name} lacks the method {', '.join(missing)}")
     if not (component.__doc__ or "").strip():
         raise PluginError(f"{name} lacks a docstring: its first line is shown to users")
-    for field_, info in component.model_fields.items():
-        if field_ != "type" and not info.description:
+    for field_, its in component.model_fields.items():
+        if field_ != "type" and not its.description:
             raise PluginError(f"{name}.{field_} lacks Field(description=…) with its unit")
     return str(names[0])

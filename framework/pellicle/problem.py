@@ -71,7 +71,9 @@ def measure(problem: Problem, pressure: Array) -> Equilibrium:
     depth = problem.value
     if problem.prescribed == "force":
         # The pressure-weighted mean is the depth at which the work of the force is right.
-        depth = float((pressure[contact] * aloft[contact]).sum()) / total if total else _touch(aloft)
+        depth = (
+            float((pressure[contact] * aloft[contact]).sum()) / total if total else _touch(aloft)
+        )
     gap = aloft - depth
     scale = height_scale(problem.profile, contact, depth)
     inside = np.abs(gap[contact])

@@ -65,7 +65,13 @@ class Progress:
 
 def _make_bar() -> rich.progress.Progress | None:
     import rich.console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
     console = rich.console.Console(stderr=True)
     if not console.is_terminal:

@@ -26,15 +26,18 @@ _EXAMPLES = {
     "N": "2 uN",
     "rad": "70 degree",
 }
-_NUMBER_AND_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+_NUMBER_AND_UNIT = re.compile(
+    r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL
+)
 
 
 @cache
-def _registry() -> pint.UnitRegistry[float]:
+def _registry() -> pint.UnitRegistry[Any]:
     # pint takes a fifth of a second to import: only a text with a unit pays for it.
     import pint
 
-    return pint.get_application_registry()  # type: ignore[return-value]
+    registry: pint.UnitRegistry[Any] = pint.application_registry.get()  # type: ignore[no-untyped-call]
+    return registry
 
 
 @dataclass(frozen=True)

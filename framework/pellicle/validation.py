@@ -45,13 +45,18 @@ def validate(cases: Iterable[Case] | None = None) -> Iterator[Verdict]:
         A case cannot be run.
     """
     solved: dict[str, Result] = {}
-    for case in registry().cases if cases is None else cases:
+    for case in _registered() if cases is None else cases:
         key = json.dumps(case.configuration, sort_keys=True)
         if key not in solved:
             # Only the latest run is kept: cases that share one are registered in a row.
             solved = {key: _run_quietly(case)}
         result = solved[key]
         yield Verdict(case, case.computed(result), result.converged)
+
+
+def _registered() -> Iterator[Case]:
+    for suite in registry().suites:
+        yield from suite()
 
 
 def _run_quietly(case: Case) -> Result:

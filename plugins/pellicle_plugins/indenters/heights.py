@@ -96,7 +96,8 @@ class Heights(Indenter):
                 f"shape {shape}; set grid.points = {list(self._heights.shape)}, or resample it",
                 "path",
             )
-        return (self._heights - self._heights.max()) * self.unit
+        below: Array = (self._heights - self._heights.max()) * self.unit
+        return below
 
 
 def _load(path: Path, dataset: str | None) -> Any:

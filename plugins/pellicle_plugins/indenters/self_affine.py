@@ -62,7 +62,7 @@ class SelfAffine(Indenter):
         """
         axes = _Axis.of(x.ravel()), _Axis.of(y.ravel())
         series = self._series(axes[0].period, axes[1].period)
-        coarsest = max(axis.period / axis.count for axis in axes)
+        coarsest = max(axis.period / axis.number for axis in axes)
         if 2 * coarsest >= self.cutoff_wavelength * (1 - _ROUNDING):
             raise ConfigError(
                 f"{self.cutoff_wavelength:g} m cannot be resolved by cells of {coarsest:g} m; use "
@@ -103,7 +103,7 @@ class _Axis(NamedTuple):
     """Equally spaced points that sample one period."""
 
     first: float
-    count: int
+    number: int
     period: float
 
     @classmethod
@@ -114,7 +114,7 @@ class _Axis(NamedTuple):
         return cls(float(points[0]), points.size, float(spacing * points.size))
 
     def finer(self, factor: int) -> _Axis:
-        return self._replace(count=self.count * factor)
+        return self._replace(number=self.number * factor)
 
 
 class _Series(NamedTuple):
@@ -126,14 +126,14 @@ class _Series(NamedTuple):
 
 
 def _sample(series: _Series, x: _Axis, y: _Axis) -> Array:
-    """Return the heights [m] at the points of two axes, shape (x.count, y.count)."""
+    """Return the heights [m] at the points of two axes, shape (x.number, y.number)."""
     shift = np.exp(2j * pi * (series.m * (x.first / x.period) + series.n * (y.first / y.period)))
-    modes = np.zeros((x.count, y.count // 2 + 1), dtype=np.complex128)
-    modes[series.m % x.count, series.n] = series.c * shift
+    modes = np.zeros((x.number, y.number // 2 + 1), dtype=np.complex128)
+    modes[series.m % x.number, series.n] = series.c * shift
     # irfft2 supplies the conjugate of each column n > 0; column 0 needs both halves written.
     on_edge = series.n == 0
-    modes[-series.m[on_edge] % x.count, 0] = np.conj(series.c * shift)[on_edge]
-    heights = scipy.fft.irfft2(modes, s=(x.count, y.count), norm="forward", overwrite_x=True)
+    modes[-series.m[on_edge] % x.number, 0] = np.conj(series.c * shift)[on_edge]
+    heights = scipy.fft.irfft2(modes, s=(x.number, y.number), norm="forward", overwrite_x=True)
     return np.asarray(heights, dtype=np.float64)
 
 
@@ -143,12 +143,12 @@ def _maximum(series: _Series, x: _Axis, y: _Axis) -> float:
     A maximum of the samples would put first touch at a different depth on each grid.
     """
     shortest = max(int(np.abs(series.m).max()), int(series.n.max()), 1)
-    x, y = (axis.finer(max(1, ceil(8 * shortest / axis.count))) for axis in (x, y))
+    x, y = (axis.finer(max(1, ceil(8 * shortest / axis.number))) for axis in (x, y))
     heights = _sample(series, x, y)
     tops = np.argsort(heights, axis=None)[-4:]
     i, j = np.unravel_index(tops, heights.shape)
     points = np.stack(
-        [x.first + i * (x.period / x.count), y.first + j * (y.period / y.count)], axis=1
+        [x.first + i * (x.period / x.number), y.first + j * (y.period / y.number)], axis=1
     )
     return max(float(heights.max()), *(_climb(series, x, y, point) for point in points))
 

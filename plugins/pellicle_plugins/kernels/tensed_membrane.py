@@ -25,7 +25,7 @@ class TensedMembrane(ElasticSolid):
 
     @property
     def elastocapillary_length(self) -> float:
-        """s = 2τ₀/E* [m], below which the tension outweighs the elasticity."""
+        """Length s = 2τ₀/E* [m], below which the tension outweighs the elasticity."""
         return 2 * self.tension / self.reduced_modulus
 
     def compliance(self, q: Array) -> Array:

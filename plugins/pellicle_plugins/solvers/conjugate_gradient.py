@@ -138,13 +138,23 @@ def _step_length(problem: Problem, state: _State, change: Array) -> float:
     slope = float(np.vdot(state.inner_gap, state.direction))
     curvature = float(np.vdot(state.direction, change))
     if problem.prescribed == "force":
-        mean = float(np.vdot(change, state.contact)) / np.count_nonzero(state.contact)
-        curvature -= float(state.direction.sum()) * mean
+        response = float(np.vdot(change, state.contact))
+        cells = float(np.count_nonzero(state.contact))
+        curvature -= float(state.direction.sum()) * response / cells
     if curvature > 0:
         return slope / curvature
-    # A single cell under a given force has no direction; its own stiffness is a sensible step.
-    displacement = float(np.vdot(state.displacement, state.contact))
-    return float(state.pressure.sum()) / displacement if displacement > 0 else 0.0
+    return _cell_stiffness(problem)
+
+
+def _cell_stiffness(problem: Problem) -> float:
+    """Return pressure over displacement [Pa/m] of one cell pressed alone.
+
+    The step where there is no direction: no contact yet, or a single cell under a given force.
+    """
+    alone = np.zeros(problem.grid.shape)
+    lowest = np.unravel_index(int(problem.profile.argmax()), problem.grid.shape)
+    alone[lowest] = 1.0
+    return 1.0 / float(problem.operator(alone)[lowest])
 
 
 def _open_gap(problem: Problem, state: _State, *, contact_changed: bool) -> None:
@@ -154,7 +164,7 @@ def _open_gap(problem: Problem, state: _State, *, contact_changed: bool) -> None
     depth = problem.value
     if problem.prescribed == "force":
         np.multiply(gap, state.contact, out=inner_gap)
-        depth = float(inner_gap.sum()) / max(np.count_nonzero(state.contact), 1)
+        depth = float(inner_gap.sum()) / float(np.count_nonzero(state.contact))
     gap -= depth
     np.multiply(gap, state.contact, out=inner_gap)
     state.inside = max(float(inner_gap.max()), -float(inner_gap.min()))
