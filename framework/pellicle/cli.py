@@ -20,7 +20,7 @@ from .errors import PellicleError, PluginError
 if TYPE_CHECKING:
     from .result import Result
 
-BAD_INPUT, INTERRUPTED = 2, 130
+NOT_CONVERGED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 
 class _Group(TyperGroup):
@@ -170,7 +170,9 @@ def new(
     except FileExistsError:
         raise StorageError(f"{path} exists already; give another name") from None
     except OSError as error:
-        raise StorageError(f"{path}: cannot be written ({error.strerror})") from None
+        raise StorageError(
+            f"{path}: cannot be written ({error.strerror}); choose another folder"
+        ) from None
     typer.echo(f"wrote {path}; next: pellicle run {path}")
 
 
@@ -244,17 +246,19 @@ def _print_steps(result: Result) -> None:
     for index in range(data.sizes["step"]):
         step = data.isel(step=index)
         row = {name: f"{step[name].item():.6g}" for name in names}
-        rows.append({"step": str(index + 1), **row, "status": str(step["status"].item())})
+        status = "converged" if step["converged"].item() else "NOT CONVERGED"
+        rows.append({"step": str(index + 1), **row, "status": status})
     units = {name: data[name].attrs["units"] for name in names}
     heads = {name: f"{name} [{unit}]" if unit != "1" else name for name, unit in units.items()}
     _print_table(["step", *names, "status"], rows, heads)
 
 
 def _exit_by_convergence(result: Result) -> None:
+    for index, step in result.dataset[["status", "converged"]].groupby("step"):
+        if not step["converged"].item():
+            typer.echo(f"step {index + 1} did not converge: {step['status'].item()}", err=True)
     if not result.converged:
-        failed = int((~result.dataset["converged"]).sum())
-        typer.echo(f"{failed} of {result.dataset.sizes['step']} steps did not converge", err=True)
-        raise typer.Exit(1)
+        raise typer.Exit(NOT_CONVERGED)
 
 
 def _steps_wanted(result: Result) -> int:

@@ -17,7 +17,7 @@ from pydantic import BaseModel, Field, model_validator
 from pydantic_core import core_schema
 
 from .components import AreaCorrection, Component, Indenter, Kernel, Output, Solver
-from .errors import ConfigError
+from .errors import ConfigError, Problem, shown
 from .grid import Grid
 from .model import Model, paths_relative_to
 from .plugins import registry
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 DEFAULT_SOLVER = "conjugate_gradient"
+_MOST_STEPS = 1_000_000
 
 
 class _FromRegistry:
@@ -76,17 +77,32 @@ class _Steps:
         values = list(cast("Iterable[object]", given)) if several else [given]
         if not values:
             raise ValueError("is empty; give at least one load step")
-        return tuple(self.quantity(value) for value in values)
+        return self._all({str(i) if several else "": value for i, value in enumerate(values)})
 
     def _ramp(self, given: Mapping[Any, Any]) -> tuple[float, ...]:
-        wanted = {"start", "stop", "num"}
-        if set(given) != wanted:
-            raise ValueError(f"a ramp has start, stop and num, and this has {sorted(given)}")
+        if set(given) != {"start", "stop", "num"}:
+            has = ", ".join(map(str, given)) or "nothing"
+            raise ValueError(f"a ramp that has {has} is not allowed; give start, stop and num")
         num = given["num"]
-        if not isinstance(num, int) or isinstance(num, bool) or num < 2:
-            raise ValueError(f"num = {num!r} is not allowed; give a whole number of steps ≥ 2")
-        start, stop = self.quantity(given["start"]), self.quantity(given["stop"])
+        if not isinstance(num, int) or isinstance(num, bool) or not 2 <= num <= _MOST_STEPS:
+            raise ConfigError(
+                f"{shown(num)} is not allowed; give a whole number of steps, 2 to {_MOST_STEPS}",
+                "num",
+            )
+        start, stop = self._all({end: given[end] for end in ("start", "stop")})
         return (*(start + (stop - start) * i / (num - 1) for i in range(num - 1)), stop)
+
+    def _all(self, given: Mapping[str, object]) -> tuple[float, ...]:
+        """Return every value in SI, or raise with all that are not allowed."""
+        values, problems = [], []
+        for where, value in given.items():
+            try:
+                values.append(self.quantity(value))
+            except ValueError as error:
+                problems.append(Problem(where, str(error)))
+        if problems:
+            raise ConfigError(problems)
+        return tuple(values)
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -239,16 +255,21 @@ class Run(Model):
 
 
 def _read_toml(path: Path) -> dict[str, Any]:
+    text = ""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        # Some editors put a byte order mark in front of UTF-8.
+        text = path.read_text(encoding="utf-8-sig")
+        return tomllib.loads(text)
     except OSError as error:
         raise ConfigError(
             f"{path}: {error.strerror}; give a TOML file (`pellicle new` writes one)"
         ) from None
     except UnicodeDecodeError:
         raise ConfigError(f"{path}: not a text file; give a TOML file in UTF-8") from None
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{path}: not valid TOML: {error}") from None
+    except (ValueError, RecursionError) as error:
+        last = f"at line {len(text.splitlines())}, the end of the file"
+        reason = str(error).replace("at end of document", last)
+        raise ConfigError(f"{path}: not valid TOML: {reason}; correct it there") from None
 
 
 def _override(data: dict[str, Any], text: str) -> None:
@@ -262,12 +283,18 @@ def _override(data: dict[str, Any], text: str) -> None:
         where = ".".join(names[:depth])
         if isinstance(at, list):
             if not name.isdigit() or int(name) >= len(at):
-                raise ConfigError(f"--set {text!r}: {where} has {len(at)} entries, from 0")
+                raise ConfigError(
+                    f"--set {text!r}: {where} has no entry {name}; give one of its {len(at)}, "
+                    "counted from 0"
+                )
             at_key: Any = int(name)
         elif isinstance(at, dict):
             at_key = name
         else:
-            raise ConfigError(f"--set {text!r}: {where} = {at!r} is not a table")
+            raise ConfigError(
+                f"--set {text!r}: {where} = {shown(at)} is not a table; replace it as a whole, "
+                f"--set {where}=…"
+            )
         if depth == len(names) - 1:
             at[at_key] = _toml_value(value)
         elif isinstance(at, dict):
@@ -279,7 +306,7 @@ def _override(data: dict[str, Any], text: str) -> None:
 def _toml_value(text: str) -> Any:
     try:
         return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return text.strip()
 
 
@@ -288,7 +315,9 @@ def _toml_lines(table: Mapping[str, Any], path: str) -> Iterable[str]:
     tables = {k: v for k, v in table.items() if _is_table(v)}
     for key, value in table.items():
         if key not in tables:
-            yield f"{key} = {json.dumps(value, ensure_ascii=False)}\n"
+            # JSON's text is TOML's, but for this one character.
+            said = json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+            yield f"{key} = {said}\n"
     for key, value in tables.items():
         inner = f"{path}{key}"
         for entry in value if isinstance(value, list) else [value]:

@@ -6,6 +6,12 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 
+def shown(value: object) -> str:
+    """Return ``value`` as a message shows it: on one line, and not for ever."""
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}…"
+
+
 class PellicleError(Exception):
     """Base of all errors that pellicle raises on purpose."""
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import BeforeValidator, Field
 
+from .errors import shown
 from .model import Model
 from .units import Length
 
@@ -23,7 +24,7 @@ def _pair(value: object) -> object:
 def _whole(value: object) -> int:
     number = value.item() if hasattr(value, "item") else value
     if not isinstance(number, int) or isinstance(number, bool) or number < 1:
-        raise ValueError(f"{value!r} is not allowed; give a whole number of cells ≥ 1")
+        raise ValueError(f"{shown(value)} is not allowed; give a whole number of cells ≥ 1")
     return number
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 
-from .errors import ConfigError
+from .errors import ConfigError, shown
 from .grid import Grid
 
 # Peak of a run counted in float64 arrays, measured by tests/benchmarks.
@@ -16,7 +17,10 @@ _ARRAYS_KEPT_PER_STEP = 3.2
 
 def estimate(grid: Grid, steps: int) -> float:
     """Return the memory [bytes] that a run on ``grid`` needs at its peak."""
-    cells = float(grid.points[0]) * grid.points[1]
+    try:
+        cells = float(grid.points[0] * grid.points[1])
+    except OverflowError:
+        return math.inf
     padded = 4 * cells if grid.boundary == "free" else cells
     kept = 2 * _ARRAYS_KEPT_PER_STEP * steps
     return 8 * (_PADDED_ARRAYS[grid.boundary] * padded + (_CELL_ARRAYS + kept) * cells)
@@ -47,7 +51,8 @@ def require(grid: Grid, steps: int) -> None:
     if there is not None and needed > there:
         nx, ny = grid.points
         raise ConfigError(
-            f"{nx} × {ny} with {steps} step{'s' * (steps > 1)} needs about {needed / 1e9:.3g} GB, "
-            f"and {there / 1e9:.3g} GB are available; use fewer points or fewer steps",
+            f"{shown(nx)} × {shown(ny)} with {steps} step{'s' * (steps > 1)} needs about "
+            f"{needed / 1e9:.3g} GB, and {there / 1e9:.3g} GB are available; use fewer points or "
+            "fewer steps",
             "grid.points",
         )

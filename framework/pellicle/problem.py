@@ -70,10 +70,8 @@ def measure(problem: Problem, pressure: Array) -> Equilibrium:
     aloft = displacement - problem.profile
     depth = problem.value
     if problem.prescribed == "force":
-        # The pressure-weighted mean is the depth at which the work of the force is right.
-        depth = (
-            float((pressure[contact] * aloft[contact]).sum()) / total if total else _touch(aloft)
-        )
+        # Polonsky & Keer 1999: the depth at which the mean gap in contact is zero.
+        depth = float(aloft[contact].mean()) if total else float(aloft.min())
     gap = aloft - depth
     scale = height_scale(problem.profile, contact, depth)
     inside = np.abs(gap[contact])
@@ -105,7 +103,3 @@ def height_scale(
         return in_contact
     indenter = profile[np.isfinite(profile)]
     return abs(depth) or float(np.ptp(indenter)) or 1.0
-
-
-def _touch(aloft: Array) -> float:
-    return float(aloft.min())

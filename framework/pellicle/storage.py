@@ -73,26 +73,48 @@ def read(path: Path) -> xr.Dataset:
     StorageError
         No such file, not a result of pellicle, damaged, or of another schema version.
     """
+    with _opened(path) as dataset:
+        return dataset.load()
+
+
+def configuration(path: Path) -> str:
+    """Return the configuration whose result a file holds, without reading its fields.
+
+    Raises
+    ------
+    StorageError
+        As for `read`.
+    """
+    with _opened(path) as dataset:
+        return str(dataset.attrs["configuration"])
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[xr.Dataset]:
+    """Yield the dataset in a file, its values not yet read."""
     import xarray as xr
 
     if not path.is_file():
-        raise StorageError(f"{path}: no such file; give a result file that pellicle wrote")
+        raise StorageError(f"{path}: no such file; give a result file (.h5) that pellicle wrote")
     try:
-        with xr.open_dataset(path, engine="h5netcdf") as opened:
-            dataset = opened.load()
-    except (OSError, ValueError, KeyError, RuntimeError, AttributeError) as error:
+        with xr.open_dataset(path, engine="h5netcdf") as dataset:
+            version = dataset.attrs.pop("schema_version", None)
+            if version is None or not {"configuration", "versions"} <= dataset.attrs.keys():
+                raise StorageError(
+                    f"{path}: not a result of pellicle; give an .h5 file that pellicle wrote"
+                )
+            if version != SCHEMA_VERSION:
+                raise StorageError(
+                    f"{path}: schema version {version}, and this pellicle reads {SCHEMA_VERSION}; "
+                    f"read it with what wrote it ({dataset.attrs['versions']}), or run it again"
+                )
+            yield dataset
+    # The layers below raise nearly anything for a file that is damaged or no HDF5.
+    except (OSError, ValueError, LookupError, RuntimeError, AttributeError, TypeError) as error:
+        reason = str(error).partition("\n")[0]
         raise StorageError(
-            f"{path}: not a readable result file ({error}); give an .h5 file that pellicle wrote"
+            f"{path}: not a readable result file ({reason}); give an .h5 file that pellicle wrote"
         ) from None
-    version = dataset.attrs.pop("schema_version", None)
-    if version is None:
-        raise StorageError(f"{path}: not a result of pellicle: it has no schema_version")
-    if int(version) != SCHEMA_VERSION:
-        raise StorageError(
-            f"{path}: schema version {version}, and this pellicle reads {SCHEMA_VERSION}; open it "
-            "with the version of pellicle named in its attributes, or run it again"
-        )
-    return dataset
 
 
 def check_writable(path: Path) -> None:

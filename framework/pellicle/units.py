@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic_core import core_schema
 
+from .errors import shown
+
 if TYPE_CHECKING:
     import pint
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -27,7 +29,8 @@ _EXAMPLES = {
     "rad": "70 degree",
 }
 _NUMBER_AND_UNIT = re.compile(
-    r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL
+    r"\s*([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*?)\s*",
+    re.DOTALL | re.IGNORECASE,
 )
 
 
@@ -68,30 +71,33 @@ class Quantity:
         """
         number = self._magnitude(value)
         if not math.isfinite(number):
-            raise ValueError(f"{value!r} is not finite; give {self._wanted()}")
+            raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
         if not self._within(number):
-            raise ValueError(f"{value!r} is not allowed; give {self._wanted()}")
+            raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}")
         return number
 
     def _magnitude(self, value: object) -> float:
         if isinstance(value, Real) and not isinstance(value, bool):
-            return float(value)
-        if hasattr(value, "magnitude") and hasattr(value, "units"):
-            value = f"{value.magnitude!r} {value.units}"
+            try:
+                return float(value)
+            except OverflowError:
+                return math.inf
+        if isinstance(getattr(value, "magnitude", None), Real) and hasattr(value, "units"):
+            value = f"{float(value.magnitude)!r} {value.units}".removesuffix("dimensionless")  # type: ignore[attr-defined]
         if not isinstance(value, str):
-            raise ValueError(f"{value!r} is not a number; give {self._wanted()}")
+            raise ValueError(f"{shown(value)} is not a number; give {self._wanted()}")
         if value.strip().lower().lstrip("+-") in ("nan", "inf", "infinity"):
             return float(value)
         match = _NUMBER_AND_UNIT.fullmatch(value)
         if match is None:
-            raise ValueError(f"{value!r} is not a number with a unit; give {self._wanted()}")
+            raise ValueError(f"{shown(value)} is not a number with a unit; give {self._wanted()}")
         number, unit = match.groups()
         if self.unit == "1":
             if unit:
-                raise ValueError(f"{value!r} has a unit; give {self._wanted()}")
+                raise ValueError(f"{shown(value)} has a unit; give {self._wanted()}")
             return float(number)
         if not unit:
-            raise ValueError(f"{value!r} is text without a unit; give {self._wanted()}")
+            raise ValueError(f"{shown(value)} is text without a unit; give {self._wanted()}")
         return self._convert(float(number), unit, value)
 
     def _convert(self, number: float, unit: str, value: str) -> float:
@@ -104,9 +110,9 @@ class Quantity:
             why = (
                 f"measures {registry.Unit(unit).dimensionality}, not {self._dimension()}"
                 if kind == "DimensionalityError"
-                else f"has no unit that is known ({unit!r})"
+                else f"has no unit that is known ({shown(unit)})"
             )
-            raise ValueError(f"{value!r} {why}; give {self._wanted()}") from None
+            raise ValueError(f"{shown(value)} {why}; give {self._wanted()}") from None
 
     def _dimension(self) -> str:
         return str(_registry().Unit(self.unit).dimensionality)

@@ -102,16 +102,16 @@ class Heights(Indenter):
 
 def _load(path: Path, dataset: str | None) -> Any:
     if not path.is_file():
-        raise ConfigError(f"{path}: no such file", "path")
+        raise ConfigError(f"{path}: no such file; give the file that holds the heights", "path")
     if path.stat().st_size == 0:
-        raise ConfigError(f"{path} is empty", "path")
+        raise ConfigError(f"{path} is empty; give a file that holds a 2-D array", "path")
     readers = {".npy": _load_npy, ".h5": _load_hdf5, ".hdf5": _load_hdf5, ".nc": _load_hdf5}
     reader = readers.get(path.suffix.lower(), _load_text)
     try:
         return reader(path, dataset)
     except ConfigError:
         raise
-    except (OSError, ValueError, EOFError, UnicodeDecodeError) as error:
+    except (OSError, ValueError, EOFError, MemoryError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise ConfigError(
             f"{path} cannot be read as {reader.__name__.removeprefix('_load_')} ({reason}); give a "
@@ -122,9 +122,10 @@ def _load(path: Path, dataset: str | None) -> Any:
 
 def _load_npy(path: Path, dataset: str | None) -> Any:
     try:
-        return np.load(path, allow_pickle=False)
+        with path.open("rb") as file:
+            return np.lib.format.read_array(file, allow_pickle=False)
     except ValueError as error:
-        if "pickle" not in str(error).lower():
+        if not {"pickle", "magic"} & set(str(error).lower().split()):
             raise
         raise ConfigError(
             f"{path} is pickled or no .npy file, and a pickle can run any code; save a plain array "
@@ -134,8 +135,11 @@ def _load_npy(path: Path, dataset: str | None) -> Any:
 
 
 def _load_text(path: Path, dataset: str | None) -> Any:
-    delimiter = "," if "," in path.read_text(encoding="utf-8", errors="strict") else None
-    return np.loadtxt(path, delimiter=delimiter, ndmin=2)
+    lines = path.read_text(encoding="utf-8-sig").splitlines()
+    if not any(line.partition("#")[0].strip() for line in lines):
+        raise ValueError("it holds no numbers")
+    delimiter = "," if any("," in line for line in lines) else None
+    return np.loadtxt(lines, delimiter=delimiter, ndmin=2)
 
 
 def _load_hdf5(path: Path, dataset: str | None) -> Any:
@@ -149,11 +153,10 @@ def _load_hdf5(path: Path, dataset: str | None) -> Any:
         if dataset is None and len(names) == 1:
             dataset = names[0]
         if dataset is None or dataset not in names:
+            if not names:
+                raise ValueError("it holds no array")
             asked = f"no array {dataset!r}" if dataset else "more than one array"
-            raise ConfigError(
-                f"{path} has {asked}; give dataset = one of: {', '.join(names) or 'none there'}",
-                "dataset",
-            )
+            raise ConfigError(f"{path} has {asked}; give one of: {', '.join(names)}", "dataset")
         return file[dataset][...]
 
 

@@ -61,7 +61,6 @@ class SelfAffine(Indenter):
             The spacing cannot resolve the shortest wavelength, or no wavelength fits the domain.
         """
         axes = _Axis.of(x.ravel()), _Axis.of(y.ravel())
-        series = self._series(axes[0].period, axes[1].period)
         coarsest = max(axis.period / axis.number for axis in axes)
         if 2 * coarsest >= self.cutoff_wavelength * (1 - _ROUNDING):
             raise ConfigError(
@@ -69,10 +68,11 @@ class SelfAffine(Indenter):
                 "more grid.points, or a cut-off above two cells",
                 "cutoff_wavelength",
             )
+        series = self._series(axes[0].period, axes[1].period)
         return _sample(series, *axes) - _maximum(series, *axes)
 
     def _series(self, period_x: float, period_y: float) -> _Series:
-        """Return the modes of one half of the wave vectors, longest first."""
+        """Return the modes of one half of the wave vectors."""
         longest = self.roll_off_wavelength or max(period_x, period_y)
         q_low = 2 * pi / longest * (1 - _ROUNDING)
         q_high = 2 * pi / self.cutoff_wavelength * (1 + _ROUNDING)
@@ -90,13 +90,9 @@ class SelfAffine(Indenter):
                 "roll_off_wavelength",
             )
         m, n, q = m[kept], n[kept], q[kept]
-        # Phases are drawn in order of wave number: a longer spectrum keeps the ones it had.
-        order = np.lexsort((n, m, q))
-        m, n, q = m[order], n[order], q[order]
         amplitude = q ** -(self.hurst + 1)
         amplitude *= self.rms_height / np.sqrt(2 * np.sum(amplitude**2))
-        phase = np.random.default_rng(self.seed).uniform(0, 2 * pi, q.size)
-        return _Series(m, n, amplitude * np.exp(1j * phase))
+        return _Series(m, n, amplitude * np.exp(1j * _phases(m, n, self.seed)))
 
 
 class _Axis(NamedTuple):
@@ -123,6 +119,18 @@ class _Series(NamedTuple):
     m: NDArray[np.int64]
     n: NDArray[np.int64]
     c: NDArray[np.complex128]
+
+
+def _phases(m: NDArray[np.int64], n: NDArray[np.int64], seed: int) -> Array:
+    """Return the random phase of each mode, which depends on m, n ≥ 0 and the seed only.
+
+    Numbers are drawn along squares |m| ≤ s, n ≤ s of growing s, so that neither the spectrum nor
+    the rounding of its wave numbers moves them.
+    """
+    square = np.maximum(np.abs(m), n)
+    place = square * (2 * square - 1) + np.where(n < square, 2 * n + (m > 0), 3 * square + m)
+    drawn: Array = np.random.default_rng(seed).uniform(0, 2 * pi, int(place.max()) + 1)
+    return np.asarray(drawn[place])
 
 
 def _sample(series: _Series, x: _Axis, y: _Axis) -> Array:

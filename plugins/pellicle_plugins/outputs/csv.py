@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from pellicle import hookimpl
+from pellicle import hookimpl, storage
 from pellicle.components import Output, Place
 from pellicle.errors import StorageError
 from pellicle.result import Result
@@ -21,6 +21,10 @@ class Csv(Output):
 
     type: Literal["csv"] = "csv"
 
+    def open(self, place: Place) -> None:
+        """Find out before computing whether the file can be written."""
+        storage.check_writable(place.file(".csv"))
+
     def step(self, place: Place, step: xr.Dataset) -> None:
         """Write the row of the step, the first with a header."""
         path = place.file(".csv")
@@ -31,7 +35,6 @@ class Csv(Output):
         }
         index = step["step"].item()
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
             with path.open("a" if index else "w", newline="", encoding="utf-8") as file:
                 writer = csv.DictWriter(file, ["step", *row])
                 if index == 0:

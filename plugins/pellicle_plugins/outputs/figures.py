@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from pellicle import hookimpl
+from pellicle import hookimpl, storage
 from pellicle.components import Output, Place
 from pellicle.plotting import save_figures
 from pellicle.result import Result
@@ -22,6 +22,10 @@ class Figures(Output):
         tuple[Literal["png", "svg", "pdf"], ...],
         Field(min_length=1, description="file formats to write: png, svg, pdf"),
     ] = ("png",)
+
+    def open(self, place: Place) -> None:
+        """Find out before computing whether the files can be written."""
+        storage.check_writable(place.file("-pressure.png"))
 
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Draw the result and return the files."""

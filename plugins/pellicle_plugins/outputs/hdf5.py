@@ -26,11 +26,13 @@ class Hdf5(Output):
         storage.check_writable(path)
         if place.overwrite or not path.exists():
             return
-        if storage.read(path).attrs.get("configuration") != place.configuration:
-            raise StorageError(
-                f"{path} holds the result of another configuration; choose another folder "
-                "(-o DIR), or allow it to be replaced (--overwrite)"
-            )
+        remedy = "choose another folder (-o DIR), or allow it to be replaced (--overwrite)"
+        try:
+            held = storage.configuration(path)
+        except StorageError as error:
+            raise StorageError(f"{error}; {remedy}") from None
+        if held != place.configuration:
+            raise StorageError(f"{path} holds the result of another configuration; {remedy}")
 
     def step(self, place: Place, step: xr.Dataset) -> None:
         """Write the step behind the ones before it."""

@@ -1,0 +1,208 @@
+"""Writes the parts of the documentation that the installed package itself knows best."""
+
+from __future__ import annotations
+
+import re
+import types
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+
+import pellicle as pl
+from pellicle.components import FAMILIES
+from pellicle.dataset import DESCRIPTIONS
+from pellicle.units import Quantity
+
+_HEADINGS = {
+    "kernel": "Kernels",
+    "indenter": "Indenters",
+    "solver": "Solvers",
+    "correction": "Corrections of the area",
+    "output": "Outputs",
+    "executor": "Executors",
+}
+
+
+def fill_in(text: str) -> str:
+    """Return a page with each ``<!-- generated: name -->`` replaced by what it names."""
+    return re.sub(r"<!-- generated: (\w+) -->", lambda match: PARTS[match[1]](), text)
+
+
+def components() -> str:
+    """Return a section for each registered component, with a table of its fields."""
+    return "\n".join(_components())
+
+
+def _components() -> Iterator[str]:
+    for family, members in pl.registry().components.items():
+        if not members:
+            continue
+        yield f"## {_HEADINGS[family]}\n"
+        for registered in members.values():
+            yield f"### `{registered.type}`\n"
+            yield f"{_paragraphs(registered.component.__doc__)}\n"
+            yield fields(registered.component)
+
+
+def tables() -> str:
+    """Return the fields of a run and of the two of its tables that are no components."""
+    parts = [
+        f"### `{name}`\n\n{_paragraphs(model.__doc__)}\n\n{fields(model)}"
+        for name, model in (
+            ("top level", pl.Run),
+            ("[grid]", pl.Grid),
+            ("[loading]", pl.Loading),
+        )
+    ]
+    return "\n".join(parts)
+
+
+def fields(model: Any) -> str:
+    """Return a table of the fields of a model: unit and range, default, meaning."""
+    rows = [
+        (
+            f"`{name}`",
+            _accepts(info),
+            "required" if info.is_required() else default(info, "`"),
+            _cell(info.description or ""),
+        )
+        for name, info in model.model_fields.items()
+        if name != "type"
+    ]
+    return _table(("field", "takes", "default", "meaning"), rows) if rows else "No fields.\n"
+
+
+def variables() -> str:
+    """Return a table of the variables of a result."""
+    fields_of_cells = ("pressure", "displacement", "gap", "contact")
+    rows = [
+        (f"`{name}`", "step, x, y" if name in fields_of_cells else "step", unit, meaning)
+        for name, (unit, meaning) in DESCRIPTIONS.items()
+    ]
+    return _table(("variable", "dimensions", "unit", "meaning"), rows)
+
+
+def cases() -> str:
+    """Return a table of the cases that ``pellicle validate`` solves."""
+    rows = [
+        (case.name, f"{case.expected:.6g} {case.unit}", f"{case.tolerance:.0e}", _cell(case.source))
+        for suite in pl.registry().suites
+        for case in suite()
+    ]
+    return _table(("case", "expected", "allowed", "source"), rows)
+
+
+def statuses() -> str:
+    """Return a table of how a step may end and what is said about it."""
+    return _table(
+        ("status", "message"), [(f"`{each.name}`", _message(each.value)) for each in pl.Status]
+    )
+
+
+def stops() -> str:
+    """Return a table of why a solver may stop and the remedy that it stands for."""
+    return _table(
+        ("reason", "remedy"), [(f"`{each.name}`", _message(each.value)) for each in pl.Stop]
+    )
+
+
+def starter() -> str:
+    """Return the starter file that ``pellicle new`` writes, as a block."""
+    text = Path(pl.__file__).with_name("starter.toml").read_text(encoding="utf-8")
+    return f"```toml\n{text}```"
+
+
+PARTS = {
+    part.__name__: part for part in (components, tables, variables, cases, statuses, stops, starter)
+}
+
+
+def default(info: FieldInfo, quote: str = "") -> str:
+    """Return the default of a field as a TOML file would say it."""
+    if info.default_factory is not None:
+        return f"{quote}{info.get_default(call_default_factory=True).type}{quote}"  # type: ignore[union-attr]
+    value = info.default
+    # A modulus of 0, which no table may hold, stands for one that is not given.
+    if value is None or (value in ((), "", 0.0) and not isinstance(value, int)):
+        return "none" if quote else repr(value)
+    return f"{quote}{list(value) if quote and isinstance(value, tuple) else value!r}{quote}"
+
+
+def _accepts(info: FieldInfo) -> str:
+    """Return what a field takes: unit and bounds of a quantity, or its kind of value."""
+    for found in _metadata(info):
+        quantity = found if isinstance(found, Quantity) else getattr(found, "quantity", None)
+        if isinstance(quantity, Quantity):
+            return _range(quantity)
+    kind = _kind(info.annotation)
+    bounds = [f"{sign} {bound}" for sign, bound in _bounds(info)]
+    return ", ".join([kind, *bounds])
+
+
+def _bounds(info: FieldInfo) -> Iterator[tuple[str, Any]]:
+    for found in info.metadata:
+        for sign, name in ((">", "gt"), ("≥", "ge"), ("<", "lt"), ("≤", "le")):
+            if (bound := getattr(found, name, None)) is not None:
+                yield sign, bound
+
+
+def _range(quantity: Quantity) -> str:
+    bounds = (
+        (">", quantity.above),
+        ("≥", quantity.at_least),
+        ("<", quantity.below),
+        ("≤", quantity.at_most),
+    )
+    unit = "number" if quantity.unit == "1" else quantity.unit
+    return ", ".join([unit, *(f"{sign} {bound:g}" for sign, bound in bounds if bound is not None)])
+
+
+def _metadata(info: FieldInfo) -> Iterator[object]:
+    yield from info.metadata
+    yield from _within(info.annotation)
+
+
+def _within(annotation: Any) -> Iterator[object]:
+    if get_origin(annotation) is Annotated:
+        yield from annotation.__metadata__
+    for inner in get_args(annotation):
+        yield from _within(inner)
+
+
+def _kind(annotation: Any) -> str:
+    """Return a word for a type that is no quantity."""
+    origin, inner = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return _kind(inner[0])
+    if origin is Literal:
+        return " or ".join(f'"{value}"' for value in inner)
+    if origin in (Union, types.UnionType):
+        return _kind(next(kind for kind in inner if kind is not type(None)))
+    if origin is tuple:
+        kinds = {_kind(kind) for kind in inner if kind is not Ellipsis}
+        return f"list of {' and '.join(sorted(kinds))}"
+    if annotation in (pl.Grid, pl.Loading) or annotation in FAMILIES.values():
+        return "table"
+    names = {int: "whole number", float: "number", str: "text", Path: "file", Any: "array"}
+    return names[annotation]
+
+
+def _paragraphs(documentation: str | None) -> str:
+    lines = (documentation or "").strip().splitlines()
+    return "\n".join(line.strip() for line in lines)
+
+
+def _message(text: str) -> str:
+    return _cell(re.sub(r"\{[^}]*\}", "…", text))
+
+
+def _cell(text: str) -> str:
+    """Return a text as it is, whatever of it Markdown would take for markup."""
+    return re.sub(r"([|*<_])", r"\\\1", text)
+
+
+def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
+    lines = [head, tuple("---" for _ in head), *rows]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)

@@ -1,0 +1,47 @@
+"""Full contact on a periodic grid, where the Fourier symbol is the whole answer."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+
+
+@pytest.mark.parametrize("tension", [0.0, 0.05, 3.0])
+@pytest.mark.parametrize("waves", [(1, 0), (0, 3), (2, 1)])
+def test_the_pressure_amplitude_of_a_sine_is_exact(tension: float, waves: tuple[int, int]) -> None:
+    """In full contact it is (E*/2)(q + s q²)Δ, s = 2τ₀/E*, to 1e-10."""
+    modulus, amplitude, shape = 2.0, 1e-3, (24, 20)
+    size = (1.0, 0.7)
+    grid = pl.Grid(points=shape, size=size, boundary="periodic")
+    x, y = grid.coordinates()
+    qx, qy = (2 * np.pi * m / length for m, length in zip(waves, size, strict=True))
+    wave = np.cos(qx * x + qy * y)
+    q = np.hypot(qx, qy)
+    expected = modulus / 2 * (q + 2 * tension / modulus * q**2) * amplitude
+    run = pl.Run(
+        grid=grid,
+        kernel={"type": "tensed_membrane", "reduced_modulus": modulus, "tension": tension},
+        indenter={"type": "heights", "values": amplitude * wave, "unit": 1.0},
+        loading={"mean_pressure": 1.5 * expected},
+        solver={"type": "conjugate_gradient", "tolerance": 1e-12},
+    )
+    step = pl.run(run, progress=False).dataset.isel(step=0)
+    assert step["converged"]
+    assert float(step["contact_fraction"]) == 1.0
+    assert 2 * np.mean(step["pressure"].values * wave) == pytest.approx(expected, rel=1e-10)
+    assert float(step["mean_pressure"]) == pytest.approx(1.5 * expected, rel=1e-12)
+
+
+def test_the_operator_multiplies_each_wave_by_the_compliance() -> None:
+    """One application on a periodic grid is G(q) times the wave, whatever its direction."""
+    grid = pl.Grid(points=[32, 18], size=[2.0, 1.0], boundary="periodic")
+    kernel = pl.kernel("tensed_membrane", youngs_modulus=3.0, poissons_ratio=0.5, tension=0.2)
+    x, y = grid.coordinates()
+    for m, n in ((1, 0), (0, 1), (3, -2), (5, 4)):
+        qx, qy = 2 * np.pi * m / 2.0, 2 * np.pi * n / 1.0
+        wave = np.sin(qx * x + qy * y + 0.3)
+        u = pl.displacement(wave, kernel=kernel, grid=grid)
+        expected = kernel.compliance(np.array([np.hypot(qx, qy)]))[0] * wave
+        np.testing.assert_allclose(u, expected, atol=1e-14)

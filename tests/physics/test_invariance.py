@@ -1,0 +1,122 @@
+"""What must not change when the problem is turned, mirrored, scaled or split."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+
+TOLERANCE = 1e-9
+
+
+def _step(run: dict[str, object]):
+    solver = {"type": "conjugate_gradient", "tolerance": TOLERANCE}
+    return pl.run(pl.Run(**run, solver=solver), progress=False).dataset.isel(step=0)
+
+
+def _quadric(radius_x: float, radius_y: float, boundary: str = "free") -> dict[str, object]:
+    return {
+        "grid": {"points": 48, "size": 0.4, "boundary": boundary},
+        "kernel": {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.02},
+        "indenter": {"type": "quadric", "radius_x": radius_x, "radius_y": radius_y},
+        "loading": {"force": 2e-4},
+    }
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_a_quadric_turned_by_90_degrees(boundary: str) -> None:
+    """Swapping its radii transposes the pressure and leaves force, depth and area alone."""
+    one = _step(_quadric(1.0, 2.0, boundary))
+    other = _step(_quadric(2.0, 1.0, boundary))
+    assert float(one["depth"]) == pytest.approx(float(other["depth"]), rel=1e-8)
+    assert float(one["contact_area"]) == float(other["contact_area"])
+    highest = one["pressure"].values.max()
+    np.testing.assert_allclose(
+        one["pressure"].values, other["pressure"].values.T, atol=1e-6 * highest
+    )
+
+
+def test_mirror_images_have_mirrored_pressures() -> None:
+    """A rough punch and its mirror images have the same force and mirrored pressures."""
+    grid = {"points": [40, 32], "size": [1.0, 0.8]}
+    fine = pl.Grid(**grid)
+    rough = pl.indenter("self_affine", rms_height=0.01, hurst=0.8, cutoff_wavelength=0.1, seed=3)
+    heights = rough.profile(*fine.coordinates())
+    pressures = []
+    for turn in (np.s_[:, :], np.s_[::-1, :], np.s_[:, ::-1]):
+        step = _step(
+            {
+                "grid": grid,
+                "kernel": {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.01},
+                "indenter": {"type": "heights", "values": heights[turn], "unit": 1.0},
+                "loading": {"depth": 0.02},
+            }
+        )
+        pressures.append(step["pressure"].values[turn])
+    for mirrored in pressures[1:]:
+        np.testing.assert_allclose(mirrored, pressures[0], atol=1e-6 * pressures[0].max())
+
+
+def test_lengths_and_moduli_can_be_scaled() -> None:
+    """Lengths × 1e-6 and moduli × 1e4 leave the dimensionless result to the solver tolerance."""
+    length, modulus = 1e-6, 1e4
+    one = _step(_quadric(1.0, 2.0))
+    scaled = _step(
+        {
+            "grid": {"points": 48, "size": 0.4 * length},
+            "kernel": {
+                "type": "tensed_membrane",
+                "reduced_modulus": modulus,
+                "tension": 0.02 * modulus * length,
+            },
+            "indenter": {"type": "quadric", "radius_x": length, "radius_y": 2 * length},
+            "loading": {"force": 2e-4 * modulus * length**2},
+        }
+    )
+    assert float(scaled["depth"]) / length == pytest.approx(float(one["depth"]), rel=1e-8)
+    assert float(scaled["contact_area"]) / length**2 == pytest.approx(float(one["contact_area"]))
+    np.testing.assert_allclose(
+        scaled["pressure"].values / modulus,
+        one["pressure"].values,
+        atol=1e-6 * one["pressure"].values.max(),
+    )
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_the_operator_is_linear_symmetric_and_positive(boundary: str) -> None:
+    """A(αp + q) = αAp + Aq, ⟨Ap, q⟩ = ⟨p, Aq⟩ and ⟨Ap, p⟩ > 0 to round-off."""
+    grid = pl.Grid(points=[15, 22], size=[1.0, 2.0], boundary=boundary)
+    kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=0.1)
+    p, q = np.random.default_rng(1).normal(size=(2, *grid.shape))
+    ap, aq, both = (pl.displacement(v, kernel=kernel, grid=grid) for v in (p, q, 3 * p + q))
+    np.testing.assert_allclose(both, 3 * ap + aq, atol=1e-14)
+    assert np.vdot(ap, q) == pytest.approx(np.vdot(p, aq), rel=1e-12)
+    assert np.vdot(ap, p) > 0
+
+
+def test_an_isolated_contact_does_not_see_its_domain() -> None:
+    """On a free boundary a larger domain with the same cells changes nothing."""
+    small, large = _quadric(1.0, 1.0), _quadric(1.0, 1.0)
+    large["grid"] = {"points": 64, "size": 0.4 * 64 / 48}
+    one, other = _step(small), _step(large)
+    assert float(one["depth"]) == pytest.approx(float(other["depth"]), rel=1e-8)
+    np.testing.assert_allclose(
+        one["pressure"].values,
+        other["pressure"].values[8:-8, 8:-8],
+        atol=1e-6 * one["pressure"].values.max(),
+    )
+
+
+def test_a_wide_periodic_cell_comes_near_the_free_boundary() -> None:
+    """The stiffness between two loads is that of an isolated contact once the images are far."""
+    stiffness = {}
+    for boundary, width in (("free", 1), ("periodic", 1), ("periodic", 4)):
+        run = _quadric(1.0, 1.0, boundary)
+        run["grid"] = {"points": 32 * width, "size": 0.4 * width, "boundary": boundary}
+        run["loading"] = {"force": [2e-4, 2.4e-4]}
+        depth = pl.run(pl.Run(**run), progress=False).dataset["depth"].values
+        stiffness[boundary, width] = 4e-5 / (depth[1] - depth[0])
+    free = stiffness["free", 1]
+    near, far = stiffness["periodic", 1] / free - 1, stiffness["periodic", 4] / free - 1
+    assert abs(far) < 0.35 * abs(near)
