@@ -41,7 +41,10 @@ class _FromRegistry:
         return core_schema.no_info_plain_validator_function(
             lambda given: registry().make(source, given),
             serialization=core_schema.plain_serializer_function_ser_schema(
-                lambda component, info: component.model_dump(mode=info.mode), info_arg=True
+                lambda component, info: component.model_dump(
+                    mode=info.mode, exclude_none=info.exclude_none
+                ),
+                info_arg=True,
             ),
             metadata={"family": source.family},
         )

@@ -28,7 +28,8 @@ def _whole(value: object) -> int:
     return number
 
 
-_Points = Annotated[int, BeforeValidator(_whole)]
+_Whole = Annotated[int, Field(ge=1)]
+_Points = Annotated[int, BeforeValidator(_whole, json_schema_input_type=_Whole)]
 
 
 class Grid(Model):
@@ -36,12 +37,12 @@ class Grid(Model):
 
     points: Annotated[
         tuple[_Points, _Points],
-        BeforeValidator(_pair),
+        BeforeValidator(_pair, json_schema_input_type=_Whole | tuple[_Whole, _Whole]),
         Field(description="number of cells: one whole number, or two as [along x, along y]"),
     ]
     size: Annotated[
         tuple[Length, Length],
-        BeforeValidator(_pair),
+        BeforeValidator(_pair, json_schema_input_type=Length | tuple[Length, Length]),
         Field(description="edge length of the domain [m]: one, or two as [along x, along y]"),
     ]
     boundary: Annotated[

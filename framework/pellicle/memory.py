@@ -9,10 +9,11 @@ from pathlib import Path
 from .errors import ConfigError, shown
 from .grid import Grid
 
-# Peak of a run counted in float64 arrays, measured by tests/benchmarks.
-_PADDED_ARRAYS = {"free": 6.5, "periodic": 3.5}
-_CELL_ARRAYS = 18
-_ARRAYS_KEPT_PER_STEP = 3.2
+# Peak of a run with all outputs in float64 arrays: a tenth to a third above what was measured at
+# N = 1024 with one step and four (free 24.9 and 49.9 arrays of N², periodic 19.3 and 42.9).
+_PADDED_ARRAYS = 4
+_CELL_ARRAYS = 9
+_ARRAYS_PER_STEP = 9
 
 
 def estimate(grid: Grid, steps: int) -> float:
@@ -22,8 +23,7 @@ def estimate(grid: Grid, steps: int) -> float:
     except OverflowError:
         return math.inf
     padded = 4 * cells if grid.boundary == "free" else cells
-    kept = 2 * _ARRAYS_KEPT_PER_STEP * steps
-    return 8 * (_PADDED_ARRAYS[grid.boundary] * padded + (_CELL_ARRAYS + kept) * cells)
+    return 8 * (_PADDED_ARRAYS * padded + (_CELL_ARRAYS + _ARRAYS_PER_STEP * steps) * cells)
 
 
 def available() -> float | None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -191,8 +192,14 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
 def _is_disabled(origin: Origin, disable: str) -> bool:
     if origin.distribution == "pellicle":
         return False
-    named = {name.strip() for name in disable.split(",")} - {""}
-    return bool(named & {"1", "true", "all", origin.distribution, origin.entry_point})
+    named = {_same(name) for name in disable.split(",")} - {""}
+    mine = {_same(origin.distribution), _same(origin.entry_point)}
+    return bool(named & ({"1", "true", "all"} | mine))
+
+
+def _same(name: str) -> str:
+    """Return what all spellings of a name share: my_plugin is My-Plugin to package indexes."""
+    return re.sub(r"[-_.]+", "-", name.strip()).lower()
 
 
 def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[Suite]]:
@@ -224,9 +231,12 @@ def _check(component: Any, family: str) -> str:
     if not (isinstance(component, type) and issubclass(component, base)):
         raise PluginError(f"{component!r} is no subclass of pellicle.{base.__name__}")
     name = component.__name__
+    if component.family != family:
+        raise PluginError(f"{name}.family is {component.family!r}; leave it to {base.__name__}")
     info = component.model_fields.get("type")
     names = get_args(info.annotation) if info else ()
-    if info is None or get_origin(info.annotation) is not Literal or len(names) != 1:
+    one_text = len(names) == 1 and isinstance(names[0], str)
+    if info is None or get_origin(info.annotation) is not Literal or not one_text:
         raise PluginError(f'{name} needs a field: type: Literal["…"] = "…"')
     if info.default != names[0]:
         raise PluginError(f'{name}.type needs the default "{names[0]}"')
@@ -237,4 +247,6 @@ def _check(component: Any, family: str) -> str:
     for field_, its in component.model_fields.items():
         if field_ != "type" and not its.description:
             raise PluginError(f"{name}.{field_} lacks Field(description=…) with its unit")
+    # Raises on a field whose type is unknown or has no JSON: it would spoil the schema of all.
+    component.model_json_schema()
     return str(names[0])

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -455,7 +455,11 @@ HEIGHTS: dict[str, tuple[str, Callable[[Path], object], list[str]]] = {
         ["indenter.path", "cannot be read as npy", "2-D array"],
     ),
     "npy that claims an exabyte": ("h.npy", _write_huge_npy, ["cannot be read as npy"]),
-    "npz": ("h.npy", lambda path: np.savez(path.open("wb"), GOOD), ["no .npy file"]),
+    "npz": (
+        "h.npy",
+        lambda path: (np.savez("h", GOOD), Path("h.npz").rename(path)),
+        ["no .npy file"],
+    ),
     "NaN": ("h.npy", lambda path: np.save(path, NAN), ["holds 16 NaN or infinite", "fill or crop"]),
     "complex": ("h.npy", lambda path: np.save(path, GOOD * 1j), ["holds complex", "real numbers"]),
     "bool": ("h.npy", lambda path: np.save(path, GOOD > 0), ["holds bool", "real numbers"]),
@@ -491,7 +495,6 @@ HEIGHTS: dict[str, tuple[str, Callable[[Path], object], list[str]]] = {
 }
 
 
-@pytest.mark.filterwarnings("ignore::ResourceWarning")
 @pytest.mark.parametrize(("name", "make", "words"), HEIGHTS.values(), ids=HEIGHTS)
 def test_height_files(
     refuse: Callable[..., str], name: str, make: Callable[[Path], object], words: list[str]
@@ -667,30 +670,41 @@ def test_options(cli: Cli, arguments: list[str], words: list[str]) -> None:
         assert word.lower() in outcome.message.lower()
 
 
-def _start_a_long_run(folder: Path) -> subprocess.Popen[str]:
+# Where tests run in the background, their processes would ignore Ctrl-C.
+LISTENING = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    "from pellicle.__main__ import main; main()"
+)
+
+
+@pytest.fixture
+def long_run(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
     """Return a process that has written its first step and has many to go."""
-    (folder / "start.toml").write_text(START, encoding="utf-8")
+    (tmp_path / "start.toml").write_text(START, encoding="utf-8")
     steps = "loading.depth={start='10 um', stop='20 um', num=20_000}"
     process = subprocess.Popen(
-        [sys.executable, "-m", "pellicle", "run", "start.toml", "-o", "out", "--set", steps],
-        cwd=folder,
+        [sys.executable, "-c", LISTENING, "run", "start.toml", "-o", "out", "--set", steps],
+        cwd=tmp_path,
         stderr=subprocess.PIPE,
         text=True,
     )
-    patience = time.monotonic() + 60
-    while not (folder / "out/start.h5").exists():
-        assert process.poll() is None, process.communicate()[1]
-        assert time.monotonic() < patience, "no step in a minute"
-        time.sleep(0.01)
-    return process
+    try:
+        patience = time.monotonic() + 60
+        while not (tmp_path / "out/start.h5").exists():
+            assert process.poll() is None, process.communicate()[1]
+            assert time.monotonic() < patience, "no step in a minute"
+            time.sleep(0.01)
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
 
 
-def test_interrupt(tmp_path: Path) -> None:
+def test_interrupt(tmp_path: Path, long_run: subprocess.Popen[str]) -> None:
     """Ctrl-C leaves every finished step, says where, and exits with 130."""
-    process = _start_a_long_run(tmp_path)
-    process.send_signal(signal.SIGINT)
-    message = process.communicate(timeout=60)[1]
-    assert process.returncode == 130
+    long_run.send_signal(signal.SIGINT)
+    message = long_run.communicate(timeout=60)[1]
+    assert long_run.returncode == 130
     says(message, "interrupted; finished steps are in out")
     assert "Traceback" not in message
     done = pl.load(tmp_path / "out/start.h5").dataset
@@ -701,11 +715,10 @@ def test_interrupt(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
-def test_kill(tmp_path: Path) -> None:
+def test_kill(tmp_path: Path, long_run: subprocess.Popen[str]) -> None:
     """A run that is killed leaves a whole file with every finished step."""
-    process = _start_a_long_run(tmp_path)
-    process.kill()
-    process.communicate(timeout=60)
+    long_run.kill()
+    long_run.wait(timeout=60)
     path = tmp_path / "out/start.h5"
     with h5py.File(path) as file:
         assert file["pressure"].shape[1:] == (16, 16)

@@ -1,0 +1,225 @@
+"""The command line, from a starter file to figures."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import Result
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle.cli import app
+
+SMALL = ["--set", "grid.points=32", "--set", "loading.depth=['10 um', '20 um']"]
+Cli = Callable[..., Result]
+
+
+@pytest.fixture
+def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Cli:
+    """Return a function that calls the command line in an empty folder and checks its exit code."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments: str, code: int = 0) -> Result:
+        result = CliRunner().invoke(app, arguments)
+        assert result.exit_code == code, result.output
+        return result
+
+    return call
+
+
+def _files_named(stdout: str) -> list[Path]:
+    return [Path(line[6:]) for line in stdout.splitlines() if line.startswith("wrote ")]
+
+
+def test_from_starter_file_to_figures(cli: Cli) -> None:
+    """`new`, `run`, `show` and `plot` work one after the other, and name files that exist."""
+    assert "pellicle run indent.toml" in cli("new").stdout
+    ran = cli("run", "indent.toml", *SMALL)
+    files = _files_named(ran.stdout)
+    assert {file.suffix for file in files} == {".h5", ".csv", ".png"}
+    assert all(file.parent == Path("indent") and file.stat().st_size for file in files)
+    assert ran.stdout.count("converged") == 2
+    shown = cli("show", "indent/indent.h5").stdout
+    assert "Paraboloid on a tensed skin" in shown
+    assert f"pellicle {pl.__version__}" in shown
+    assert "depth [m]" in shown
+    assert "force [N]" in shown
+    assert "contact_area_yastrebov [m2]" in shown
+    assert shown.count("converged") == 2
+    drawn = cli("plot", "indent/indent.h5", "-o", "drawn", "--format", "svg", "--format", "pdf")
+    figures = _files_named(drawn.stdout)
+    assert {figure.suffix for figure in figures} == {".svg", ".pdf"}
+    assert all(figure.parent == Path("drawn") and figure.stat().st_size for figure in figures)
+
+
+def test_numbers_shown_are_the_result_s(cli: Cli) -> None:
+    """The table shows what is in the file."""
+    cli("new", "a.toml")
+    ran = cli("run", "a.toml", *SMALL, "--set", "outputs=[{type='hdf5'}]")
+    data = pl.load("a/a.h5").dataset
+    for name in ("depth", "force", "contact_area", "contact_area_yastrebov"):
+        for value in data[name].values:
+            assert f"{value:.6g}" in ran.stdout
+            assert f"{value:.6g}" in cli("show", "a/a.h5").stdout
+
+
+def test_new_does_not_overwrite(cli: Cli) -> None:
+    """`pellicle new` leaves a file that is there alone."""
+    Path("mine.toml").write_text("mine", encoding="utf-8")
+    assert "mine.toml exists already" in cli("new", "mine.toml", code=2).stderr
+    assert Path("mine.toml").read_text(encoding="utf-8") == "mine"
+    assert "no/mine.toml: cannot be written" in cli("new", "no/mine.toml", code=2).stderr
+
+
+def test_starter_file_is_commented_toml(cli: Cli) -> None:
+    """The starter file is TOML with a comment on most of what it says."""
+    cli("new", "a.toml")
+    text = Path("a.toml").read_text(encoding="utf-8")
+    assert set(tomllib.loads(text)) >= {"title", "grid", "kernel", "indenter", "loading"}
+    assert text.count("#") > 10
+
+
+def test_quiet(cli: Cli) -> None:
+    """`--quiet` prints nothing at all when all is well."""
+    cli("new", "a.toml")
+    result = cli("run", "a.toml", *SMALL, "--quiet", "--set", "outputs=[{type='csv'}]")
+    assert result.output == ""
+    assert Path("a/a.csv").stat().st_size
+
+
+def test_output_folder(cli: Cli) -> None:
+    """``-o`` chooses the folder, and files are named after the run file."""
+    cli("new", "a.toml")
+    result = cli("run", "a.toml", *SMALL, "-o", "b/c", "--set", "outputs=[{type='hdf5'}]")
+    assert _files_named(result.stdout) == [Path("b/c/a.h5")]
+
+
+def test_set_reaches_the_result(cli: Cli) -> None:
+    """What ``--set`` says is what was run, and what the file records."""
+    cli("new", "a.toml")
+    cli("run", "a.toml", *SMALL, "--set", "kernel.tension=5 mN/m", "--set", "outputs=[]")
+    assert not Path("a").exists()
+    cli("run", "a.toml", *SMALL, "--set", "kernel.tension=5 mN/m")
+    configuration = pl.load("a/a.h5").configuration
+    assert configuration["kernel"]["tension"] == pytest.approx(0.005)
+    assert configuration["grid"]["points"] == [32, 32]
+
+
+def test_threads(cli: Cli) -> None:
+    """The number of threads does not change the result."""
+    cli("new", "a.toml")
+    only = ["--set", "outputs=[{type='hdf5'}]"]
+    cli("run", "a.toml", *SMALL, *only, "-o", "one", "--threads", "1")
+    cli("run", "a.toml", *SMALL, *only, "-o", "two", "--threads", "2")
+    one, two = (pl.load(f"{name}/a.h5").dataset for name in ("one", "two"))
+    assert two["force"].values == pytest.approx(one["force"].values, rel=1e-12)
+
+
+def test_not_converged(cli: Cli) -> None:
+    """A run that does not converge is kept and marked, says what to try, and exits with 1."""
+    cli("new", "a.toml")
+    result = cli("run", "a.toml", *SMALL, "--set", "solver.max_iterations=3", code=1)
+    assert result.stdout.count("NOT CONVERGED") == 2
+    for step in (1, 2):
+        assert f"step {step} did not converge: " in result.stderr
+    assert "over the tolerance 1.0e-08" in result.stderr
+    assert "raise solver.max_iterations" in result.stderr
+    assert all(file.exists() for file in _files_named(result.stdout))
+    kept = pl.load("a/a.h5").dataset
+    assert not kept["converged"].values.any()
+    assert all("raise solver.max_iterations" in status for status in kept["status"].values)
+    assert (kept["iterations"].values == 3).all()
+    again = cli("show", "a/a.h5", code=1)
+    assert "NOT CONVERGED" in again.stdout
+    assert "raise solver.max_iterations" in again.stderr
+    cli("plot", "a/a.h5")
+
+
+def test_not_converged_is_said_even_when_quiet(cli: Cli) -> None:
+    """`--quiet` silences no problem."""
+    cli("new", "a.toml")
+    bad = ["--set", "solver.max_iterations=3", "--set", "outputs=[]"]
+    result = cli("run", "a.toml", *SMALL, *bad, "--quiet", code=1)
+    assert result.stdout == ""
+    assert "step 1 did not converge" in result.stderr
+
+
+def test_library_warns_of_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From the library the same run warns, and returns the marked result."""
+    monkeypatch.chdir(tmp_path)
+    CliRunner().invoke(app, ["new", "a.toml"])
+    changes = [*SMALL[1::2], "solver.max_iterations=3"]
+    run = pl.Run.from_toml("a.toml", changes)
+    with pytest.warns(pl.ConvergenceWarning, match=r"step \d: .*raise solver\.max_iterations"):
+        result = pl.run(run, progress=False)
+    assert not result.converged
+    assert list(tmp_path.iterdir()) == [tmp_path / "a.toml"]
+
+
+def test_plugins_as_json(cli: Cli) -> None:
+    """`pellicle plugins --json` lists every built-in component with what it is."""
+    listed = json.loads(cli("plugins", "--json").stdout)
+    kinds = {(row["family"], row["type"]) for row in listed["components"]}
+    assert kinds >= {
+        ("kernel", "tensed_membrane"),
+        ("indenter", "heights"),
+        ("solver", "conjugate_gradient"),
+        ("correction", "yastrebov"),
+        ("output", "hdf5"),
+    }
+    for row in listed["components"]:
+        assert row["origin"] == "pellicle"
+        assert row["version"] == pl.__version__
+        assert row["description"]
+    assert listed["broken"] == []
+
+
+def test_plugins_as_a_table(cli: Cli) -> None:
+    """`pellicle plugins` lists the same for people."""
+    lines = cli("plugins").stdout.splitlines()
+    assert lines[0].split() == ["family", "type", "origin", "version", "description"]
+    assert any(line.split()[:3] == ["kernel", "half_space", "pellicle"] for line in lines)
+
+
+def test_schema(cli: Cli) -> None:
+    """`pellicle schema` prints JSON that knows the installed components."""
+    schema = json.loads(cli("schema").stdout)
+    assert "tensed_membrane" in json.dumps(schema["properties"]["kernel"])
+
+
+@pytest.mark.parametrize("command", ["run", "plugins", "schema", "new", "show", "plot", "validate"])
+def test_help(cli: Cli, command: str) -> None:
+    """Every command explains itself."""
+    assert command in cli("--help").stdout
+    assert "Usage" in cli(command, "--help").stdout
+
+
+def test_help_imports_nothing_heavy() -> None:
+    """`pellicle --help` does not wait for the numerical libraries."""
+    heavy = {"numpy", "scipy", "pydantic", "xarray", "matplotlib", "pint", "h5py"}
+    code = (
+        "import sys\nfrom pellicle.cli import app\n"
+        "try:\n    app(['--help'])\nexcept SystemExit:\n    pass\n"
+        f"print('heavy:', sorted({heavy!r} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "heavy: []"
+
+
+def test_module_is_the_command(tmp_path: Path) -> None:
+    """`python -m pellicle` is the command line, and its exit code reaches the shell."""
+    command = [sys.executable, "-m", "pellicle", "run", "none.toml"]
+    environment = os.environ | {"NO_COLOR": "1"}
+    done = subprocess.run(
+        command, capture_output=True, text=True, cwd=tmp_path, env=environment, check=False
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: none.toml: ")
+    assert done.stdout == ""

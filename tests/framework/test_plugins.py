@@ -1,0 +1,247 @@
+"""The loader, with entry points made by hand: each plugin is judged on its own."""
+
+import itertools
+from collections.abc import Callable
+from importlib.metadata import Distribution, EntryPoint, entry_points
+from pathlib import Path
+
+import pytest
+
+from pellicle import ConfigError, Kernel, PluginError
+from pellicle.plugins import GROUP, Broken, Origin, load
+
+BUILT_INS = tuple(entry_points(group=GROUP, name="kernel.half_space"))
+SOFT = '''
+from collections.abc import Callable
+from typing import Annotated, ClassVar, Literal
+from pydantic import Field
+from pellicle import Kernel, hookimpl
+
+class Soft(Kernel):
+    """Kernel of a stranger."""
+
+    type: Literal["soft"] = "soft"
+    scale: Annotated[float, Field(description="scale of G [m/Pa]")] = 1.0
+
+    def compliance(self, q):
+        return self.scale / q
+
+@hookimpl
+def register_kernels(register):
+    register(Soft)
+'''
+TYPE = 'type: Literal["soft"] = "soft"'
+DOCSTRING = '"""Kernel of a stranger."""'
+FIELD = 'Annotated[float, Field(description="scale of G [m/Pa]")] = 1.0'
+REGISTER = "    register(Soft)\n"
+BROKEN = {
+    "raises at import": ("", "raise OSError('no library')", "OSError: no library"),
+    "exits at import": ("", "raise SystemExit(3)", "SystemExit: 3"),
+    "misspelt hook": ("register_kernels", "register_kernel", "unknown hook 'register_kernel'"),
+    "no hook": ("@hookimpl", "", "implements no hook; decorate with @pellicle.hookimpl"),
+    "wrong argument": ("(register):", "(add):", "'add'"),
+    "fails half-way": (REGISTER, REGISTER + "    1 / 0\n", "ZeroDivisionError"),
+    "wrong hook": ("register_kernels", "register_indenters", "no subclass of pellicle.Indenter"),
+    "no class": ("register(Soft)", "register(Soft())", "no subclass of pellicle.Kernel"),
+    "no type": (TYPE, "", "Soft needs a field: type: Literal"),
+    "any text as type": (TYPE, 'type: str = "soft"', "Soft needs a field: type: Literal"),
+    "two types": (TYPE, 'type: Literal["a", "b"] = "a"', "Soft needs a field: type: Literal"),
+    "number as type": (TYPE, "type: Literal[1] = 1", "Soft needs a field: type: Literal"),
+    "type without default": (TYPE, 'type: Literal["soft"]', 'Soft.type needs the default "soft"'),
+    "other default": (TYPE, 'type: Literal["soft"] = "s"', 'Soft.type needs the default "soft"'),
+    "no method": ("compliance", "stiffness", "Soft lacks the method compliance"),
+    "no docstring": (DOCSTRING, "", "Soft lacks a docstring"),
+    "bare field": (FIELD, "float = 1.0", "Soft.scale lacks Field(description=…)"),
+    "other family": (TYPE, TYPE + '\n    family: ClassVar[str] = "x"', "Soft.family is 'x'"),
+    "field of no known type": ("Annotated[float,", "Annotated['Unknown',", "Unknown"),
+    "field without JSON": ("Annotated[float,", "Annotated[Callable[[], int],", "JsonSchema"),
+}
+"""What is replaced in `SOFT`, by what (nothing is replaced: put in front), and what is said."""
+
+Plugin = Callable[..., EntryPoint]
+_numbers = itertools.count()
+
+
+class Installed(Distribution):
+    """A distribution that exists in memory only."""
+
+    def __init__(self, name: str, version: str) -> None:
+        self.header = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
+
+    def read_text(self, filename: str) -> str | None:
+        """Return the metadata; there is no other file."""
+        return self.header if filename == "METADATA" else None
+
+    def locate_file(self, path: object) -> Path:
+        """Refuse: there are no files."""
+        raise FileNotFoundError(path)
+
+
+@pytest.fixture
+def plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plugin:
+    """Return a function that writes a plugin module and returns its entry point."""
+    monkeypatch.syspath_prepend(tmp_path)
+
+    def write(
+        source: str, name: str = "kernel.soft", distribution: str = "stranger", version: str = "1.2"
+    ) -> EntryPoint:
+        module = f"stranger_{next(_numbers)}"
+        (tmp_path / f"{module}.py").write_text(source, encoding="utf-8")
+        entry = EntryPoint(name, module, GROUP)
+        # What importlib.metadata does itself when it reads a distribution (3.11 to 3.14).
+        vars(entry).update(dist=Installed(distribution, version))
+        return entry
+
+    return write
+
+
+def test_a_good_plugin_is_registered_with_its_origin(plugin: Plugin) -> None:
+    """A component is found by family and type, and knows the distribution it comes from."""
+    found = load([plugin(SOFT)])
+    registered = found.components["kernel"]["soft"]
+    assert registered.origin == Origin("kernel.soft", "stranger", "1.2")
+    assert registered.summary == "Kernel of a stranger."
+    assert found.find("kernel", "soft") is registered.component
+    assert found.broken == ()
+    assert found.make(Kernel, {"type": "soft", "scale": 2}).model_dump() == {
+        "type": "soft",
+        "scale": 2.0,
+    }
+
+
+def test_one_plugin_may_bring_several_families(plugin: Plugin) -> None:
+    """All hooks of a module are called, the one for validation suites included."""
+    more = SOFT + (
+        "from pellicle import AreaCorrection\n"
+        "class Exact(AreaCorrection):\n"
+        '    """Area of a stranger."""\n'
+        '    type: Literal["exact"] = "exact"\n'
+        "    def area(self, contact, spacing): return 1.0\n"
+        "@hookimpl\n"
+        "def register_corrections(register): register(Exact)\n"
+        "@hookimpl\n"
+        "def register_validations(register): register(list)\n"
+    )
+    found = load([plugin(more, name="everything")])
+    assert found.find("correction", "exact").__name__ == "Exact"
+    assert found.find("kernel", "soft").__name__ == "Soft"
+    assert found.suites == (list,)
+
+
+@pytest.mark.parametrize(("old", "new", "error"), BROKEN.values(), ids=BROKEN.keys())
+def test_a_broken_plugin_is_named_and_nothing_of_it_registered(
+    plugin: Plugin, old: str, new: str, error: str
+) -> None:
+    """What is wrong is written down with its origin, and the other plugins work."""
+    assert old in SOFT
+    found = load([plugin(SOFT.replace(old, new, 1) if old else new + SOFT), *BUILT_INS])
+    assert [broken.origin for broken in found.broken] == [Origin("kernel.soft", "stranger", "1.2")]
+    assert error in found.broken[0].error
+    registered = [type_ for members in found.components.values() for type_ in members]
+    assert registered == ["half_space"]
+
+
+def test_a_missing_module_is_a_broken_plugin() -> None:
+    """An entry point of an uninstalled module, without a distribution, is named as well."""
+    found = load([EntryPoint("kernel.soft", "not_there", GROUP)])
+    error = "ModuleNotFoundError: No module named 'not_there'"
+    assert found.broken == (Broken(Origin("kernel.soft", "unknown distribution", "?"), error),)
+
+
+def test_an_interrupt_is_no_broken_plugin(plugin: Plugin) -> None:
+    """Ctrl-C while plugins load ends the program."""
+    with pytest.raises(KeyboardInterrupt):
+        load([plugin("raise KeyboardInterrupt")])
+
+
+def test_a_suite_is_registered_only_with_the_rest_of_its_plugin(plugin: Plugin) -> None:
+    """A plugin whose last hook fails leaves neither its components nor its suites."""
+    failing = "@hookimpl\ndef register_validations(register):\n    register(list)\n    1 / 0\n"
+    found = load([plugin(SOFT + failing)])
+    assert found.suites == ()
+    assert "soft" not in found.components["kernel"]
+
+
+def test_a_broken_plugin_is_an_error_when_asked_for(plugin: Plugin) -> None:
+    """The message holds type, entry point, distribution, version and what went wrong."""
+    found = load([plugin("raise OSError('no library')")])
+    with pytest.raises(PluginError) as raised:
+        found.make(Kernel, {"type": "soft"})
+    assert str(raised.value) == (
+        "kernel 'soft' is broken: stranger 1.2 (entry point 'kernel.soft'): OSError: no library"
+    )
+
+
+def test_two_owners_of_one_name_are_both_named(plugin: Plugin) -> None:
+    """Neither of two claimants is used; asking for the name raises, other names work."""
+    found = load([plugin(SOFT), plugin(SOFT, distribution="rival", version="7"), *BUILT_INS])
+    with pytest.raises(PluginError, match="is claimed by") as raised:
+        found.find("kernel", "soft")
+    for part in ("stranger 1.2", "rival 7", "uninstall", "PELLICLE_DISABLE_PLUGINS"):
+        assert part in str(raised.value)
+    assert found.find("kernel", "half_space").__name__ == "HalfSpace"
+
+
+def test_a_built_in_cannot_be_replaced_silently(plugin: Plugin) -> None:
+    """A stranger that takes a built-in's name clashes with it."""
+    thief = plugin(SOFT.replace('"soft"', '"half_space"'), name="better")
+    found = load([thief, *BUILT_INS])
+    with pytest.raises(PluginError) as raised:
+        found.find("kernel", "half_space")
+    assert "stranger 1.2 (entry point 'better')" in str(raised.value)
+    assert "pellicle " in str(raised.value)
+    assert load([thief, *BUILT_INS], disable="stranger").find("kernel", "half_space")
+
+
+@pytest.mark.parametrize(
+    "disable", ["1", "all", "my-stranger", "My_Stranger", "kernel.soft", "other, kernel.soft"]
+)
+def test_strangers_are_switched_off(plugin: Plugin, disable: str) -> None:
+    """All strangers, a distribution in any spelling, or one entry point can be switched off."""
+    found = load([plugin(SOFT, distribution="my-stranger"), *BUILT_INS], disable)
+    assert list(found.components["kernel"]) == ["half_space"]
+    assert found.disabled == (Origin("kernel.soft", "my-stranger", "1.2"),)
+    with pytest.raises(PluginError, match="switched off by PELLICLE_DISABLE_PLUGINS"):
+        found.find("kernel", "soft")
+
+
+@pytest.mark.parametrize("disable", ["", "0", "strange", "soft"])
+def test_what_is_not_named_stays_on(plugin: Plugin, disable: str) -> None:
+    """Only whole names switch a plugin off."""
+    assert "soft" in load([plugin(SOFT)], disable).components["kernel"]
+
+
+@pytest.mark.parametrize("disable", ["1", "pellicle", "kernel.half_space"])
+def test_built_ins_stay_on(disable: str) -> None:
+    """Components of pellicle itself cannot be switched off."""
+    assert list(load(BUILT_INS, disable).components["kernel"]) == ["half_space"]
+
+
+def test_a_plugin_that_is_switched_off_is_not_imported(plugin: Plugin) -> None:
+    """Switching off is the remedy for a plugin whose very import does harm."""
+    assert load([plugin("raise OSError")], disable="stranger").broken == ()
+
+
+def test_an_unknown_type_gets_the_nearest_known() -> None:
+    """The message names the family, the near miss and everything that is known."""
+    with pytest.raises(ConfigError) as raised:
+        load(BUILT_INS).make(Kernel, {"type": "halfspace"})
+    assert str(raised.value) == (
+        "type: 'halfspace' is no kernel; did you mean 'half_space'? Known: half_space"
+    )
+
+
+def test_an_unknown_type_points_to_what_is_broken(plugin: Plugin) -> None:
+    """A type of a broken plugin whose entry point has another name is not a dead end."""
+    with pytest.raises(ConfigError, match="1 broken: see `pellicle plugins`"):
+        load([plugin("raise OSError", name="mine")]).find("kernel", "soft")
+
+
+@pytest.mark.parametrize(
+    ("given", "problem"),
+    [({}, "has no type"), ("half_space", "'half_space' is not a table"), (3, "3 is not a table")],
+)
+def test_a_component_without_a_type_is_told_the_types(given: object, problem: str) -> None:
+    """What is no table, or has no type, is answered with the known types."""
+    with pytest.raises(ConfigError, match=f"{problem}; give a kernel .* one of: half_space"):
+        load(BUILT_INS).make(Kernel, given)

@@ -1,0 +1,77 @@
+"""Results: what they know, and saving and loading them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+import pellicle as pl
+
+CONFIGURATION: dict[str, Any] = {
+    "title": "τ₀",
+    "grid": {"points": [16, 12], "size": "0.4472 mm"},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "10 mN/m"},
+    "indenter": {"type": "paraboloid", "radius": "1 mm"},
+    "loading": {"depth": ["10 um", "20 um"]},
+    "solver": {"type": "conjugate_gradient", "tolerance": 1e-6},
+    "corrections": [{"type": "yastrebov"}],
+}
+
+
+@pytest.fixture(scope="module")
+def result() -> pl.Result:
+    """Return a small result of two steps."""
+    return pl.run(CONFIGURATION, progress=False)
+
+
+def test_save_and_load(result: pl.Result, tmp_path: Path) -> None:
+    """A result that is saved is loaded equal, attributes and units included."""
+    path = tmp_path / "new" / "result.h5"
+    result.save(path)
+    xr.testing.assert_identical(pl.load(path).dataset, result.dataset)
+    xr.testing.assert_identical(pl.load(str(path)).dataset, result.dataset)
+
+
+def test_configuration_makes_the_run_again(result: pl.Result, tmp_path: Path) -> None:
+    """The configuration in a file is the run that made it."""
+    result.save(tmp_path / "result.h5")
+    loaded = pl.load(tmp_path / "result.h5")
+    assert pl.Run(**loaded.configuration) == pl.Run(**CONFIGURATION)
+
+
+def test_provenance(result: pl.Result) -> None:
+    """The attributes say the title, the versions and the date."""
+    attributes = result.dataset.attrs
+    assert attributes["title"] == "τ₀"
+    assert f"pellicle {pl.__version__}" in attributes["versions"]
+    assert attributes["date"].startswith("20")
+
+
+def test_converged(result: pl.Result) -> None:
+    """A result has converged only if every step has."""
+    assert result.converged
+    marked = result.dataset.assign(converged=("step", [True, False]))
+    assert not pl.Result(marked).converged
+
+
+def test_steps_join_in_order(result: pl.Result) -> None:
+    """Joining datasets of one step each gives the dataset of all."""
+    parts = [result.dataset.isel(step=[index]) for index in range(2)]
+    xr.testing.assert_identical(pl.Result.join(parts).dataset, result.dataset)
+    xr.testing.assert_identical(pl.Result.join(parts[:1]).dataset, parts[0])
+
+
+def test_save_where_nothing_can_be_written(result: pl.Result, tmp_path: Path) -> None:
+    """Saving below a file is a StorageError that names the path."""
+    (tmp_path / "file").touch()
+    with pytest.raises(pl.StorageError, match=r"result\.h5: cannot be written"):
+        result.save(tmp_path / "file" / "result.h5")
+
+
+def test_load_of_nothing(tmp_path: Path) -> None:
+    """Loading a file that is not there is a StorageError that names the path."""
+    with pytest.raises(pl.StorageError, match=r"none\.h5: no such file"):
+        pl.load(tmp_path / "none.h5")

@@ -1,0 +1,146 @@
+"""The one HDF5 layout, and that a file is whole at every moment."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import h5netcdf
+import h5py
+import numpy as np
+import pytest
+import xarray as xr
+
+from pellicle import storage
+from pellicle.errors import StorageError
+
+ATTRIBUTES = {"configuration": '{"a": "τ₀"}', "versions": "pellicle 0", "title": "τ₀"}
+
+
+def steps(*indices: int) -> xr.Dataset:
+    """Return a dataset with fields, numbers, flags and texts of some steps."""
+    rng = np.random.default_rng(indices[0])
+    count = len(indices)
+    status = ["converged", "a longer text: τ₀"]
+    return xr.Dataset(
+        {
+            "pressure": (("step", "x", "y"), rng.random((count, 5, 4)), {"units": "Pa"}),
+            "contact": (("step", "x", "y"), rng.random((count, 5, 4)) > 0.5, {"units": "1"}),
+            "force": (("step",), rng.random(count), {"units": "N"}),
+            "iterations": (("step",), np.array(indices) * 10, {"units": "1"}),
+            "converged": (("step",), np.array(indices) % 2 == 0, {"units": "1"}),
+            "status": (("step",), np.array([status[i % 2] for i in indices], dtype=object)),
+        },
+        {"step": list(indices), "x": np.arange(5.0), "y": np.arange(4.0)},
+        ATTRIBUTES,
+    )
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    """Return the name of a file in a folder that does not exist yet."""
+    return tmp_path / "folder" / "result.h5"
+
+
+def test_round_trip(path: Path) -> None:
+    """What is read is what was written: values, types, units and attributes."""
+    written = steps(0, 1, 2)
+    storage.write(written, path)
+    again = storage.read(path)
+    xr.testing.assert_identical(again, written)
+    for name in ("pressure", "contact", "converged", "iterations"):
+        assert again[name].dtype == written[name].dtype
+
+
+def test_append_equals_writing_at_once(path: Path) -> None:
+    """Steps written one by one make the file of all steps."""
+    storage.write(steps(0), path)
+    storage.append(steps(1), path)
+    storage.append(steps(2, 3), path)
+    joined = xr.concat([steps(0), steps(1), steps(2, 3)], "step", data_vars="all")
+    xr.testing.assert_identical(storage.read(path), joined)
+
+
+def test_write_replaces(path: Path) -> None:
+    """Writing again leaves the new steps only."""
+    storage.write(steps(0, 1, 2), path)
+    storage.write(steps(5), path)
+    xr.testing.assert_identical(storage.read(path), steps(5))
+
+
+def test_readable_by_others(path: Path) -> None:
+    """The file opens with h5py and with xarray's own NetCDF reader."""
+    storage.write(steps(0, 1), path)
+    storage.append(steps(2), path)
+    with h5py.File(path) as file:
+        assert file["pressure"].shape == (3, 5, 4)
+        assert file["pressure"].attrs["units"] == "Pa"
+        assert file.attrs["schema_version"] == storage.SCHEMA_VERSION
+        assert file["status"].asstr()[1] == "a longer text: τ₀"
+    with xr.open_dataset(path, engine="h5netcdf") as opened:
+        assert dict(opened.sizes) == {"step": 3, "x": 5, "y": 4}
+
+
+def _fail_to_append(self: object, name: str, size: int) -> None:
+    raise OSError(28, "No space left on device")
+
+
+def test_failed_append_leaves_the_file_whole(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A failure while appending leaves the file of before, and nothing beside it."""
+    storage.write(steps(0, 1), path)
+    before = path.read_bytes()
+    monkeypatch.setattr(h5netcdf.File, "resize_dimension", _fail_to_append)
+    with pytest.raises(StorageError, match=r"cannot be written \(No space left on device\)"):
+        storage.append(steps(2), path)
+    assert path.read_bytes() == before
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_failed_write_leaves_the_file_whole(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A failure while replacing a file, even an interruption, leaves the old one."""
+    storage.write(steps(0, 1), path)
+    before = path.read_bytes()
+
+    def interrupt(*arguments: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("os.fsync", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        storage.write(steps(7), path)
+    assert path.read_bytes() == before
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_nothing_half_written_has_the_name(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A new file gets its name only when it is whole and on the disk."""
+    seen: list[bool] = []
+    monkeypatch.setattr("os.fsync", lambda descriptor: seen.append(path.exists()))
+    storage.write(steps(0), path)
+    assert seen == [False]
+    assert path.exists()
+
+
+def test_check_writable(tmp_path: Path) -> None:
+    """A folder that can be written is made; one that cannot is named."""
+    storage.check_writable(tmp_path / "a" / "b" / "c.h5")
+    assert list((tmp_path / "a" / "b").iterdir()) == []
+    (tmp_path / "file").touch()
+    with pytest.raises(StorageError, match=r"c\.h5: cannot be written .*choose another folder"):
+        storage.check_writable(tmp_path / "file" / "c.h5")
+
+
+def test_configuration(path: Path) -> None:
+    """The configuration is read without the fields, and only from a result."""
+    storage.write(steps(0), path)
+    assert storage.configuration(path) == ATTRIBUTES["configuration"]
+    path.write_bytes(b"junk")
+    with pytest.raises(StorageError, match="not a readable result file"):
+        storage.configuration(path)
+
+
+def test_other_schema_version(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file of another schema version is refused with both versions and what wrote it."""
+    monkeypatch.setattr(storage, "SCHEMA_VERSION", 99)
+    storage.write(steps(0), path)
+    monkeypatch.undo()
+    with pytest.raises(StorageError, match=r"version 99, and this pellicle reads 1.*pellicle 0"):
+        storage.read(path)

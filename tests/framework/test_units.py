@@ -1,0 +1,124 @@
+"""Quantities: numbers, texts with a unit and pint quantities, all held in SI."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pint
+import pytest
+
+from pellicle.units import Quantity
+
+TENSION = Quantity("N/m", at_least=0)
+RATIO = Quantity("1", above=-1, at_most=0.5)
+
+
+@pytest.mark.parametrize(
+    ("unit", "given", "expected"),
+    [
+        ("m", 0.01, 0.01),
+        ("m", 3, 3.0),
+        ("m", Fraction(1, 4), 0.25),
+        ("m", np.float32(0.5), 0.5),
+        ("m", np.int64(7), 7.0),
+        ("m", "10 um", 1e-5),
+        ("m", "10 µm", 1e-5),
+        ("m", "10um", 1e-5),
+        ("m", "  1.5e-3   mm ", 1.5e-6),
+        ("m", "+.5 m", 0.5),
+        ("m", "5. nm", 5e-9),
+        ("Pa", "10 kPa", 1e4),
+        ("Pa", "1 N/mm**2", 1e6),
+        ("Pa", "1 N/mm^2", 1e6),
+        ("N/m", "50 mN/m", 0.05),
+        ("N/m", "50 mJ/m^2", 0.05),
+        ("N/m", "50 dyn/cm", 0.05),
+        ("N", "2 uN", 2e-6),
+        ("rad", "180 degree", math.pi),
+        ("1", 0.3, 0.3),
+        ("1", "0.3", 0.3),
+    ],
+)
+def test_value_in_si(unit: str, given: object, expected: float) -> None:
+    """A number is taken as SI, and a text with a unit is converted to it."""
+    value = Quantity(unit)(given)
+    assert type(value) is float
+    assert value == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize("magnitude", [10, 10.0, np.float64(10.0), np.int32(10)])
+def test_pint_quantity(magnitude: float) -> None:
+    """A pint quantity is converted whatever the type of its magnitude, and its registry."""
+    given = pint.UnitRegistry().Quantity(magnitude, "mN/m")
+    assert TENSION(given) == pytest.approx(0.01, rel=1e-14)
+
+
+def test_pint_pure_number() -> None:
+    """A dimensionless pint quantity is a pure number."""
+    assert RATIO(pint.UnitRegistry().Quantity(0.25, "")) == 0.25
+
+
+@pytest.mark.parametrize("given", [0, 0.0, "0 N/m", -0.0])
+def test_closed_bound_is_allowed(given: object) -> None:
+    """``at_least`` and ``at_most`` include the bound itself."""
+    assert TENSION(given) == 0
+    assert RATIO(0.5) == 0.5
+
+
+@pytest.mark.parametrize("given", [-1, -1.5, "-1", 0.500001])
+def test_open_bound_is_refused(given: object) -> None:
+    """``above`` excludes the bound, and nothing beyond the other one is allowed."""
+    with pytest.raises(ValueError, match=r"is not allowed; give a plain number > -1 and ≤ 0\.5"):
+        RATIO(given)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [math.nan, math.inf, -math.inf, "nan", "inf", "-Infinity", "nan N/m", "-INF mN/m", "1e999 N/m"],
+)
+def test_not_finite(given: object) -> None:
+    """Nothing infinite or undefined passes, in whatever spelling."""
+    with pytest.raises(ValueError, match="is not finite; give a value ≥ 0 N/m"):
+        TENSION(given)
+
+
+def test_integer_beyond_floats() -> None:
+    """A whole number too large for a float is refused, not an overflow."""
+    with pytest.raises(ValueError, match="is not finite"):
+        TENSION(10**400)
+
+
+@pytest.mark.parametrize("given", [None, True, [1.0], {}, b"1 N/m", 1j, "", "N/m", "1,5 N/m"])
+def test_not_a_number(given: object) -> None:
+    """Anything that is no number is refused with an example of what is."""
+    with pytest.raises(ValueError, match="'50 mN/m'"):
+        TENSION(given)
+
+
+@pytest.mark.parametrize("unit", ["m", "Pa", "N", "s", "degC", "kg"])
+def test_other_dimension(unit: str) -> None:
+    """A unit of another dimension is refused with both dimensions named."""
+    with pytest.raises(ValueError, match=r"measures \[.*not \[mass\] / \[time\] \*\* 2"):
+        TENSION(f"1 {unit}")
+
+
+@pytest.mark.parametrize("unit", ["foo", "N/", "N/m)", "2 N/m", "N + m", "N/0", "__import__('os')"])
+def test_unknown_unit(unit: str) -> None:
+    """Whatever does not parse as a unit is refused in our words, not in pint's."""
+    with pytest.raises(ValueError, match="has no unit that is known"):
+        TENSION(f"1 {unit}")
+
+
+def test_long_value_is_shortened() -> None:
+    """A message quotes a long value in part."""
+    with pytest.raises(ValueError, match="…") as caught:
+        TENSION("9" * 10_000)
+    assert len(str(caught.value)) < 250
+
+
+def test_unit_for_a_pure_number() -> None:
+    """A pure number takes no unit."""
+    with pytest.raises(ValueError, match=r"'0\.3 Pa' has a unit; give a plain number"):
+        RATIO("0.3 Pa")

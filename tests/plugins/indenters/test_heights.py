@@ -1,0 +1,148 @@
+"""Heights from files and arrays."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+import pellicle as pl
+
+ROUGH = np.random.default_rng(5).normal(size=(8, 6))
+
+
+def _profile(indenter: pl.Indenter, points: tuple[int, int] = (8, 6)) -> np.ndarray:
+    return indenter.profile(*pl.Grid(points=points, size=1.0).coordinates())
+
+
+def _write_hdf5(path: Path) -> None:
+    with h5py.File(path, "w") as file:
+        file["group/rough"] = ROUGH
+
+
+WRITERS: dict[str, Callable[[Path], object]] = {
+    "a.npy": lambda path: np.save(path, ROUGH),
+    "a.txt": lambda path: np.savetxt(path, ROUGH, fmt="%.17g", header="rough"),
+    "a.dat": lambda path: np.savetxt(path, ROUGH, fmt="%.17g", delimiter="\t"),
+    "a.csv": lambda path: np.savetxt(path, ROUGH, fmt="%.17g", delimiter=", "),
+    "a.h5": _write_hdf5,
+}
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_file(tmp_path: Path, name: str) -> None:
+    """Every format gives the heights below the highest, in the unit given, along x then y."""
+    WRITERS[name](tmp_path / name)
+    profile = _profile(pl.indenter("heights", path=tmp_path / name, unit="1 um"))
+    assert profile == pytest.approx((ROUGH - ROUGH.max()) * 1e-6, rel=1e-14)
+    assert profile.max() == 0
+
+
+def test_one_of_several_arrays(tmp_path: Path) -> None:
+    """``dataset`` names the array in an HDF5 file of several."""
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["flat"], file["rough"] = np.zeros((8, 6)), ROUGH
+    indenter = pl.indenter("heights", path=tmp_path / "a.h5", unit=1, dataset="rough")
+    assert np.array_equal(_profile(indenter), ROUGH - ROUGH.max())
+
+
+@pytest.mark.parametrize("dtype", ["<f4", ">f8", "<i2", "u1"])
+def test_types_of_number(dtype: str) -> None:
+    """Integers, single precision and foreign byte order are read as numbers."""
+    values = (ROUGH * 10 + 50).astype(dtype)
+    expected = values.astype(float) - float(values.max())
+    assert np.array_equal(_profile(pl.indenter("heights", values=values, unit=1)), expected)
+
+
+def test_array_is_recorded_by_its_hash() -> None:
+    """An array in memory is recorded by the hash of its content, not by its values."""
+    indenter = pl.indenter("heights", values=ROUGH, unit=1)
+    assert indenter.model_dump()["sha256"] == hashlib.sha256(ROUGH.tobytes()).hexdigest()
+    assert "values" not in indenter.model_dump()
+    # The order in memory is no part of the content.
+    assert pl.indenter("heights", values=np.asfortranarray(ROUGH), unit=1) == indenter
+    assert pl.indenter("heights", values=ROUGH + 1e-9, unit=1) != indenter
+
+
+def test_recorded_array_is_asked_for_again() -> None:
+    """A configuration that only holds a hash says that the array must be given again."""
+    recorded = pl.indenter("heights", values=ROUGH, unit=1).model_dump(exclude_none=True)
+    with pytest.raises(pl.ConfigError, match=r"records only the hash .*give values again"):
+        pl.indenter(recorded.pop("type"), **recorded)
+    assert pl.indenter("heights", **recorded, values=ROUGH)
+    with pytest.raises(pl.ConfigError, match="they have changed"):
+        pl.indenter("heights", **recorded, values=ROUGH * 2)
+
+
+def test_array_is_copied() -> None:
+    """Changing the array afterwards does not change the indenter."""
+    values = ROUGH.copy()
+    indenter = pl.indenter("heights", values=values, unit=1)
+    values[:] = 0
+    assert np.array_equal(_profile(indenter), ROUGH - ROUGH.max())
+
+
+def test_profile_is_not_shared() -> None:
+    """Changing a profile does not change the next one."""
+    indenter = pl.indenter("heights", values=ROUGH, unit=1)
+    _profile(indenter)[:] = -1
+    assert np.array_equal(_profile(indenter), ROUGH - ROUGH.max())
+
+
+def test_pickle_and_hash() -> None:
+    """The indenter travels to another process with its heights, and can be a key."""
+    indenter = pl.indenter("heights", values=ROUGH, unit=1)
+    again = pickle.loads(pickle.dumps(indenter))
+    assert again == indenter
+    assert hash(again) == hash(indenter)
+    assert np.array_equal(_profile(again), _profile(indenter))
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        (ROUGH[0], r"shape \(6,\); give a 2-D array"),
+        (np.zeros((0, 3)), r"shape \(0, 3\)"),
+        (ROUGH[None], r"shape \(1, 8, 6\)"),
+        (ROUGH * 1j, "complex values; give real numbers"),
+        (np.where(ROUGH > 0, np.inf, 0), "NaN or infinite heights"),
+        ("junk", "give real numbers"),
+        ([[1, None]], "give real numbers"),
+    ],
+)
+def test_bad_array(values: object, message: str) -> None:
+    """An array in memory is checked as a file is, and the message names the field."""
+    with pytest.raises(pl.ConfigError, match=rf"values: the array .*{message}"):
+        pl.indenter("heights", values=values, unit=1)
+
+
+def test_file_or_array_but_not_both(tmp_path: Path) -> None:
+    """Exactly one of a file and an array is given."""
+    np.save(tmp_path / "a.npy", ROUGH)
+    for given in ({}, {"path": tmp_path / "a.npy", "values": ROUGH}):
+        with pytest.raises(pl.ConfigError, match="path: give either a file or"):
+            pl.indenter("heights", unit=1, **given)
+
+
+def test_other_shape() -> None:
+    """Heights that do not fit the grid are refused with both shapes."""
+    with pytest.raises(pl.ConfigError, match=r"\(8, 6\).*\(6, 8\); set grid\.points = \[8, 6\]"):
+        _profile(pl.indenter("heights", values=ROUGH, unit=1), (6, 8))
+
+
+def test_ends_with_the_domain() -> None:
+    """Contact may reach the edge of the domain, where the heights end too."""
+    run = pl.Run(
+        grid={"points": [8, 6], "size": ["8 um", "6 um"]},
+        kernel={"type": "half_space", "reduced_modulus": "10 kPa"},
+        indenter=pl.indenter("heights", values=np.zeros((8, 6)), unit=1),
+        loading={"depth": "1 nm"},
+    )
+    result = pl.run(run, progress=False)
+    assert result.dataset["contact"].values.all()
+    assert result.converged

@@ -1,0 +1,173 @@
+"""What each output leaves behind."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+import pellicle as pl
+
+SIGNATURES = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
+FIGURES = ["pressure", "profile", "force_depth", "area_force"]
+
+
+def _run(outputs: list[dict[str, Any]], **changes: Any) -> pl.Run:
+    return pl.Run(
+        **{
+            "title": "Two Steps",
+            "grid": {"points": 16, "size": "0.4472 mm"},
+            "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
+            "indenter": {"type": "paraboloid", "radius": "1 mm"},
+            "loading": {"depth": ["5 um", "10 um"]},
+            "corrections": [{"type": "yastrebov"}],
+            "outputs": outputs,
+            **changes,
+        }
+    )
+
+
+def _read_csv(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_csv(tmp_path: Path) -> None:
+    """The table has units in its header and the result's numbers in one row a step."""
+    result = pl.run(_run([{"type": "csv"}]), directory=tmp_path, progress=False)
+    rows = _read_csv(tmp_path / "two-steps.csv")
+    assert [row["step"] for row in rows] == ["0", "1"]
+    for header in ("depth [m]", "force [N]", "contact_area [m2]", "contact_area_yastrebov [m2]"):
+        name = header.partition(" ")[0]
+        written = [float(row[header]) for row in rows]
+        assert written == list(result.dataset[name].values)
+    assert [row["status"] for row in rows] == ["converged", "converged"]
+    assert [row["converged"] for row in rows] == ["True", "True"]
+    assert {"mean_pressure [Pa]", "contact_fraction", "iterations", "wall_time [s]"} <= set(rows[0])
+
+
+def test_csv_starts_afresh(tmp_path: Path) -> None:
+    """A second run replaces the table of the first."""
+    for _ in range(2):
+        pl.run(_run([{"type": "csv"}]), directory=tmp_path, progress=False)
+    assert len(_read_csv(tmp_path / "two-steps.csv")) == 2
+
+
+def test_csv_holds_every_finished_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that is interrupted leaves the rows of the steps before."""
+    from pellicle import orchestrator
+
+    _interrupt_in_step(2, monkeypatch, orchestrator)
+    with pytest.raises(KeyboardInterrupt):
+        pl.run(_run([{"type": "csv"}]), directory=tmp_path, progress=False)
+    assert len(_read_csv(tmp_path / "two-steps.csv")) == 1
+
+
+def _interrupt_in_step(step: int, monkeypatch: pytest.MonkeyPatch, module: Any) -> None:
+    solve, calls = module._solve, []
+
+    def solve_or_interrupt(*arguments: Any) -> Any:
+        calls.append(arguments)
+        if len(calls) == step:
+            raise KeyboardInterrupt
+        return solve(*arguments)
+
+    monkeypatch.setattr(module, "_solve", solve_or_interrupt)
+
+
+@pytest.mark.parametrize("format_", SIGNATURES)
+def test_figures(tmp_path: Path, format_: str) -> None:
+    """Every figure is drawn in the format that is asked for."""
+    outputs = [{"type": "figures", "formats": [format_]}]
+    pl.run(_run(outputs), directory=tmp_path, progress=False)
+    names = sorted(path.name for path in tmp_path.iterdir())
+    assert names == sorted(f"two-steps-{figure}.{format_}" for figure in FIGURES)
+    for path in tmp_path.iterdir():
+        assert path.read_bytes().startswith(SIGNATURES[format_])
+        assert path.stat().st_size > 2000
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"loading": {"depth": 0}},
+        {
+            "grid": {"points": [1, 8], "size": "0.4 mm"},
+            "indenter": {"type": "flat_punch", "radius": "0.1 mm"},
+        },
+        {"indenter": {"type": "flat_punch", "radius": "0.1 mm"}},
+    ],
+    ids=["no contact", "one cell across", "punch with nothing beside it"],
+)
+def test_figures_of_odd_results(tmp_path: Path, changes: dict[str, Any]) -> None:
+    """Results without contact, without width or with infinite gaps are drawn as well."""
+    outputs = [{"type": "figures"}]
+    pl.run(_run(outputs, **changes), directory=tmp_path, progress=False)
+    assert len(list(tmp_path.iterdir())) == len(FIGURES)
+
+
+def test_figures_have_units(tmp_path: Path) -> None:
+    """The axes of the curves carry real units."""
+    outputs = [{"type": "figures", "formats": ["svg"]}]
+    import matplotlib as mpl
+
+    with mpl.rc_context({"svg.fonttype": "none"}):
+        from matplotlib.figure import Figure
+
+        from pellicle import plotting
+
+        result = pl.run(_run(outputs), progress=False, directory=tmp_path)
+        axes = Figure().add_subplot()
+        plotting.force_depth(result, axes)
+    assert axes.get_xlabel() == "depth [µm]"
+    assert axes.get_ylabel() == "force [µN]"
+    assert list(axes.lines[0].get_xdata()) == pytest.approx([5.0, 10.0])
+
+
+def test_hdf5(tmp_path: Path) -> None:
+    """The file holds the very result that the run returned."""
+    result = pl.run(_run([{"type": "hdf5"}]), directory=tmp_path, progress=False)
+    assert [path.name for path in tmp_path.iterdir()] == ["two-steps.h5"]
+    xr.testing.assert_identical(pl.load(tmp_path / "two-steps.h5").dataset, result.dataset)
+
+
+def test_hdf5_is_whole_after_each_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """While a step is solved, the file with those before it can be read."""
+    from pellicle import orchestrator
+
+    found: list[int] = []
+    solve = orchestrator._solve
+
+    def look_and_solve(*arguments: Any) -> Any:
+        path = tmp_path / "two-steps.h5"
+        found.append(pl.load(path).dataset.sizes["step"] if path.exists() else 0)
+        return solve(*arguments)
+
+    monkeypatch.setattr(orchestrator, "_solve", look_and_solve)
+    run = _run([{"type": "hdf5"}], loading={"depth": ["2 um", "4 um", "6 um"]})
+    pl.run(run, directory=tmp_path, progress=False)
+    assert found == [0, 1, 2]
+
+
+def test_hdf5_replaces_its_own_result_only(tmp_path: Path) -> None:
+    """The same run may be repeated; another one only replaces it when told to."""
+    run = _run([{"type": "hdf5"}])
+    for _ in range(2):
+        pl.run(run, directory=tmp_path, progress=False)
+    other = _run([{"type": "hdf5"}], loading={"depth": ["7 um"]})
+    with pytest.raises(pl.StorageError, match=r"another configuration.*--overwrite"):
+        pl.run(other, directory=tmp_path, progress=False)
+    assert pl.load(tmp_path / "two-steps.h5").dataset.sizes["step"] == 2
+    pl.run(other, directory=tmp_path, progress=False, overwrite=True)
+    assert pl.load(tmp_path / "two-steps.h5").dataset.sizes["step"] == 1
+
+
+def test_library_writes_nothing_unasked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A library call without a folder or outputs leaves no file."""
+    monkeypatch.chdir(tmp_path)
+    for outputs in (None, []):
+        pl.run(_run(outputs), progress=False)  # type: ignore[arg-type]
+    assert list(tmp_path.iterdir()) == []
