@@ -33,6 +33,9 @@ napoleon_use_rtype = False
 napoleon_use_ivar = True
 
 
+_COLON = "\ue000"
+
+
 def _fill_in(app: Any, docname: str, source: list[str]) -> None:
     """Replace ``<!-- generated: name -->`` by what the installed package says."""
     source[0] = generated.fill_in(source[0])
@@ -52,7 +55,20 @@ def _model_signature(
     return f"(*, {', '.join(shown)})" if shown else "()", ""
 
 
+def _hide(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
+    """Hide the colons of properties: napoleon takes what stands before one for a type."""
+    lines[:] = [line.replace("|", r"\|") for line in lines]
+    if what in ("attribute", "property"):
+        lines[:] = [line.replace(": ", _COLON) for line in lines]
+
+
+def _show(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
+    lines[:] = [line.replace(_COLON, ": ") for line in lines]
+
+
 def setup(app: Any) -> None:
-    """Connect the two functions above."""
+    """Connect the functions above."""
     app.connect("source-read", _fill_in)
     app.connect("autodoc-process-signature", _model_signature)
+    app.connect("autodoc-process-docstring", _hide, priority=100)
+    app.connect("autodoc-process-docstring", _show, priority=900)

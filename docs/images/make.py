@@ -46,9 +46,10 @@ def main() -> None:
         )
         line = result.dataset.isel(step=0, y=POINTS // 2)
         line = line.isel(x=line["contact"].values)
+        line = line.isel(x=slice(line.sizes["x"] // 2 % 3, None, 3))
         axes.plot(
-            line["x"].values[::3] * 1e3,
-            line["pressure"].values[::3] * 1e-3,
+            line["x"].values * 1e3,
+            line["pressure"].values * 1e-3,
             "o",
             color=colour,
             markersize=3.5,

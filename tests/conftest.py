@@ -1,0 +1,23 @@
+"""What holds for every test: floating-point errors raise, and the checkout is installed."""
+
+from collections.abc import Iterator
+from importlib.metadata import entry_points
+
+import numpy as np
+import pytest
+
+
+def pytest_configure() -> None:
+    """Stop at once where there are no plugins: hundreds of failures would not say why."""
+    owners = {entry.dist.name for entry in entry_points(group="pellicle") if entry.dist}
+    if "pellicle" not in owners:
+        raise pytest.UsageError(
+            "pellicle is not installed here, so it has no plugins; install the checkout first: "
+            'pip install -e ".[test]"'
+        )
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _floating_point_errors_raise() -> Iterator[None]:
+    with np.errstate(all="raise", under="ignore"):
+        yield

@@ -1,0 +1,33 @@
+"""One set of fields for each registered type: what the contracts are tested on.
+
+A new component needs an entry here, and a test says so if it has none.  Lengths are those of one
+problem: a domain of about 1 mm, a soft solid, indentations of some micrometres.
+"""
+
+from pathlib import Path
+from typing import Any
+
+EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
+    "kernel": {
+        "half_space": {"reduced_modulus": "10 kPa"},
+        "tensed_membrane": {"youngs_modulus": 7500.0, "poissons_ratio": 0.5, "tension": "1 N/m"},
+    },
+    "indenter": {
+        "paraboloid": {"radius": "1 mm"},
+        "quadric": {"radius_x": "1 mm", "radius_y": "2 mm"},
+        "sphere": {"radius": "0.4 mm"},
+        "cone": {"half_angle": "70 degree"},
+        "flat_punch": {"radius": "0.3 mm"},
+        "self_affine": {
+            "rms_height": "10 um",
+            "hurst": 0.7,
+            "cutoff_wavelength": "0.4 mm",
+            "seed": 3,
+        },
+        "heights": {"path": str(Path(__file__).with_name("heights.txt")), "unit": "1 um"},
+    },
+    "solver": {"conjugate_gradient": {"tolerance": 1e-9}},
+    "correction": {"yastrebov": {}},
+    "output": {"hdf5": {}, "csv": {}, "figures": {"formats": ["png", "svg"]}},
+    "executor": {},
+}

@@ -1,0 +1,235 @@
+"""Runs every code block of README.md and docs/*.md, page by page, as a reader would."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import os
+import re
+import shlex
+import subprocess
+import sys
+import textwrap
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from blocks import PAGES, ROOT, Block, blocks
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle.cli import app
+from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
+
+LANGUAGES = {"python", "pycon", "toml", "console", "sh"}
+DIRECTIVES = {"{eval-rst}", "{toctree}"}
+EXEMPT = [
+    "python3 -m venv .venv && .venv/bin/pip install . && "
+    ".venv/bin/pellicle run docs/studies/indent.toml -o results",
+    "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/python -m pytest",
+]
+"""Set-up of a fresh machine: the packaging tests do that."""
+
+_TABLES: dict[str, Any] = {
+    "kernel": Kernel,
+    "indenter": Indenter,
+    "solver": Solver,
+    "corrections": AreaCorrection,
+    "outputs": Output,
+}
+_OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+_ONE_THREAD = 1
+
+
+class Reader:
+    """Someone who works through a page in a folder of their own."""
+
+    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.folder = folder
+        self.monkeypatch = monkeypatch
+        self.names: dict[str, Any] = {"__name__": "__main__"}
+        self.last: pl.Result | None = None
+
+    def do(self, block: Block) -> None:
+        """Do what a block says."""
+        if "file" in block.comments:
+            (self.folder / block.comments["file"]).write_text(block.text, encoding="utf-8")
+            self.forget()
+        if "into" in block.comments:
+            self.insert(block)
+            return
+        getattr(self, block.language)(block)
+
+    def insert(self, block: Block) -> None:
+        """Put methods at the end of the class that stands before the hook in a file."""
+        path = self.folder / block.comments["into"]
+        before, hook, after = path.read_text(encoding="utf-8").partition("\n\n\n@hookimpl")
+        methods = textwrap.indent(block.text, "    ")
+        path.write_text(f"{before}\n\n{methods}{hook}{after}", encoding="utf-8")
+        self.forget()
+
+    def python(self, block: Block) -> None:
+        """Execute a block in the namespace of its page."""
+        exec(compile(block.text, str(block), "exec", dont_inherit=True), self.names)
+
+    def pycon(self, block: Block) -> None:
+        """Execute an interactive session and compare what it shows."""
+        test = doctest.DocTestParser().get_doctest(block.text, {}, str(block), None, block.line)
+        test.globs = self.names
+        said: list[str] = []
+        runner = doctest.DocTestRunner(optionflags=_OPTIONS)
+        runner.run(test, out=said.append, clear_globs=False)
+        assert not runner.summarize(verbose=False).failed, "".join(said)
+
+    def toml(self, block: Block) -> None:
+        """Solve a complete run; check the tables of a part of one."""
+        data = tomllib.loads(block.text)
+        if "project" in data:
+            assert block.comments["file"] == "pyproject.toml"
+        elif "grid" in data:
+            run = pl.Run(**data)
+            result = pl.run(
+                run, directory=self.folder / "toml", progress=False, threads=_ONE_THREAD
+            )
+            assert result.converged, block
+        else:
+            check_part(data)
+
+    def sh(self, block: Block) -> None:
+        """Check that a set-up is one of those that need no test here."""
+        assert block.text.strip() in EXEMPT, f"{block}: not an exempt set-up"
+
+    def console(self, block: Block) -> None:
+        """Carry out commands and compare what they print."""
+        commands = list(_commands(block.text))
+        assert commands, f"{block}: no command; begin it with '$ '"
+        for number, (command, expected) in enumerate(commands):
+            wanted = int(block.comments.get("exit", 0)) if number == len(commands) - 1 else 0
+            code, output = self.command(command, block.comments.get("run"))
+            assert code == wanted, f"{block}: {command}: exit code {code}\n{output}"
+            if expected:
+                same = doctest.OutputChecker().check_output(expected, output, _OPTIONS)
+                assert same, f"{block}: {command}\nexpected:\n{expected}\ngot:\n{output}"
+
+    def command(self, command: str, override: str | None) -> tuple[int, str]:
+        """Return the exit code and the output of a ``pellicle`` or ``pip install`` command."""
+        words = shlex.split(command)
+        environment: dict[str, str | None] = {}
+        while "=" in words[0]:
+            name, _, value = words.pop(0).partition("=")
+            environment[name] = value
+        if words == ["pip", "install", "-e", "."]:
+            return self.install()
+        assert words[0] == "pellicle", f"{command}: only pellicle and pip install -e . are run"
+        target = None
+        if ">" in words:
+            at = words.index(">")
+            target, words = words[at + 1], words[:at]
+        if words[1] == "run":
+            words += ["--threads", str(_ONE_THREAD)]
+            if override:
+                words += ["--set", override]
+        self.forget()
+        run = CliRunner().invoke(app, words[1:], prog_name="pellicle", env=environment)
+        assert run.exception is None or isinstance(run.exception, SystemExit), run.exception
+        if target:
+            (self.folder / target).write_text(run.stdout, encoding="utf-8")
+            return run.exit_code, run.stderr
+        return run.exit_code, run.output
+
+    def install(self) -> tuple[int, str]:
+        """Install the package of the folder where this process finds it, its modules in place."""
+        site = self.folder / "site"
+        pip = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-build-isolation"]
+        done = subprocess.run(
+            [*pip, "--quiet", "--disable-pip-version-check", "--target", str(site), "."],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            env={**os.environ, "PIP_NO_INDEX": "1"},
+            check=False,
+        )
+        self.monkeypatch.syspath_prepend(str(site))
+        self.monkeypatch.syspath_prepend(str(self.folder))
+        self.forget()
+        return done.returncode, done.stdout + done.stderr
+
+    def forget(self) -> None:
+        """Make the next look at the registry a fresh one, as a new process would."""
+        for name, module in list(sys.modules.items()):
+            if str(getattr(module, "__file__", None) or "").startswith(str(self.folder)):
+                del sys.modules[name]
+        for cached in self.folder.rglob("__pycache__"):
+            for file in cached.iterdir():
+                file.unlink()
+        importlib.invalidate_caches()
+        pl.registry.cache_clear()  # type: ignore[attr-defined]
+
+
+def check_part(data: dict[str, Any]) -> None:
+    """Check each table of a part of a run file against its own model."""
+    for name, table in data.items():
+        if name == "title":
+            assert isinstance(table, str)
+        elif name == "grid":
+            pl.Grid(**table)
+        elif name == "loading":
+            pl.Loading(**table)
+        else:
+            for entry in table if isinstance(table, list) else [table]:
+                pl.registry().make(_TABLES[name], entry)
+
+
+def _commands(text: str) -> Iterator[tuple[str, str]]:
+    for part in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
+        command, _, expected = part.partition("\n")
+        yield command, expected
+
+
+@pytest.fixture
+def reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Reader]:
+    """Someone in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("PELLICLE_DISABLE_PLUGINS", raising=False)
+    reader = Reader(tmp_path, monkeypatch)
+    yield reader
+    monkeypatch.undo()
+    reader.forget()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_page_runs(page: Path, reader: Reader) -> None:
+    """Every block of a page works, in order, and prints what the page says."""
+    for block in blocks(page):
+        if block.language in DIRECTIVES:
+            continue
+        assert block.language in LANGUAGES, f"{block}: language {block.language!r} is not tested"
+        try:
+            reader.do(block)
+        except Exception as error:
+            error.add_note(f"in the block at {block}")
+            raise
+
+
+def test_readme_begins_with_the_two_set_up_commands() -> None:
+    """The first two blocks of the README are one shell line each; no other set-up is exempt."""
+    first, second, *rest = blocks(ROOT / "README.md")
+    assert [first.text.strip(), second.text.strip()] == EXEMPT
+    others = [*rest, *(block for page in PAGES[1:] for block in blocks(page))]
+    assert not [str(block) for block in others if block.language == "sh"]
+
+
+def test_study_of_the_readme_is_the_starter_file() -> None:
+    """What the README runs is what ``pellicle new`` writes."""
+    starter = Path(pl.__file__).with_name("starter.toml")
+    assert (ROOT / "docs/studies/indent.toml").read_bytes() == starter.read_bytes()
+
+
+@pytest.mark.parametrize(
+    "path", sorted((ROOT / "docs/studies").glob("*.toml")), ids=lambda p: p.name
+)
+def test_study_is_valid(path: Path) -> None:
+    """Every file in docs/studies makes a run."""
+    pl.Run.from_toml(path)

@@ -1,0 +1,110 @@
+"""Nothing public is without documentation."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import generated
+import pytest
+import typer.main
+from blocks import DOCS, PAGES, ROOT
+
+import pellicle as pl
+from pellicle import hookspecs
+from pellicle.cli import app
+
+HOOKS = [name for name in vars(hookspecs) if name.startswith("register_")]
+COMMANDS: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+COMPONENTS = [
+    registered for family in pl.registry().components.values() for registered in family.values()
+]
+
+
+def _page(name: str) -> str:
+    return generated.fill_in((DOCS / name).read_text(encoding="utf-8"))
+
+
+def _section(page: str, heading: str) -> str:
+    """Return the text under a heading, up to the next one of its level or above."""
+    found = re.search(rf"^(##+) {re.escape(heading)}$", page, re.MULTILINE)
+    assert found, f"no section {heading!r}"
+    text = page[found.end() :]
+    return re.split(rf"^#{{1,{len(found[1])}}} ", text, maxsplit=1, flags=re.MULTILINE)[0]
+
+
+@pytest.mark.parametrize("hook", HOOKS)
+def test_hook_is_documented(hook: str) -> None:
+    """docs/hooks.md has a section with signature, meaning and example of every hook."""
+    section = _section(_page("hooks.md"), hook)
+    spec = getattr(hookspecs, hook)
+    assert f"`{hook}(register: {spec.__annotations__['register']}) -> None`" in section
+    assert "Call `register` with" in section
+    assert f"def {hook}(register)" in section
+
+
+def test_hooks_page_has_no_other_hook() -> None:
+    """docs/hooks.md names no hook that does not exist."""
+    assert set(re.findall(r"register_\w+", _page("hooks.md"))) == set(HOOKS)
+
+
+@pytest.mark.parametrize("registered", COMPONENTS, ids=lambda registered: registered.type)
+def test_component_is_documented(registered: Any) -> None:
+    """Every component has a summary that is a sentence, an entry, and a row for each field."""
+    assert registered.summary.endswith(".")
+    section = _section(_page("components.md"), f"`{registered.type}`")
+    assert registered.summary in section
+    for name in set(registered.component.model_fields) - {"type"}:
+        assert f"| `{name}` |" in section
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_command_is_documented(command: str) -> None:
+    """Every command has a section in docs/commands.md with an example and all its options."""
+    section = _section(_page("commands.md"), f"`pellicle {command}`")
+    if command != "validate":
+        assert f"$ pellicle {command}" in section or f" pellicle {command}\n" in section
+    for parameter in COMMANDS[command].params:
+        for option in parameter.opts if parameter.param_type_name == "option" else ():
+            if option != "--help":
+                assert f"`{option}" in section, f"{option} of {command}"
+
+
+@pytest.mark.parametrize("name", pl.__all__)
+def test_public_name_is_documented(name: str) -> None:
+    """Every name of ``pellicle.__all__`` is in docs/reference.md, and has a docstring."""
+    assert re.search(rf":: pellicle\.{name}$", _page("reference.md"), re.MULTILINE)
+    if name != "__version__":
+        assert getattr(pl, name).__doc__
+
+
+@pytest.mark.parametrize("each", [*pl.Status, *pl.Stop], ids=str)
+def test_status_is_documented(each: pl.Status | pl.Stop) -> None:
+    """The theory page lists every way in which a step or a solver can end."""
+    assert f"| `{each.name}` |" in _page("theory.md")
+
+
+def test_every_page_is_reachable() -> None:
+    """The table of contents names every page."""
+    index = _page("index.md")
+    for page in DOCS.glob("*.md"):
+        assert page.stem == "index" or re.search(rf"^{page.stem}$", index, re.MULTILINE), page
+
+
+def _links() -> Iterator[tuple[Path, str]]:
+    for page in [*PAGES, ROOT / "CHANGELOG.md"]:
+        for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
+            if not target.startswith("http"):
+                yield page, target
+
+
+def test_links_lead_somewhere() -> None:
+    """Every relative link of a page is a file of the repository."""
+    assert not [(page.name, to) for page, to in _links() if not (page.parent / to).is_file()]
+
+
+def test_changelog_knows_the_version() -> None:
+    """The version of the package has a section in the changelog."""
+    assert f"## [{pl.__version__}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")

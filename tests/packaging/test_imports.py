@@ -1,0 +1,87 @@
+"""What an import costs: heavy packages are loaded by what needs them, not by the name alone."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+import pellicle
+
+HEAVY = {"numpy", "scipy", "pydantic", "pint", "xarray", "h5py", "h5netcdf", "pandas", "matplotlib"}
+ON_THE_COMMAND_LINE = """
+import sys
+sys.argv = ["pellicle", *{arguments}]
+try:
+    main()
+except SystemExit:
+    pass
+"""
+PELLICLE = "from pellicle.__main__ import main\n" + ON_THE_COMMAND_LINE
+BARE = (
+    """
+from pathlib import Path
+from typing import Annotated
+import rich.console, rich.table, typer
+main = typer.Typer()
+
+@main.command()
+def run(file: Path, n: Annotated[int, typer.Option(min=1)] = 1):
+    pass
+
+@main.command()
+def show():
+    pass
+"""
+    + ON_THE_COMMAND_LINE
+)
+"""A program of typer alone: what it loads is not ours to save."""
+
+
+def loaded(code: str) -> set[str]:
+    """Return the heavy packages that a fresh interpreter has loaded after ``code``."""
+    script = f"{code}\nimport json, sys\nprint()\nprint(json.dumps(sorted(sys.modules)))"
+    # Isolated from PYTHON* variables and the current folder.
+    done = subprocess.run(
+        [sys.executable, "-I", "-c", script], check=True, capture_output=True, encoding="utf-8"
+    )
+    return HEAVY & set(json.loads(done.stdout.splitlines()[-1]))
+
+
+def test_importing_pellicle_loads_nothing_heavy() -> None:
+    """The bare import pays for none of the names behind it."""
+    assert loaded("import pellicle") == set()
+
+
+def test_errors_load_nothing_heavy() -> None:
+    """A program may catch pellicle's errors without paying for its numbers."""
+    assert loaded("from pellicle import PellicleError, ConfigError, StorageError") == set()
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["show", "--help"]])
+def test_help_loads_nothing_heavy(arguments: list[str]) -> None:
+    """Help is printed without the heavy packages, but for those that typer itself loads."""
+    ours = loaded(PELLICLE.format(arguments=arguments))
+    assert ours <= loaded(BARE.format(arguments=arguments))
+
+
+def test_a_run_is_made_without_drawing() -> None:
+    """Matplotlib is loaded by who draws, and a configuration does not."""
+    heavy = loaded(
+        "import pellicle\npellicle.kernel('half_space', reduced_modulus=1.0)\npellicle.registry()"
+    )
+    assert "matplotlib" not in heavy
+    assert "numpy" in heavy
+
+
+@pytest.mark.parametrize("name", pellicle.__all__)
+def test_public_name_resolves(name: str) -> None:
+    """Each name that pellicle promises is there."""
+    assert getattr(pellicle, name) is not None
+    assert name in dir(pellicle)
+
+
+def test_unknown_name_is_an_attribute_error() -> None:
+    """A name that does not exist fails as in any module."""
+    with pytest.raises(AttributeError, match="module 'pellicle' has no attribute 'nonsense'"):
+        _ = pellicle.nonsense

@@ -1,0 +1,87 @@
+"""A stranger's package: built, installed and run as its author and its users would."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import pellicle as pl
+
+SOURCE = Path(__file__).with_name("third_party")
+Pellicle = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture(scope="module")
+def pellicle(tmp_path_factory: pytest.TempPathFactory) -> Pellicle:
+    """Return the command ``pellicle`` of an environment in which the package is installed."""
+    wheels, site = tmp_path_factory.mktemp("wheels"), tmp_path_factory.mktemp("site")
+    build = [sys.executable, "-m", "build", "--wheel", "--no-isolation", f"--outdir={wheels}"]
+    subprocess.run([*build, SOURCE], check=True, capture_output=True)
+    (wheel,) = wheels.iterdir()
+    install = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index"]
+    subprocess.run([*install, f"--target={site}", wheel], check=True, capture_output=True)
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("PELLICLE_")}
+
+    def run(*arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "pellicle", *arguments],
+            env=environment | {"PYTHONPATH": str(site), "PYTHONUTF8": "1"} | more,
+            cwd=tmp_path_factory.mktemp("empty"),
+            capture_output=True,
+            encoding="utf-8",
+            check=False,
+        )
+
+    return run
+
+
+def test_is_listed_with_its_origin(pellicle: Pellicle) -> None:
+    """The list of plugins holds the kernel, its distribution, its version and its first line."""
+    found = json.loads(pellicle("plugins", "--json").stdout)
+    assert {
+        "family": "kernel",
+        "type": "power_law",
+        "origin": "pellicle-power-law",
+        "version": "1.2.3",
+        "description": "Stiffness k ∝ qⁿ: a Winkler foundation (n = 0), a graded solid, "
+        "the half-space (n = 1).",
+    } in found["components"]
+    assert found["broken"] == []
+
+
+def test_is_in_the_schema(pellicle: Pellicle) -> None:
+    """An editor completes the kernel's type and fields."""
+    kernels = json.loads(pellicle("schema").stdout)["properties"]["kernel"]["oneOf"]
+    (mine,) = (k for k in kernels if k["properties"]["type"]["const"] == "power_law")
+    assert {"reduced_modulus", "length", "exponent"} <= mine["properties"].keys()
+
+
+def test_runs_and_is_on_record(pellicle: Pellicle, tmp_path: Path) -> None:
+    """Its file of nine lines runs to convergence, and the result names the distribution."""
+    done = pellicle("run", str(SOURCE / "graded.toml"), "-o", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    result = pl.load(tmp_path / "graded.h5")
+    assert result.converged
+    assert "pellicle-power-law 1.2.3" in result.dataset.attrs["versions"].split(", ")
+    assert result.configuration["kernel"]["type"] == "power_law"
+
+
+def test_bad_values_are_refused_like_our_own(pellicle: Pellicle) -> None:
+    """A field of the stranger is checked, and the message names it, without a traceback."""
+    done = pellicle("run", str(SOURCE / "graded.toml"), "--set", "kernel.exponent=3")
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: kernel.exponent: 3 is not allowed")
+    assert "Traceback" not in done.stderr
+
+
+def test_can_be_switched_off(pellicle: Pellicle) -> None:
+    """With strangers off, its file says what is switched off and by what."""
+    file = str(SOURCE / "graded.toml")
+    done = pellicle("run", file, PELLICLE_DISABLE_PLUGINS="1")
+    assert done.returncode == 2
+    assert "pellicle-power-law 1.2.3" in done.stderr
+    assert "switched off by PELLICLE_DISABLE_PLUGINS" in done.stderr

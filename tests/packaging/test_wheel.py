@@ -1,0 +1,102 @@
+"""What is built from the checkout: nothing is left out, and nothing is put in beside it."""
+
+import subprocess
+import sys
+import tarfile
+import tomllib
+from pathlib import Path
+from zipfile import ZipFile
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ("framework/pellicle", "plugins/pellicle_plugins")
+DATA = {"pellicle/py.typed", "pellicle/starter.toml", "pellicle_plugins/py.typed"}
+
+pytestmark = pytest.mark.skipif(
+    not (ROOT / "pyproject.toml").is_file(), reason="the tests do not run from a checkout"
+)
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with the sdist, and the wheel that was built from it."""
+    folder = tmp_path_factory.mktemp("dist")
+    command = [sys.executable, "-m", "build", "--no-isolation", f"--outdir={folder}", ROOT]
+    subprocess.run(command, check=True, capture_output=True)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(built: Path) -> set[str]:
+    """Return the names of the files in the wheel."""
+    (path,) = built.glob("*.whl")
+    with ZipFile(path) as archive:
+        return set(archive.namelist())
+
+
+@pytest.fixture(scope="module")
+def sdist(built: Path) -> set[str]:
+    """Return the names of the files in the sdist, without its one folder."""
+    (path,) = built.glob("*.tar.gz")
+    with tarfile.open(path) as archive:
+        return {name.partition("/")[2] for name in archive.getnames()}
+
+
+def modules() -> set[str]:
+    """Return every module of the checkout, as a wheel names it."""
+    return {
+        path.relative_to((ROOT / package).parent).as_posix()
+        for package in PACKAGES
+        for path in (ROOT / package).rglob("*.py")
+    }
+
+
+def test_wheel_holds_every_module(wheel: set[str]) -> None:
+    """Modules are not dropped by what git or the build ignores."""
+    assert modules() - wheel == set()
+
+
+def test_wheel_holds_its_data(wheel: set[str]) -> None:
+    """The starter file and the markers of typed packages are installed."""
+    assert wheel >= DATA
+
+
+def test_wheel_installs_two_packages_and_nothing_else(wheel: set[str]) -> None:
+    """Tests and docs do not land in a user's site-packages."""
+    tops = {name.partition("/")[0] for name in wheel}
+    assert {top for top in tops if not top.endswith(".dist-info")} == {
+        "pellicle",
+        "pellicle_plugins",
+    }
+
+
+def test_entry_points_lead_to_modules(wheel: set[str]) -> None:
+    """Each entry point, and the command, names a module in the wheel."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    targets = [*project["entry-points"]["pellicle"].values(), *project["scripts"].values()]
+    files = {target: target.partition(":")[0].replace(".", "/") + ".py" for target in targets}
+    assert {target: file for target, file in files.items() if file not in wheel} == {}
+
+
+def test_every_component_has_an_entry_point() -> None:
+    """A component's module with a hook is declared, so that it is not forgotten."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    with_hook = {
+        name.removesuffix(".py").replace("/", ".")
+        for name in modules()
+        if name.startswith("pellicle_plugins/")
+        and "@hookimpl" in (ROOT / "plugins" / name).read_text(encoding="utf-8")
+    }
+    assert with_hook == set(project["entry-points"]["pellicle"].values())
+
+
+def test_sdist_can_be_tested(sdist: set[str]) -> None:
+    """A packager gets the sources, the tests with their data, and the licence."""
+    assert {f"framework/{name}" for name in modules() if name.startswith("pellicle/")} <= sdist
+    tests = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "tests").rglob("*.*")
+        if path.suffix in {".py", ".csv", ".txt", ".toml", ".md"}
+    }
+    assert tests | {"LICENSE", "README.md", "pyproject.toml"} <= sdist
