@@ -121,11 +121,10 @@ PARTS = {
 
 def default(info: FieldInfo, quote: str = "") -> str:
     """Return the default of a field as a TOML file would say it."""
-    if info.default_factory is not None:
-        return f"{quote}{info.get_default(call_default_factory=True).type}{quote}"  # type: ignore[union-attr]
-    value = info.default
-    # A modulus of 0, which no table may hold, stands for one that is not given.
-    if value is None or (value in ((), "", 0.0) and not isinstance(value, int)):
+    value = info.get_default(call_default_factory=True)
+    if hasattr(value, "type"):
+        return f"{quote}{value.type}{quote}"
+    if value is None or value in ((), ""):
         return "none" if quote else repr(value)
     return f"{quote}{list(value) if quote and isinstance(value, tuple) else value!r}{quote}"
 

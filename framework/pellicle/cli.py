@@ -74,23 +74,17 @@ def run(
     ] = False,
 ) -> None:
     """Solve a run and leave its results. Exit code 0 only if every step converged."""
-    import warnings
-
     from .components import Place
     from .config import Run
-    from .errors import ConvergenceWarning
     from .orchestrator import execute
 
     made = Run.from_toml(file, set_ or ())
     place = Place(directory or Path(file.stem), file.stem, made.to_json(), overwrite)
-    with warnings.catch_warnings():
-        # The table below says it, and the exit code.
-        warnings.simplefilter("ignore", ConvergenceWarning)
-        try:
-            result, files = execute(made, place, progress=not quiet, threads=threads)
-        except KeyboardInterrupt:
-            typer.echo(f"interrupted; finished steps are in {place.directory}", err=True)
-            raise typer.Exit(INTERRUPTED) from None
+    try:
+        result, files = execute(made, place, progress=not quiet, threads=threads)
+    except KeyboardInterrupt:
+        typer.echo(f"interrupted; what steps were finished are in {place.directory}", err=True)
+        raise typer.Exit(INTERRUPTED) from None
     if not quiet:
         _print_steps(result)
         for path in files:
@@ -187,10 +181,11 @@ def show(
     for name in ("title", "date", "versions"):
         typer.echo(f"{name + ':':10}{result.dataset.attrs.get(name, '')}")
     wanted, done = _steps_wanted(result), result.dataset.sizes["step"]
-    if done < wanted:
-        typer.echo(f"interrupted: {done} of {wanted} steps")
     _print_steps(result)
     _exit_by_convergence(result)
+    if done < wanted:
+        typer.echo(f"interrupted: {done} of {wanted} steps are there; run it again", err=True)
+        raise typer.Exit(NOT_CONVERGED)
 
 
 @app.command()
@@ -254,9 +249,8 @@ def _print_steps(result: Result) -> None:
 
 
 def _exit_by_convergence(result: Result) -> None:
-    for index, step in result.dataset[["status", "converged"]].groupby("step"):
-        if not step["converged"].item():
-            typer.echo(f"step {index + 1} did not converge: {step['status'].item()}", err=True)
+    for index, message in result.failures():
+        typer.echo(f"step {index + 1} did not converge: {message}", err=True)
     if not result.converged:
         raise typer.Exit(NOT_CONVERGED)
 

@@ -162,6 +162,7 @@ class Place:
     """Where the outputs of a run go."""
 
     directory: Path
+    """Folder; made when something is written."""
     name: str
     """Stem of the file names."""
     configuration: str
@@ -219,6 +220,7 @@ class Case:
     expected: float
     """Its true value, SI."""
     unit: str
+    """Of both, for the table."""
     tolerance: float
     """Relative error that is allowed."""
     source: str

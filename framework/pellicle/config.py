@@ -72,7 +72,9 @@ class _Steps:
 
     quantity: Quantity
 
-    def __call__(self, given: object) -> tuple[float, ...]:
+    def __call__(self, given: object) -> tuple[float, ...] | None:
+        if given is None:
+            return None
         if isinstance(given, Mapping):
             return self._ramp(given)
         # Anything with a length but text: lists, tuples, arrays.
@@ -93,7 +95,9 @@ class _Steps:
                 "num",
             )
         start, stop = self._all({end: given[end] for end in ("start", "stop")})
-        return (*(start + (stop - start) * i / (num - 1) for i in range(num - 1)), stop)
+        steps = ((start * (num - 1 - i) + stop * i) / (num - 1) for i in range(num))
+        # Fifteen digits are what a user can have meant: 3e-05, not 3.0000000000000004e-05.
+        return tuple(float(f"{step:.15g}") for step in steps)
 
     def _all(self, given: Mapping[str, object]) -> tuple[float, ...]:
         """Return every value in SI, or raise with all that are not allowed."""
@@ -204,6 +208,18 @@ class Run(Model):
                 'or depth, or set grid.boundary = "periodic"',
                 "loading.mean_pressure",
             )
+        return self
+
+    @model_validator(mode="after")
+    def _each_correction_once(self) -> Self:
+        types = [getattr(correction, "type", "") for correction in self.corrections]
+        for index, type_ in enumerate(types):
+            if type_ in types[:index]:
+                raise ConfigError(
+                    f"{type_!r} is there already, and both would be contact_area_{type_}; leave "
+                    "one out",
+                    f"corrections.{index}.type",
+                )
         return self
 
     @classmethod

@@ -71,6 +71,8 @@ def run(
     if directory is not None or made.outputs:
         place = Place(Path(directory or "."), name, made.to_json(), overwrite)
     result, _ = execute(made, place, progress=progress, threads=threads)
+    for index, message in result.failures():
+        warnings.warn(f"step {index + 1}: {message}", ConvergenceWarning, stacklevel=2)
     return result
 
 
@@ -207,8 +209,6 @@ def _solve_steps(
         pressure = solution.pressure
         found = measure(problem, pressure)
         status, message = _judge(run, found, solution.stop, problem, index)
-        if status is not Status.CONVERGED:
-            warnings.warn(f"step {index + 1}: {message}", ConvergenceWarning, stacklevel=2)
         areas = {
             f"contact_area_{correction.type}": correction.area(  # type: ignore[attr-defined]
                 found.contact, run.grid.spacing

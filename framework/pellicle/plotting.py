@@ -23,8 +23,8 @@ def axis_unit(values: Array, unit: str) -> tuple[float, str]:
     finite = np.abs(np.asarray(values)[np.isfinite(values)])
     highest = float(finite.max(initial=0.0))
     if unit == "m2":
-        # The prefix of a square counts twice: 1 mm² is 1e-6 m².
-        exponent = 3 * int(np.floor(np.log10(np.sqrt(highest)) / 3)) if highest else 0
+        # The prefix of a square counts twice: 1 mm² is 1e-6 m²; down to 0.01 mm² reads well.
+        exponent = 3 * int(np.floor(np.log10(10 * np.sqrt(highest)) / 3)) if highest else 0
         exponent = min(max(exponent, -15), 0)
         return 10.0 ** (-2 * exponent), f"{_PREFIXES[exponent]}m²"
     exponent = 3 * int(np.floor(np.log10(highest) / 3)) if highest else 0

@@ -130,7 +130,7 @@ class Registry:
         if not isinstance(given, Mapping) or "type" not in given:
             known = ", ".join(sorted(self.components[base.family]))
             what = "has no type" if isinstance(given, Mapping) else f"{given!r} is not a table"
-            raise ConfigError(f"{what}; give a {base.family} with type = one of: {known}")
+            raise ConfigError(f"{what}; give a table with type = one of: {known}")
         found = self.find(base.family, given["type"])
         return cast("type[AnyComponent]", found)(**given)
 

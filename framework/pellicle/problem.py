@@ -19,10 +19,13 @@ class Problem:
     """Find p ≥ 0 with gap = u − δ − f ≥ 0 and p·gap = 0, for a given depth or force."""
 
     grid: Grid
+    """The cells that pressure, displacement and profile live on."""
     operator: Operator
+    """From pressure [Pa] to displacement [m]; counts its applications."""
     profile: Array
     """Indenter profile f ≤ 0 [m] of the grid's shape; −inf where there is no indenter."""
     prescribed: Literal["depth", "force"]
+    """A mean pressure is the force that it makes on the domain."""
     value: float
     """Depth δ [m] or force [N]."""
 

@@ -61,7 +61,9 @@ class Solution:
     pressure: NDArray[np.float64]
     """Contact pressure ≥ 0 [Pa], of the grid's shape."""
     iterations: int
+    """Steps of the solver's outermost loop."""
     stop: Stop = Stop.DONE
+    """Why it ended."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +102,11 @@ class Result:
     def converged(self) -> bool:
         """Whether every step converged."""
         return bool(self.dataset["converged"].all())
+
+    def failures(self) -> list[tuple[int, str]]:
+        """Return the index of each step that did not converge, with its status."""
+        flags, messages = self.dataset["converged"].values, self.dataset["status"].values
+        return [(i, str(messages[i])) for i, converged in enumerate(flags) if not converged]
 
     def save(self, path: str | Path) -> None:
         """Write the result to an HDF5 (NetCDF-4) file.

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from decimal import Decimal
 from functools import cache
 from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any
@@ -98,12 +99,14 @@ class Quantity:
             return float(number)
         if not unit:
             raise ValueError(f"{shown(value)} is text without a unit; give {self._wanted()}")
-        return self._convert(float(number), unit, value)
+        return self._convert(number, unit, value)
 
-    def _convert(self, number: float, unit: str, value: str) -> float:
+    def _convert(self, number: str, unit: str, value: str) -> float:
         registry = _registry()
         try:
-            return float(registry.Quantity(number, unit).to(self.unit).magnitude)
+            factor = float(registry.Quantity(1.0, unit).to(self.unit).magnitude)
+            # In decimal "10 um" is 1e-05; in binary it would be 9.999999999999999e-06.
+            return float(Decimal(number) * Decimal(repr(factor)))
         except Exception as error:
             # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
             kind = type(error).__name__

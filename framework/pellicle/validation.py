@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from .components import Case
 from .config import Run
-from .errors import ConvergenceWarning
-from .orchestrator import run
+from .orchestrator import execute
 from .plugins import registry
 from .result import Result
 
@@ -49,7 +47,8 @@ def validate(cases: Iterable[Case] | None = None) -> Iterator[Verdict]:
         key = json.dumps(case.configuration, sort_keys=True)
         if key not in solved:
             # Only the latest run is kept: cases that share one are registered in a row.
-            solved = {key: _run_quietly(case)}
+            result, _ = execute(Run(**case.configuration), None)
+            solved = {key: result}
         result = solved[key]
         yield Verdict(case, case.computed(result), result.converged)
 
@@ -57,9 +56,3 @@ def validate(cases: Iterable[Case] | None = None) -> Iterator[Verdict]:
 def _registered() -> Iterator[Case]:
     for suite in registry().suites:
         yield from suite()
-
-
-def _run_quietly(case: Case) -> Result:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)
-        return run(Run(**case.configuration), progress=False)

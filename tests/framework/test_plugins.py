@@ -243,5 +243,5 @@ def test_an_unknown_type_points_to_what_is_broken(plugin: Plugin) -> None:
 )
 def test_a_component_without_a_type_is_told_the_types(given: object, problem: str) -> None:
     """What is no table, or has no type, is answered with the known types."""
-    with pytest.raises(ConfigError, match=f"{problem}; give a kernel .* one of: half_space"):
+    with pytest.raises(ConfigError, match=f"{problem}; give a table .* one of: half_space"):
         load(BUILT_INS).make(Kernel, given)

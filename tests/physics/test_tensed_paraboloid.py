@@ -60,7 +60,7 @@ def test_one_pressed_cell_gives_the_reference_influence_coefficients(s_over_d: f
 
 
 def test_the_published_figure_3() -> None:
-    """Yuan & Wang 2019, Figure 3: the counted area is 4 % off at N = 32, < 0.5 % beyond N = 256."""
+    """Yuan & Wang 2020, Figure 3: the counted area is 4 % off at N = 32, < 0.5 % beyond N = 256."""
     from pellicle_plugins.analytic.axisymmetric import indent
     from pellicle_plugins.analytic.axisymmetric_indenters import Paraboloid
 

@@ -138,7 +138,7 @@ def _load_text(path: Path, dataset: str | None) -> Any:
     lines = path.read_text(encoding="utf-8-sig").splitlines()
     if not any(line.partition("#")[0].strip() for line in lines):
         raise ValueError("it holds no numbers")
-    delimiter = "," if any("," in line for line in lines) else None
+    delimiter = "," if any("," in line.partition("#")[0] for line in lines) else None
     return np.loadtxt(lines, delimiter=delimiter, ndmin=2)
 
 

@@ -26,7 +26,7 @@ class SelfAffine(Indenter):
 
     The heights are a Fourier series fixed by the seed and the spectrum alone, so a finer grid
     samples the same surface: C(q) = C₀ q^{−2(H+1)} for q₀ ≤ q ≤ q_s and 0 elsewhere (Yuan & Wang
-    2019, eq. 12), q₀ = 2π/roll_off_wavelength, q_s = 2π/cutoff_wavelength.
+    2020, eq. 12), q₀ = 2π/roll_off_wavelength, q_s = 2π/cutoff_wavelength.
     """
 
     footprint: ClassVar[Literal["unbounded", "domain"]] = "domain"

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Self, cast
 
-from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
+from pydantic import (
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
 
 from pellicle.components import Kernel
 from pellicle.units import Modulus, PoissonsRatio
@@ -13,9 +19,23 @@ from pellicle.units import Modulus, PoissonsRatio
 class ElasticSolid(Kernel):
     """A kernel whose solid is given by E*, or by E and ν; E* = E/(1 − ν²)."""
 
+    model_config = ConfigDict(
+        json_schema_extra={
+            "anyOf": [
+                {"required": ["reduced_modulus"]},
+                {"required": ["youngs_modulus", "poissons_ratio"]},
+            ]
+        }
+    )
+
+    # Never None once made: given, or completed from E and ν.
     reduced_modulus: Annotated[
-        Modulus, Field(description="reduced modulus E* [Pa]; or youngs_modulus and poissons_ratio")
-    ] = 0.0
+        Modulus,
+        Field(
+            default_factory=lambda: cast(float, None),
+            description="reduced modulus E* [Pa]; or youngs_modulus and poissons_ratio",
+        ),
+    ]
     youngs_modulus: Annotated[
         Modulus | None, Field(description="Young's modulus E [Pa], with poissons_ratio")
     ] = None
@@ -25,11 +45,13 @@ class ElasticSolid(Kernel):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        by_e_nu = {"youngs_modulus", "poissons_ratio"} & self.model_fields_set
-        if "reduced_modulus" in self.model_fields_set:
+        by_e_nu = [
+            name for name in ("youngs_modulus", "poissons_ratio") if getattr(self, name) is not None
+        ]
+        if self.reduced_modulus is not None:
             if by_e_nu:
                 raise ValueError(
-                    f"reduced_modulus and {' and '.join(sorted(by_e_nu))} are both given; give "
+                    f"reduced_modulus and {' and '.join(by_e_nu)} are both given; give "
                     "reduced_modulus alone, or youngs_modulus and poissons_ratio"
                 )
         elif self.youngs_modulus is None or self.poissons_ratio is None:
