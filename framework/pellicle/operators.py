@@ -100,15 +100,18 @@ class FreeOperator(Operator):
         self._padded = tuple(scipy.fft.next_fast_len(2 * n - 1, real=True) for n in grid.shape)
         # Even in both directions, so the transform of the wrapped coefficients is real.
         self._symbol = scipy.fft.rfft2(_wrap(cells, self._padded)).real.copy()
+        # Fresh memory of this size costs more than the transforms themselves.
+        self._transform = np.empty(self._symbol.shape, dtype=np.complex128)
 
     def _apply(self, pressure: Array) -> Array:
-        (nx, ny), (px, py) = self.grid.shape, self._padded
+        (nx, ny), py = self.grid.shape, self._padded[1]
         # Row by row, so that the rows of zeros are never transformed along y.
-        rows = scipy.fft.rfft(pressure, n=py, axis=1)
-        transform = scipy.fft.fft(rows, n=px, axis=0)
+        self._transform[:nx] = scipy.fft.rfft(pressure, n=py, axis=1)
+        self._transform[nx:] = 0
+        transform = scipy.fft.fft(self._transform, axis=0, overwrite_x=True)
         transform *= self._symbol
         columns = scipy.fft.ifft(transform, axis=0, overwrite_x=True)[:nx]
-        return _real(scipy.fft.irfft(columns, n=py, axis=1)[:, :ny])
+        return _real(scipy.fft.irfft(columns, n=py, axis=1)[:, :ny].copy())
 
 
 def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
