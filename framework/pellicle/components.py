@@ -119,6 +119,10 @@ class IterativeSolver(Solver):
     def pressure(self, state: Any) -> Array:
         """Return the pressure [Pa] of a state."""
 
+    @abstractmethod
+    def patience(self, problem: Problem) -> int:
+        """Return how many iterations without a new least residual mean that there is none."""
+
     def solve(self, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
         """Iterate until the tolerance is met, or it is plain that it will not be."""
         state = self.begin(problem, start)
@@ -132,8 +136,7 @@ class IterativeSolver(Solver):
                 stop = Stop.NOT_FINITE
             elif residual <= self.tolerance:
                 stop = Stop.DONE
-            elif iteration - best_at >= sum(problem.grid.shape) + 200:
-                # Conjugate gradients need O(N) iterations and may well stagnate for some of them.
+            elif iteration - best_at >= self.patience(problem):
                 stop = Stop.STALLED
             elif iteration >= self.max_iterations:
                 stop = Stop.ITERATION_LIMIT

@@ -73,6 +73,11 @@ class Grid(Model):
         """Area of the domain [m²]."""
         return self.size[0] * self.size[1]
 
+    def coarsened(self) -> Grid:
+        """Return the grid of the same domain with half as many cells each way, rounded up."""
+        nx, ny = self.points
+        return self.model_copy(update={"points": (-(-nx // 2), -(-ny // 2))})
+
     def coordinates(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return x of shape (nx, 1) and y of shape (1, ny) of the cell centres [m]."""
         import numpy as np

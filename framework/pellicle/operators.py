@@ -28,7 +28,7 @@ class HasCompliance(Protocol):
 
 
 @runtime_checkable
-class HasClosedForm(Protocol):
+class HasClosedForm(HasCompliance, Protocol):
     """What an operator needs of a kernel on a free boundary."""
 
     def greens_function(self, r: Array) -> Array:
@@ -49,7 +49,8 @@ class Operator(ABC):
     fixes_mean: bool
     """Whether a uniform pressure has a displacement; if not, the mean displacement is zero."""
 
-    def __init__(self, grid: Grid) -> None:
+    def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
+        self.kernel = kernel
         self.grid = grid
         self.applications = 0
 
@@ -68,7 +69,7 @@ class PeriodicOperator(Operator):
     fixes_mean = False
 
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
-        super().__init__(grid)
+        super().__init__(kernel, grid)
         qx, qy = grid.wavenumbers()
         q = np.hypot(qx, qy)
         q[0, 0] = np.inf
@@ -91,7 +92,7 @@ class FreeOperator(Operator):
     fixes_mean = True
 
     def __init__(self, kernel: HasClosedForm, grid: Grid) -> None:
-        super().__init__(grid)
+        super().__init__(kernel, grid)
         cells = _checked(
             cell_coefficients(
                 kernel.greens_function, kernel.radial_primitive, grid.shape, grid.spacing

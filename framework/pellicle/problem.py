@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from .grid import Grid
-from .operators import Array, Operator
+from .operators import Array, Operator, make_operator
+from .transfer import restrict
 
 # An indenter that is flat over the contact has no height range there to measure by.
 _FLAT = 1e-3
@@ -34,6 +35,23 @@ class Problem:
         """Whether anything has to be solved: the undeformed surface is not already the answer."""
         lowest = self.profile.max()
         return bool(self.value > (0.0 if self.prescribed == "force" else -lowest))
+
+
+    def coarsened(self) -> Problem:
+        """Return the same problem with half as many cells each way.
+
+        Raises
+        ------
+        ConfigError
+            The kernel cannot work on the coarser grid.
+        """
+        grid = self.grid.coarsened()
+        return replace(
+            self,
+            grid=grid,
+            operator=make_operator(self.operator.kernel, grid),
+            profile=restrict(self.profile, grid.shape),
+        )
 
 
 @dataclass(frozen=True)

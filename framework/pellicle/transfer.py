@@ -1,0 +1,39 @@
+"""Fields between a grid and a coarser one of the same domain, whatever their numbers of cells."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def restrict(profile: Array, shape: tuple[int, int]) -> Array:
+    """Return a profile [m] on a coarser grid: the mean of the cells that fall into each.
+
+    A cell half of which has no indenter (−inf) has none.
+    """
+    finite = np.isfinite(profile)
+    total = _gather(np.where(finite, profile, 0.0), shape)
+    share = _gather(finite.astype(np.float64), shape)
+    cells = _gather(np.ones_like(profile), shape)
+    there = 2 * share > cells
+    return np.where(there, total / np.maximum(share, 1.0), -np.inf)
+
+
+def prolong(pressure: Array, shape: tuple[int, int]) -> Array:
+    """Return a pressure [Pa] on a finer grid: that of the cell in which each centre lies."""
+    rows, columns = (_parents(fine, coarse) for fine, coarse in zip(shape, pressure.shape))
+    return pressure[rows[:, None], columns]
+
+
+def _gather(field: Array, shape: tuple[int, int]) -> Array:
+    for axis, coarse in enumerate(shape):
+        parents = _parents(field.shape[axis], coarse)
+        field = np.add.reduceat(field, np.flatnonzero(np.diff(parents, prepend=-1)), axis=axis)
+    return field
+
+
+def _parents(fine: int, coarse: int) -> NDArray[np.int64]:
+    """Return the coarse cell in which each fine cell's centre lies."""
+    return ((2 * np.arange(fine) + 1) * coarse) // (2 * fine)
