@@ -36,7 +36,6 @@ class Problem:
         lowest = self.profile.max()
         return bool(self.value > (0.0 if self.prescribed == "force" else -lowest))
 
-
     def coarsened(self) -> Problem:
         """Return the same problem with half as many cells each way.
 

@@ -23,7 +23,9 @@ def restrict(profile: Array, shape: tuple[int, int]) -> Array:
 
 def prolong(pressure: Array, shape: tuple[int, int]) -> Array:
     """Return a pressure [Pa] on a finer grid: that of the cell in which each centre lies."""
-    rows, columns = (_parents(fine, coarse) for fine, coarse in zip(shape, pressure.shape))
+    rows, columns = (
+        _parents(fine, coarse) for fine, coarse in zip(shape, pressure.shape, strict=True)
+    )
     return pressure[rows[:, None], columns]
 
 

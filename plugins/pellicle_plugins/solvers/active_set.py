@@ -15,22 +15,20 @@ from pellicle.operators import Array
 from pellicle.problem import Problem, height_scale
 from pellicle.transfer import prolong
 
+from .guess import first_guess, with_force
+from .inner_solve import inner_solve
 from .preconditioner import Preconditioner
 
-# A coarse grid is solved to this share of the height range only: its own error is larger.
-_COARSE_TOLERANCE: Final = 1e-3
-# Grids with fewer cells along their shorter edge are not coarsened.
+# Coarse grids are solved to this share of the height range: with tension a smaller error than that
+# of the grid itself still moves the edge of the contact by several cells.
+_COARSE_TOLERANCE: Final = 1e-5
+# Grids with no more cells than this along their shorter edge are not coarsened.
 _COARSEST: Final = 48
-# Each inner solve shrinks the error by this factor before the contact is looked at again.
-_REDUCTION: Final = 0.1
-# The share of the tolerance to which inner solves go, and beyond which contact is added.
-_MARGIN: Final = 0.5
-import os
-TRUST=float(os.environ.get('TRUST','1'))
-_REDUCTION=float(os.environ.get('RED','0.1'))
+# An initial error above this share of the height range is worth a solve on a coarser grid.
+_CLOSE: Final = 0.3
 
 
-@dataclass
+@dataclass(frozen=True)
 class _State:
     pressure: Array
     """≥ 0 [Pa]."""
@@ -38,7 +36,7 @@ class _State:
     gap: Array
     """u − δ − f [m]."""
     contact: NDArray[np.bool_]
-    """Where the next inner solve puts pressure: pressure now, or penetration."""
+    """Where the next inner solve puts pressure."""
     scale: float
     """Height range of the indenter in contact [m]."""
     error: float
@@ -49,24 +47,39 @@ class _State:
 class ActiveSet(IterativeSolver):
     """Solver whose operator applications grow neither with the grid nor with the tension.
 
-    The contact is guessed on a coarser grid, an inner conjugate gradient solve finds the pressure
-    that closes the gap on it, cells that would need suction leave and cells that penetrate join.
+    The contact is guessed on a coarser grid; an inner solve finds the pressure, of either sign,
+    that closes the gap on it; cells that would need suction leave, cells that penetrate join
+    (Hintermüller, Ito & Kunisch 2002), and so on until nothing changes. Departures: (1) inner
+    solves are as exact as the contact is known; (2) penetration counts only where it exceeds the
+    error of the inner solve, so that loose solves do not scatter the contact.
     """
 
     type: Literal["active_set"] = "active_set"
 
     def begin(self, problem: Problem, start: Array | None) -> _State:
         """Return the state of the last step's pressure, or of the solution on a coarser grid."""
-        pressure = start if start is not None and start.any() else self._cold_start(problem)
-        if problem.prescribed == "force":
-            pressure = pressure * (problem.value / (pressure.sum() * problem.grid.cell_area))
-        return _measured(
+        preconditioner = Preconditioner(problem.operator)
+        if start is not None and start.any():
+            state = _started(problem, start, preconditioner)
+            if state.error <= _CLOSE * state.scale:
+                return state
+        return _started(problem, self._cold_start(problem), preconditioner)
+
+    def step(self, problem: Problem, state: _State) -> _State:
+        """Return the state after one inner solve and one look at the contact."""
+        goal = self.tolerance / 2 * state.scale
+        found = inner_solve(
             problem,
-            pressure,
-            problem.operator(pressure),
-            Preconditioner(problem.operator),
-            _MARGIN * self.tolerance,
+            state.preconditioner.on(state.contact),
+            state.pressure,
+            state.displacement,
+            state.error,
+            goal,
         )
+        gap = found.displacement - problem.profile
+        gap -= _depth(problem, gap, state.contact)
+        contact = np.where(state.contact, found.pressure > 0, gap < -max(found.error, goal))
+        return _measured(problem, found.pressure, found.displacement, contact, state.preconditioner)
 
     def residual(self, problem: Problem, state: _State) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""
@@ -77,138 +90,60 @@ class ActiveSet(IterativeSolver):
         return state.pressure
 
     def patience(self, problem: Problem) -> int:
-        """Return how many outer iterations may bring no progress."""
-        return 12
-
-    def step(self, problem: Problem, state: _State) -> _State:
-        """Return the state after one inner solve and one look at the contact."""
-        pressure, displacement, inner = _inner_solve(problem, state, _MARGIN * self.tolerance)
-        gap=_gap(problem, displacement, state.contact)
-        contact=np.where(state.contact, pressure>0, gap< -TRUST*inner)
-        if float(pressure.min()) < 0:
-            np.maximum(pressure, 0, out=pressure)
-            if problem.prescribed == "force":
-                pressure *= problem.value / (float(pressure.sum()) * problem.grid.cell_area)
-            displacement = problem.operator(pressure)
-        return _measured(
-            problem, pressure, displacement, state.preconditioner, _MARGIN * self.tolerance,contact
-        )
+        """Return how many outer iterations may bring no progress while the contact settles."""
+        return 20
 
     def _cold_start(self, problem: Problem) -> Array:
-        coarse = problem.coarsened() if min(problem.grid.shape) > _COARSEST else None
-        if coarse is None or not coarse.touches:
-            return _guess(problem)
-        solver = self.model_copy(
-            update={"tolerance": max(self.tolerance, _COARSE_TOLERANCE)}
-        )
-        solution = solver.solve(coarse, None, lambda iteration, excess: None)
-        return prolong(solution.pressure, problem.grid.shape) if solution.pressure.any() else _guess(problem)
+        if min(problem.grid.shape) > _COARSEST:
+            coarse = problem.coarsened()
+            if coarse.touches:
+                tolerance = max(self.tolerance, _COARSE_TOLERANCE)
+                solver = self.model_copy(update={"tolerance": tolerance})
+                pressure = solver.solve(coarse, None, lambda iteration, excess: None).pressure
+                return prolong(pressure, problem.grid.shape)
+        return first_guess(problem)
 
 
-def _guess(problem: Problem) -> Array:
-    if problem.prescribed == "force":
-        return np.isfinite(problem.profile).astype(np.float64)
-    overlap = np.maximum(problem.profile + problem.value, 0.0)
-    response = problem.operator(overlap)
-    return overlap * (float(np.vdot(overlap, overlap)) / float(np.vdot(overlap, response)))
+def _started(problem: Problem, start: Array, preconditioner: Preconditioner) -> _State:
+    return _measured(problem, with_force(problem, start), None, None, preconditioner)
 
 
 def _measured(
     problem: Problem,
     pressure: Array,
-    displacement: Array,
+    displacement: Array | None,
+    contact: NDArray[np.bool_] | None,
     preconditioner: Preconditioner,
-    margin: float,contact=None
 ) -> _State:
-    """Return the state of a pressure ≥ 0 whose displacement is known."""
+    """Return the state of a pressure without its negative part.
+
+    The displacement is applied afresh if it is not known or not that of the pressure any more;
+    the contact, if not known, is where pressure acts or the surface penetrates.
+    """
+    if displacement is None or float(pressure.min()) < 0:
+        pressure = with_force(problem, np.maximum(pressure, 0))
+        displacement = problem.operator(pressure)
     pressed = pressure > 0
     gap = displacement - problem.profile
-    depth = problem.value
-    if problem.prescribed == "force":
-        depth = float(gap[pressed].mean())
+    depth = _depth(problem, gap, pressed)
     gap -= depth
-    scale = height_scale(problem.profile, pressed, depth)
     inside = float(np.abs(gap[pressed]).max(initial=0.0))
-    if contact is None: contact = pressed | (gap < -margin * scale)
     return _State(
         pressure=pressure,
         displacement=displacement,
         gap=gap,
-        contact=contact,
-        scale=scale,
+        contact=pressed | (gap < 0) if contact is None else contact,
+        scale=height_scale(problem.profile, pressed, depth),
         error=max(inside, -float(gap.min(initial=0.0))),
         preconditioner=preconditioner,
     )
 
 
-def _inner_solve(problem: Problem, state: _State, margin: float) -> tuple[Array, Array, float]:
-    """Return pressure of either sign and displacement that nearly close the gap on the contact.
-
-    Preconditioned conjugate gradients; with a force prescribed, in the space of pressures that do
-    not change it. The search goes on for as long as the contact would stay as it is.
-    """
-    contact, apply = state.contact, problem.operator
-    pressure, displacement = state.pressure.copy(), state.displacement.copy()
-    precondition = _Projected(state.preconditioner, contact, problem.prescribed == "force")
-    floor = margin * state.scale
-    error = state.error
-    goal = max(_REDUCTION * state.error, floor)
-    residual = np.where(contact, -state.gap, 0.0)
-    direction = precondition(residual)
-    descent = float(np.vdot(residual, direction))
-    while descent > 0:
-        change = apply(direction)
-        curvature = float(np.vdot(direction, change))
-        if curvature <= 0:
-            break
-        length = descent / curvature
-        pressure += length * direction
-        change *= length
-        displacement += change
-        residual -= np.where(contact, change, 0.0)
-        error = precondition.error(residual)
-        if error <= goal:
-            if error <= floor or float(pressure.min()) < 0 or _penetrates(problem, contact, displacement, error):
-                break
-            goal = max(_REDUCTION * goal, floor)
-        ascent = precondition(residual)
-        descent, before = float(np.vdot(residual, ascent)), descent
-        direction *= descent / before
-        direction += ascent
-    return pressure, displacement, max(error,floor)
-
-
-def _gap(problem, displacement, contact):
-    gap = displacement - problem.profile
-    depth = problem.value if problem.prescribed == "depth" else float(gap[contact].mean())
-    return gap - depth
-
-def _penetrates(problem, contact, displacement, floor):
-    gap = _gap(problem, displacement, contact)
-    return bool(((gap < -floor) & ~contact).any())
-
-
-class _Projected:
-    """The preconditioner on a contact, within pressures of no net force if the force is given."""
-
-    def __init__(self, preconditioner, contact, keeps_force):
-        self._apply = preconditioner
-        self._contact = contact
-        preconditioner.restrict(contact)
-        self._lift = preconditioner(contact.astype(np.float64)) if keeps_force else None
-        self._cells = np.count_nonzero(contact)
-
-    def __call__(self, residual):
-        direction = self._apply(residual)
-        if self._lift is not None:
-            direction -= self._lift * (float(direction.sum()) / float(self._lift.sum()))
-        return direction
-
-    def error(self, residual):
-        if self._lift is None:
-            return float(np.abs(residual).max())
-        mean = float(residual.sum()) / self._cells
-        return float(np.abs(residual[self._contact] - mean).max())
+def _depth(problem: Problem, aloft: Array, contact: NDArray[np.bool_]) -> float:
+    """Return δ [m] from u − f: the given one, or with a given force that of no mean gap."""
+    if problem.prescribed == "depth":
+        return problem.value
+    return float(aloft[contact].mean())
 
 
 @hookimpl

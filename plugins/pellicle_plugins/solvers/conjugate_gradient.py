@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,9 @@ from pellicle import hookimpl
 from pellicle.components import IterativeSolver, Solver
 from pellicle.operators import Array
 from pellicle.problem import Problem, height_scale
+
+from .guess import first_guess, with_force
+from .products import dot
 
 # Contact is added only where penetration is at least this share of the error inside.
 _PROPORTION = 0.3
@@ -60,9 +63,8 @@ class ConjugateGradient(IterativeSolver):
 
     def begin(self, problem: Problem, start: Array | None) -> _State:
         """Return the state of a first guess: the last step's pressure, or one from the profile."""
-        pressure = _guess(problem) if start is None or not start.any() else start.copy()
-        if problem.prescribed == "force":
-            pressure *= problem.value / (pressure.sum() * problem.grid.cell_area)
+        pressure = first_guess(problem) if start is None or not start.any() else start.copy()
+        pressure = with_force(problem, pressure)
         state = _State(
             profile=np.maximum(problem.profile, _NO_INDENTER),
             pressure=pressure,
@@ -97,7 +99,7 @@ class ConjugateGradient(IterativeSolver):
     def step(self, problem: Problem, state: _State) -> _State:
         """Return the state after one projected step along the conjugate direction."""
         pressure, direction = state.pressure, state.direction
-        energy = _dot(state.inner_gap, state.inner_gap)
+        energy = dot(state.inner_gap, state.inner_gap)
         # Directions of cells that left the contact must go even where the search starts anew.
         direction *= state.contact
         direction *= energy / state.energy if state.energy else 0.0
@@ -127,30 +129,12 @@ class ConjugateGradient(IterativeSolver):
         return state
 
 
-def _dot(one: NDArray[Any], other: NDArray[Any]) -> float:
-    """Return the sum of products.
-
-    Not by BLAS, whose threads keep a core busy waiting for more and take it from the transforms.
-    """
-    return float(np.einsum("ij,ij->", one, other))
-
-
-def _guess(problem: Problem) -> Array:
-    """Return a pressure that is positive wherever there can be contact, of a sensible size."""
-    if problem.prescribed == "force":
-        return np.isfinite(problem.profile).astype(np.float64)
-    overlap = np.maximum(problem.profile + problem.value, 0.0)
-    response = problem.operator(overlap)
-    # The multiple of the overlap whose displacement comes nearest to it in energy.
-    return overlap * (_dot(overlap, overlap) / _dot(overlap, response))
-
-
 def _step_length(problem: Problem, state: _State, change: Array) -> float:
     """Return the step that minimises the energy along the direction, at constant load if given."""
-    slope = _dot(state.inner_gap, state.direction)
-    curvature = _dot(state.direction, change)
+    slope = dot(state.inner_gap, state.direction)
+    curvature = dot(state.direction, change)
     if problem.prescribed == "force":
-        response = _dot(change, state.contact)
+        response = dot(change, state.contact)
         cells = float(np.count_nonzero(state.contact))
         curvature -= float(state.direction.sum()) * response / cells
     if curvature > 0:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import scipy.fft
@@ -11,15 +11,16 @@ from numpy.typing import NDArray
 from pellicle.grid import Grid
 from pellicle.operators import Array, Operator
 
-from .extension import Extension, levels_within
+from .extension import Extension, Field
 
 # Without a margin, contact at the edge of a free domain couples across it.
 _FREE_MARGIN: Final = 1.25
-_FREE_MULTIPLE: Final = 32
+_MOST_LEVELS: Final = 6
+_FREE_MULTIPLE: Final = 2**_MOST_LEVELS
 
 
 class Preconditioner:
-    """Eᵀ K E in single precision, for one grid and any contact.
+    """K, and what else of Eᵀ K E does not depend on the contact.
 
     ⟨A_cc⁻¹ v, v⟩ is the least ⟨k(q) w, w⟩ of all extensions w of v to the plane. E makes a smooth
     one, which is nearly the least, and K multiplies by the stiffness k(q) = 1/G(q).
@@ -31,45 +32,62 @@ class Preconditioner:
         # The transform's shape, and that of the extension, whose pyramid needs even numbers.
         if grid.boundary == "periodic":
             self._plane = grid.shape
-            multiple = 2 ** levels_within(grid.shape)
-            self._padded = _round_up(grid.shape, multiple)
+            self._padded = _round_up(grid.shape, 2 ** _halvings(grid.shape))
         else:
             self._plane = self._padded = _free_shape(grid.shape)
         self._symbol = _stiffness(operator, self._plane)
+        self._orders = _orders(operator, _halvings(self._padded))
 
-    def restrict(self, contact: NDArray[np.bool_]) -> None:
-        """Work on ``contact``, bool of the grid's shape, from now on."""
-        known = np.zeros(self._plane, dtype=bool)
-        known[: self._shape[0], : self._shape[1]] = contact
-        self._extension = Extension(self._pad(known))
+    def on(self, contact: NDArray[np.bool_]) -> OnContact:
+        """Return Eᵀ K E on ``contact``, bool of the grid's shape."""
+        extension = Extension(self.pad(contact) > 0, self._orders)
+        return OnContact(self, contact, extension)
+
+    def pad(self, field: NDArray[Any]) -> Field:
+        """Return a field of the grid's shape on the extension's plane, zero or periodic there."""
+        (nx, ny), (px, py) = self._shape, self._padded
+        padded = np.zeros((px, py), dtype=np.float32)
+        padded[:nx, :ny] = field
+        if self._plane == self._shape:
+            padded[nx:, :ny] = field[: px - nx]
+            padded[:, ny:] = padded[:, : py - ny]
+        return padded
+
+    def unpad(self, field: Field) -> Array:
+        """Return the transpose of `pad` applied to a field."""
+        (nx, ny), (px, py) = self._shape, self._padded
+        if self._plane == self._shape:
+            field[: px - nx] += field[nx:]
+            field[:, : py - ny] += field[:, ny:]
+        return field[:nx, :ny].astype(np.float64)
+
+    def stiffen(self, field: Field) -> Field:
+        """Return K applied to a field on the extension's plane; what is beyond the period is 0."""
+        mx, my = self._plane
+        transform = scipy.fft.rfft2(field[:mx, :my])
+        transform *= self._symbol
+        force = scipy.fft.irfft2(transform, s=(mx, my), overwrite_x=True)
+        if self._padded == self._plane:
+            return np.asarray(force, dtype=np.float32)
+        padded = np.zeros(self._padded, dtype=np.float32)
+        padded[:mx, :my] = force
+        return padded
+
+
+class OnContact:
+    """Eᵀ K E on one contact, in single precision."""
+
+    def __init__(
+        self, whole: Preconditioner, contact: NDArray[np.bool_], extension: Extension
+    ) -> None:
+        self.contact = contact
+        self._whole = whole
+        self._extension = extension
 
     def __call__(self, residual: Array) -> Array:
         """Return the preconditioned residual; both are of the grid's shape, 0 off the contact."""
-        (nx, ny), (mx, my) = self._shape, self._plane
-        given = np.zeros(self._plane, dtype=np.float32)
-        given[:nx, :ny] = residual
-        plane = self._extension.spread(self._pad(given))[:mx, :my]
-        transform = scipy.fft.rfft2(plane)
-        transform *= self._symbol
-        force = np.zeros(self._padded, dtype=np.float32)
-        force[:mx, :my] = scipy.fft.irfft2(transform, s=(mx, my), overwrite_x=True)
-        return self._unpad(self._extension.gather(force))[:nx, :ny].astype(np.float64)
-
-    def _pad(self, field: NDArray[np.generic]) -> NDArray[np.generic]:
-        """Continue a periodic field to the padded shape."""
-        if self._padded == self._plane:
-            return field
-        widths = [(0, p - m) for p, m in zip(self._padded, self._plane, strict=True)]
-        return np.pad(field, widths, mode="wrap")
-
-    def _unpad(self, field: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return the transpose of `_pad` applied to a field."""
-        mx, my = self._plane
-        folded = field[:mx].copy()
-        folded[: self._padded[0] - mx] += field[mx:]
-        whole = folded[:, :my]
-        whole[:, : self._padded[1] - my] += folded[:, my:]
-        return whole
+        extended = self._extension.spread(self._whole.pad(residual))
+        return self._whole.unpad(self._extension.gather(self._whole.stiffen(extended)))
 
 
 def _free_shape(shape: tuple[int, int]) -> tuple[int, int]:
@@ -85,6 +103,21 @@ def _round_up(shape: tuple[int, int], multiple: int) -> tuple[int, int]:
     return nx, ny
 
 
+def _halvings(shape: tuple[int, int]) -> int:
+    """Return how many levels the extension has: halvings that leave two cells or more each way."""
+    return min(_MOST_LEVELS, max(0, min(shape).bit_length() - 2))
+
+
+def _orders(operator: Operator, levels: int) -> list[float]:
+    """Return the order α of the stiffness, k ~ q^α, at the cell size of each level from the finest.
+
+    Beyond 2, where an extension would have to be smoother than this one is, it counts as 2.
+    """
+    q = np.pi / max(operator.grid.spacing) * 0.5 ** np.arange(levels + 1, dtype=np.float64)
+    stiffness = 1 / operator.kernel.compliance(q)
+    return [float(order) for order in np.clip(-np.diff(np.log2(stiffness)), 0, 2)]
+
+
 def _stiffness(operator: Operator, shape: tuple[int, int]) -> NDArray[np.float32]:
     """Return k(q) over its greatest value on the wavenumbers of a periodic plane."""
     dx, dy = operator.grid.spacing
@@ -94,4 +127,4 @@ def _stiffness(operator: Operator, shape: tuple[int, int]) -> NDArray[np.float32
     q[0, 0] = 2 * np.pi / max(plane.size)
     stiffness = 1 / operator.kernel.compliance(q)
     stiffness[0, 0] /= 2
-    return (stiffness / stiffness.max()).astype(np.float32)
+    return np.asarray(stiffness / stiffness.max(), dtype=np.float32)
