@@ -1,12 +1,18 @@
-"""What a run costs, in units of the bare Fourier transforms that it contains.
+"""What solvers cost, in units of the bare Fourier transforms that they contain.
 
-Prints, for conjugate gradients on a tensed contact: operator applications, seconds, the ratio of
-the whole solve to (applications × one bare scipy.fft pair of the padded size), the set-up in
-operator applications, and the peak memory in arrays of the padded size. Each row is a process of
-its own. Ratios are what is comparable: the machine is not.
+Prints for each case: applications of the operator on the finest grid, seconds, the ratio of the
+whole solve to the bare scipy.fft pairs of all its transforms on all its grids, the set-up in
+operator applications, and the peak memory in arrays of the transform's real size. Each row is a
+process of its own. Ratios are what is comparable: the machine is not.
 
-    python tests/benchmarks/cost.py                # N = 256, 512, 1024; one thread and two
-    python tests/benchmarks/cost.py --points 256
+    python tests/benchmarks/cost.py                                  # active_set, N = 256 … 1024
+    python tests/benchmarks/cost.py --solvers active_set conjugate_gradient --points 256 512
+    python tests/benchmarks/cost.py --cases punch --points 4096 --tension 0.02 --threads 2
+
+Cases, lengths in units of the domain L, E* = 1, s = 2τ₀/E*:
+rough   periodic, self-affine (H = 0.8, cut-off 16 cells), mean pressure 0.1 × rms slope, to 1e-6
+punch   free, self-affine (H = 0.7, rms 0.01, cut-off 16 cells), depth 0.1, to 1e-6
+smooth  free, paraboloid of radius 2.236, depth 0.1118 (domain 2 a_H), to 1e-8
 """
 
 from __future__ import annotations
@@ -18,57 +24,115 @@ import resource
 import subprocess
 import sys
 import time
+from collections import Counter
+from collections.abc import Callable
+from itertools import product
+from typing import Any
 
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
-def measure(boundary: str, points: int, threads: int, tolerance: float) -> dict[str, float]:
-    """Return the costs of one solve in this process."""
+def problem(case: str, points: int, tension: float):  # type: ignore[no-untyped-def]
+    """Return the problem of a case, its tolerance, and the seconds that its operator took."""
     import numpy as np
-    import scipy.fft
 
     import pellicle as pl
     from pellicle.operators import make_operator
     from pellicle.problem import Problem
 
-    grid = pl.Grid(points=points, size=1.0, boundary=boundary)
-    kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=0.01)
-    indenter = pl.indenter(
-        "self_affine", rms_height=0.01, hurst=0.8, cutoff_wavelength=16 / points, seed=1
-    )
-    solver = pl.solver("conjugate_gradient", tolerance=tolerance)
-    before = _peak()
+    grid = pl.Grid(points=points, size=1.0, boundary="periodic" if case == "rough" else "free")
+    kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=tension / 2)
+    rough = {"rms_height": 0.01, "cutoff_wavelength": 16 / points, "seed": 1}
+    indenter = {
+        "rough": lambda: pl.indenter("self_affine", hurst=0.8, **rough),
+        "punch": lambda: pl.indenter("self_affine", hurst=0.7, **rough),
+        "smooth": lambda: pl.indenter("paraboloid", radius=2.236),
+    }[case]()
+    profile = indenter.profile(*grid.coordinates())
+    started = time.perf_counter()
+    operator = make_operator(kernel, grid)
+    setup = time.perf_counter() - started
+    if case == "rough":
+        slope = np.hypot(*np.gradient(profile, 1 / points))
+        force = 0.1 * float(np.sqrt(np.mean(slope**2)))
+        return Problem(grid, operator, profile, "force", force), 1e-6, setup
+    depth, tolerance = (0.1, 1e-6) if case == "punch" else (0.1118, 1e-8)
+    return Problem(grid, operator, profile, "depth", depth), tolerance, setup
+
+
+def measure(case: str, points: int, tension: float, solver: str, threads: int) -> dict[str, object]:
+    """Return the costs of one solve in this process."""
+    import numpy as np
+    import scipy.fft
+
+    import pellicle as pl
+    from pellicle.problem import measure as measure_pressure
+    from pellicle_plugins.solvers.preconditioner import Preconditioner
+
     with scipy.fft.set_workers(threads):
-        started = time.perf_counter()
-        operator = make_operator(kernel, grid)
-        setup = time.perf_counter() - started
-        problem = Problem(grid, operator, indenter.profile(*grid.coordinates()), "force", 0.02)
-        operator(np.ones(grid.shape))
-        one = _best(lambda: operator(np.ones(grid.shape)))
+        before = _peak()
+        given, tolerance, setup = problem(case, points, tension)
+        operator = given.operator
+        operator(np.ones(given.grid.shape))
+        one = _median(lambda: operator(np.ones(given.grid.shape)))
+        transforms: Counter[tuple[tuple[int, ...], str]] = Counter()
+        _count(type(operator), "_apply", transforms, _plane_of_operator, "float64")
+        _count(Preconditioner, "stiffen", transforms, lambda it: it._plane, "float32")
         used = operator.applications
         started = time.perf_counter()
-        solution = solver.solve(problem, None, lambda iteration, excess: None)
+        solution = pl.solver(solver, tolerance=tolerance).solve(given, None, lambda *_: None)
         seconds = time.perf_counter() - started
         used = operator.applications - used
         peak = _peak() - before
-        padded = [scipy.fft.next_fast_len(2 * points - 1, real=True)] * 2
-        field = np.random.default_rng(0).normal(size=padded if boundary == "free" else grid.shape)
-        pair = _best(lambda: scipy.fft.irfft2(scipy.fft.rfft2(field), s=field.shape))
+        bare = sum(
+            number * _median(_bare_pair(shape, dtype))
+            for (shape, dtype), number in list(transforms.items())
+        )
+    found = measure_pressure(given, solution.pressure)
     return {
+        "solved": solution.stop.name == "DONE" and found.residual_contact <= tolerance,
         "iterations": solution.iterations,
         "applications": used,
         "seconds": seconds,
-        "solve / bare pairs": seconds / (used * pair),
-        "set-up / application": setup / one,
-        "peak / padded array": peak / field.nbytes,
+        "ratio": seconds / bare,
+        "setup": setup / one,
+        "peak": peak / (8 * np.prod(_plane_of_operator(operator))),
+        "contact": float(found.contact.mean()),
     }
 
 
-def _best(work: object, repeats: int = 7) -> float:
+def _plane_of_operator(operator: object) -> tuple[int, ...]:
+    return tuple(getattr(operator, "_padded", None) or operator.grid.shape)  # type: ignore[attr-defined]
+
+
+def _count(
+    owner: type, method: str, counts: Counter[object], shape: Callable[[object], object], dtype: str
+) -> None:
+    """Count the calls of a method by the shape and type of their transforms."""
+    original = getattr(owner, method)
+
+    def counted(self: object, *arguments: object) -> object:
+        counts[shape(self), dtype] += 1
+        return original(self, *arguments)
+
+    setattr(owner, method, counted)
+
+
+def _bare_pair(shape: tuple[int, ...], dtype: str) -> Callable[[], object]:
+    import numpy as np
+    import scipy.fft
+
+    # A free operator's pair is counted whole, though half of its rows are zeros and skipped.
+    field = np.random.default_rng(0).normal(size=shape).astype("float64")
+    field = field.astype(dtype)
+    return lambda: scipy.fft.irfft2(scipy.fft.rfft2(field), s=shape)
+
+
+def _median(work: Callable[[], object], repeats: int = 5) -> float:
     times = []
     for _ in range(repeats):
         started = time.perf_counter()
-        work()  # type: ignore[operator]
+        work()
         times.append(time.perf_counter() - started)
     return sorted(times)[len(times) // 2]
 
@@ -80,36 +144,54 @@ def _peak() -> float:
 def main() -> None:
     """Measure every case in a process of its own and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--cases", nargs="+", default=["rough", "punch", "smooth"])
     parser.add_argument("--points", type=int, nargs="+", default=[256, 512, 1024])
-    parser.add_argument("--tolerance", type=float, default=1e-4)
-    parser.add_argument("--one", nargs=3, metavar=("BOUNDARY", "POINTS", "THREADS"))
+    parser.add_argument("--tension", type=float, nargs="+", default=[0.0, 0.02, 1.0])
+    parser.add_argument("--solvers", nargs="+", default=["active_set"])
+    parser.add_argument("--threads", type=int, nargs="+", default=[1])
+    parser.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
+    rows = product(options.cases, options.tension, options.points, options.solvers, options.threads)
     if options.one:
-        boundary, points, threads = options.one
-        found = measure(boundary, int(points), int(threads), options.tolerance)
-        print(json.dumps(found))
+        case, tension, points, solver, threads = next(rows)
+        print(json.dumps(measure(case, points, tension, solver, threads)))
         return
-    print("boundary     N threads  iter  appl  seconds  solve/pairs  set-up/appl  peak/arrays")
-    for boundary in ("free", "periodic"):
-        for points in options.points:
-            for threads in (1, 2):
-                environment = os.environ | dict.fromkeys(THREAD_VARIABLES, str(threads))
-                arguments = ["--tolerance", str(options.tolerance), "--one", boundary]
-                done = subprocess.run(
-                    [sys.executable, __file__, *arguments, str(points), str(threads)],
-                    env=environment,
-                    capture_output=True,
-                    text=True,
-                    check=True,
-                )
-                row = json.loads(done.stdout)
-                print(
-                    f"{boundary:9}{points:5}{threads:8}"
-                    f"{row['iterations']:6}{row['applications']:6}{row['seconds']:9.2f}"
-                    f"{row['solve / bare pairs']:13.2f}{row['set-up / application']:13.2f}"
-                    f"{row['peak / padded array']:13.1f}",
-                    flush=True,
-                )
+    print(
+        "| case | s/L | N | solver | threads | contact | iterations | applications | seconds "
+        "| solve ÷ pairs | set-up ÷ application | peak arrays |"
+    )
+    print("|" + " --- |" * 12)
+    for case, tension, points, solver, threads in rows:
+        row = _in_process(case, tension, points, solver, threads)
+        mark = "" if row["solved"] else " not solved"
+        print(
+            f"| {case} | {tension:g} | {points} | {solver}{mark} | {threads} "
+            f"| {row['contact']:.3f} | {row['iterations']} | {row['applications']} "
+            f"| {row['seconds']:.2f} | {row['ratio']:.2f} | {row['setup']:.1f} "
+            f"| {row['peak']:.1f} |",
+            flush=True,
+        )
+
+
+def _in_process(
+    case: str, tension: float, points: int, solver: str, threads: int
+) -> dict[str, Any]:
+    arguments = {
+        "--cases": case,
+        "--tension": tension,
+        "--points": points,
+        "--solvers": solver,
+        "--threads": threads,
+    }
+    words = [str(word) for pair in arguments.items() for word in pair]
+    done = subprocess.run(
+        [sys.executable, __file__, "--one", *words],
+        env=os.environ | dict.fromkeys(THREAD_VARIABLES, str(threads)),
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    return json.loads(done.stdout)  # type: ignore[no-any-return]
 
 
 if __name__ == "__main__":

@@ -1,22 +1,19 @@
 """Pellicle and its peers on identical surfaces, at an accuracy measured by pellicle.
 
-Prints the seconds and iterations that each code takes to press the same self-affine surface under
-the same force. What a code returns is judged by `pellicle.problem.measure`: its own tolerance
-starts at a value found by trial and is halved until the complementarity residual is under
-``--target``; the residuals reached stand in the table. Each row is a process of its own.
-
-Seconds are those from heights to pressure: operator, kernel and transform plans are made within
-them, imports are not, and a small problem is solved first. Iterations are as each code counts them
-and applications those of the operator, if it says; of nested grids those on the finest. Tension
-reaches a peer through its own table of Fourier coefficients; the peers' solvers are untouched.
+Each row is a process of its own: one code presses a self-affine surface under a given force. What
+it returns is judged by `pellicle.problem.measure`; its own tolerance starts at a value found by
+trial and is halved, eight times at most, until complementarity is under ``--target``. Seconds are
+those from heights to pressure, plans and kernels included, imports not, after a small problem to
+warm up. Iterations are as each code counts them, applications those of the operator; of nested
+grids those on the finest. Tension reaches a peer through its own Fourier coefficients alone.
 
 The tamaas wheel on PyPI is built with an FFTW 3.3.10 without SIMD (it has scalar codelets only)
 and without threads; a tamaas built against a SIMD FFTW is faster.
 
-    python -m pip install tamaas==2.9.0 ContactMechanics==1.8.3
+    python -m pip install "pellicle[bench]"
     apt-get install -y g++ libeigen3-dev && python -m pip install ASPHER==0.1.3.post1
 
-    python tests/benchmarks/peers.py                               # N = 256, 512; one thread
+    python tests/benchmarks/peers.py                     # N = 256, 512; one thread
     python tests/benchmarks/peers.py --points 1024 2048 --threads 1 2
     python tests/benchmarks/peers.py --points --free 512 1024 --peers ASPHER
 """
@@ -30,21 +27,21 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from importlib.metadata import version
 from importlib.util import find_spec
+from itertools import product
 from typing import Any
 
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 RMS_HEIGHT = 0.01  # in L; the edge L and the reduced modulus E* are 1
-WARM_UP = 64
-COLUMNS = {
-    **{"code": "<28", "version": ">12", "boundary": ">9", "points": ">6", "s/L": ">6"},
-    **{"threads": ">8", "iterations": ">11", "applications": ">13", "seconds": ">9.2f"},
-    **{"complementarity": ">16.1e", "contact": ">9.1e", "penetration": ">12.1e", "ratio": ">7.2f"},
-}
+LOAD = 0.1  # mean pressure over E* × rms slope
+WARM_UP = 64  # N of the problem solved before the clock runs
+RESIDUALS = ("complementarity", "contact", "penetration")
+ROW = "{:27}{:>12} {:9}{:>5}{:>6}{:>8}{:>11}{:>13}{:>9}{:>16}{:>9}{:>12}{:>7}"
+HEADER = ("code", "version", "boundary", "N", "s/L", "threads", "iterations", "applications")
 FOOTER = """
 complementarity: Σ p|gap| / (Σ p × height range in contact); contact: max |gap| in contact and
 penetration: max −gap outside, over the same range; all by a fresh application of pellicle's
@@ -65,8 +62,6 @@ class Case:
     skin_length: float  # s/L, s = 2τ₀/E*
     threads: int
     cutoff: float  # shortest wavelength in cells
-    load: float  # mean pressure over E* × rms slope
-    seed: int
 
     @cached_property
     def problem(self) -> Any:
@@ -80,7 +75,7 @@ class Case:
 
         grid = pl.Grid(points=self.points, size=1.0, boundary=self.boundary)
         spectrum = {"hurst": 0.8, "cutoff_wavelength": self.cutoff / self.points}
-        indenter = pl.indenter("self_affine", rms_height=RMS_HEIGHT, seed=self.seed, **spectrum)
+        indenter = pl.indenter("self_affine", rms_height=RMS_HEIGHT, seed=1, **spectrum)
         heights = indenter.profile(*grid.coordinates())
         q = 2 * np.pi * scipy.fft.fftfreq(self.points, 1 / self.points)
         modes = np.abs(scipy.fft.fft2(heights, norm="forward"))
@@ -88,11 +83,11 @@ class Case:
         kernel = pl.kernel("half_space", reduced_modulus=1.0)
         if self.skin_length:
             kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=self.skin_length / 2)
-        return Problem(grid, make_operator(kernel, grid), heights, "force", self.load * slope)
+        return Problem(grid, make_operator(kernel, grid), heights, "force", LOAD * slope)
 
 
-Solve = Callable[[Case, float], tuple[Any, int | None, int | None]]
-"""From a case and the code's own tolerance to pressure, iterations and operator applications."""
+Answer = tuple[Any, int, int]
+"""Pressure, iterations and applications of the operator; 0 where the code does not say."""
 
 
 @dataclass(frozen=True)
@@ -100,33 +95,28 @@ class Code:
     """How a code is driven."""
 
     module: str
-    solve: Solve
+    solve: Callable[[Case, float], Answer]  # from a case and the code's own tolerance
     tolerance: float  # where its own tolerance starts: found by trial for a target of 1e-6
-    has_threads: bool
-    install: str = ""
+    requirement: str
+    has_threads: bool = False
+    before: str = ""  # what to do before installing
 
 
-def pellicle(solver: str) -> Code:
-    """Return how one of pellicle's solvers is driven."""
+def pellicle(solver: str, case: Case, tolerance: float) -> Answer:
+    """Solve with a solver of pellicle."""
+    import pellicle as pl
+    from pellicle.operators import make_operator
 
-    def solve(case: Case, tolerance: float) -> tuple[Any, int | None, int | None]:
-        import pellicle as pl
-        from pellicle.operators import make_operator
-
-        try:
-            method = pl.solver(solver, tolerance=tolerance)
-        except pl.ConfigError:
-            raise UnsolvedError("not registered") from None
-        operator = make_operator(case.problem.operator.kernel, case.problem.grid)
-        problem = replace(case.problem, operator=operator)
-        found = method.solve(problem, None, lambda iteration, excess: None)
-        return found.pressure, found.iterations, operator.applications
-
-    return Code("pellicle", solve, 8e-6, has_threads=True)
+    if solver not in pl.registry().components["solver"]:
+        raise UnsolvedError("not registered")
+    operator = make_operator(case.problem.operator.kernel, case.problem.grid)
+    method = pl.solver(solver, tolerance=tolerance)
+    found = method.solve(replace(case.problem, operator=operator), None, lambda *progress: None)
+    return found.pressure, found.iterations, operator.applications
 
 
-def tamaas(case: Case, tolerance: float) -> tuple[Any, int | None, int | None]:
-    """Solve with PolonskyKeerRey, whose log alone says the iterations."""
+def tamaas(case: Case, tolerance: float) -> Answer:
+    """Solve with PolonskyKeerRey."""
     import numpy as np
     import tamaas as tm
 
@@ -140,14 +130,14 @@ def tamaas(case: Case, tolerance: float) -> tuple[Any, int | None, int | None]:
         tm.ModelFactory.registerNonPeriodic(model, "free")
         solver.setIntegralOperator("free")
     else:
-        # Made by the solver, and what it applies: an earlier change would not reach it.
+        # The solver made this operator and applies it: an earlier change would not reach it.
         influence = model.operators["westergaard_neumann"]["influence"]
         influence[...] = tensed(influence, case.skin_length)
     solver.solve(case.problem.value)
-    return np.array(model.traction), None, None
+    return np.array(model.traction), 0, 0
 
 
-def contact_mechanics(case: Case, tolerance: float) -> tuple[Any, int | None, int | None]:
+def contact_mechanics(case: Case, tolerance: float) -> Answer:
     """Solve with constrained_conjugate_gradients; the tolerance is that of penetration."""
     from ContactMechanics import FreeFFTElasticHalfSpace, PeriodicFFTElasticHalfSpace
     from ContactMechanics.Optimization import constrained_conjugate_gradients
@@ -160,30 +150,22 @@ def contact_mechanics(case: Case, tolerance: float) -> tuple[Any, int | None, in
     substrate = half_space((case.points, case.points), 1.0, (1.0, 1.0))
     aim = {"external_force": case.problem.value, "pentol": tolerance * RMS_HEIGHT}
     found = constrained_conjugate_gradients(substrate, case.problem.profile, **aim)
-    if not found.success:
-        raise UnsolvedError(found.message)
     return found.jac / substrate.area_per_pt, found.nit, found.nfev
 
 
-def aspher(case: Case, tolerance: float) -> tuple[Any, int | None, int | None]:
-    """Solve on nested grids, FFT operator and FFT preconditioner: what is quickest here."""
+def aspher(case: Case, tolerance: float) -> Answer:
+    """Solve on nested grids, operator and preconditioner by FFT: the quickest of its own here."""
     import aspher as peer
 
     if case.skin_length:
         raise UnsolvedError("has no tension")
-    found = peer.solve_nested(
-        grid_size=case.points,
-        gap=-case.problem.profile.ravel(),
-        p_nominal=case.problem.value,
-        coarsest=32,
-        backend="fft" if case.boundary == "free" else "periodic",
-        precond_engine="fft",
-        tol=tolerance,
-    )
+    backend = "fft" if case.boundary == "free" else "periodic"
+    nesting = {"backend": backend, "coarsest": 32, "precond_engine": "fft", "tol": tolerance}
+    gap, load = -case.problem.profile.ravel(), case.problem.value
+    found = peer.solve_nested(case.points, gap, load, **nesting)
     if not found.converged:
         raise UnsolvedError(f"{found.status} at its tolerance {tolerance:.1e}")
-    pressure = found.pressure.reshape(case.problem.grid.shape)
-    return pressure, found.iterations, found.matvec_count
+    return found.pressure, found.iterations, found.matvec_count
 
 
 def tensed(compliance: Any, skin_length: float) -> Any:
@@ -191,14 +173,20 @@ def tensed(compliance: Any, skin_length: float) -> Any:
     return compliance**2 / (compliance + 2 * skin_length + (compliance == 0))
 
 
-NEEDS_COMPILER = "apt-get install -y g++ libeigen3-dev && pip install ASPHER==0.1.3.post1"
+EIGEN = "apt-get install -y g++ libeigen3-dev && "
 PEERS = {
-    "tamaas": Code("tamaas", tamaas, 1.5e-5, False, "pip install tamaas==2.9.0"),
+    "tamaas": Code("tamaas", tamaas, 1.5e-5, "tamaas==2.9.0"),
     "ContactMechanics": Code(
-        "ContactMechanics", contact_mechanics, 1.6e-5, False, "pip install ContactMechanics==1.8.3"
+        "ContactMechanics", contact_mechanics, 1.6e-5, "ContactMechanics==1.8.3"
     ),
-    "ASPHER": Code("aspher", aspher, 1.6e-5, True, NEEDS_COMPILER),
+    "ASPHER": Code("aspher", aspher, 1.6e-5, "ASPHER==0.1.3.post1", True, EIGEN),
 }
+
+
+def code_of(name: str) -> Code:
+    """Return the code of a row: a peer or ``"pellicle <solver>"``."""
+    solve = partial(pellicle, name.removeprefix("pellicle "))
+    return PEERS.get(name) or Code("pellicle", solve, 8e-6, "pellicle", True)
 
 
 def measure(code: Code, case: Case, repeats: int, target: float) -> dict[str, Any]:
@@ -207,85 +195,61 @@ def measure(code: Code, case: Case, repeats: int, target: float) -> dict[str, An
 
     from pellicle.problem import measure as judge
 
-    times: list[float] = []
-
-    def timed(tolerance: float) -> tuple[Any, int | None, int | None]:
-        started = time.perf_counter()
-        answer = code.solve(case, tolerance)
-        times.append(time.perf_counter() - started)
-        return answer
-
+    seconds: list[float] = []
+    tolerance = code.tolerance
     with scipy.fft.set_workers(case.threads):
         code.solve(replace(case, points=WARM_UP), 1e-3)
-        problem, tolerance, residual = case.problem, 2 * code.tolerance, float("inf")
-        while not residual <= target:
-            tolerance /= 2
-            times.clear()
-            pressure, iterations, applications = timed(tolerance)
-            found = judge(problem, pressure)
-            residual = max(found.residual_complementarity, found.residual_load)
-        for _ in range(repeats - 1):
-            timed(tolerance)
-    return {
-        "version": version(code.module),
-        "iterations": iterations,
-        "applications": applications,
-        "seconds": sorted(times)[len(times) // 2],
-        "complementarity": found.residual_complementarity,
-        "contact": found.residual_contact,
-        "penetration": found.residual_penetration,
-    }
+        problem = case.problem
+        while len(seconds) < repeats:
+            started = time.perf_counter()
+            pressure, iterations, applications = code.solve(case, tolerance)
+            elapsed = time.perf_counter() - started
+            if not seconds:
+                found = judge(problem, pressure)
+                if not max(found.residual_complementarity, found.residual_load) <= target:
+                    tolerance /= 2
+                    if tolerance < code.tolerance / 256:
+                        raise UnsolvedError(f"reaches {found.residual_complementarity:.1e} only")
+                    continue
+            seconds.append(elapsed)
+    residuals = {name: getattr(found, f"residual_{name}") for name in RESIDUALS}
+    median = sorted(seconds)[len(seconds) // 2]
+    counts = {"iterations": iterations, "applications": applications}
+    return {"version": version(code.module), "seconds": median, **counts, **residuals}
 
 
 def row(name: str, case: Case, options: argparse.Namespace) -> dict[str, Any]:
     """Return what a process of its own measures, or {"note": why there is nothing}."""
     code = code_of(name)
     if not find_spec(code.module):
-        return {"note": f"not installed: {code.install}"}
+        return {"note": f"not installed: {code.before}python -m pip install {code.requirement}"}
     if case.threads > 1 and not code.has_threads:
         return {"note": "has no threads: see one"}
     command = [sys.executable, __file__, "--one", name, json.dumps(asdict(case))]
-    command += ["--repeats", str(options.repeats), "--target", str(options.target)]
-    threads = dict.fromkeys(THREAD_VARIABLES, str(case.threads))
+    command += [f"--repeats={options.repeats}", f"--target={options.target}"]
+    environment = os.environ | dict.fromkeys(THREAD_VARIABLES, str(case.threads))
+    how = {"env": environment, "capture_output": True, "text": True, "timeout": options.limit}
     try:
-        done = subprocess.run(
-            command, env=os.environ | threads, capture_output=True, text=True, timeout=options.limit
-        )
+        done = subprocess.run(command, **how)
     except subprocess.TimeoutExpired:
         return {"note": f"not done after {options.limit:g} s"}
     if done.returncode:
         return {"note": f"failed: {(done.stderr.strip() or str(done.returncode)).splitlines()[-1]}"}
     found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
-    if found.get("iterations", 0) is None:
-        logged = re.findall(r"^ *(\d+)(?: +\S+e[-+]\d+){2}$", done.stderr, re.MULTILINE)
-        found["iterations"] = int(logged[-1]) if logged else None
+    if logged := re.findall(r"^ *(\d+)(?: +\S+e[-+]\d+){2}$", done.stderr, re.MULTILINE):
+        found["iterations"] = int(logged[-1])  # only the log of tamaas says them
     return found
 
 
-def code_of(name: str) -> Code:
-    """Return the code of a row."""
-    return PEERS.get(name) or pellicle(name.removeprefix("pellicle "))
-
-
-def line(found: dict[str, Any]) -> str:
-    """Return a row of the table."""
-    cells = (
-        format("–", width.partition(".")[0]) if found.get(name) is None else f"{found[name]:{width}}"
-        for name, width in COLUMNS.items()
-        if "note" not in found or name in found
-    )
-    return "".join(cells) + (f"  {found['note']}" if "note" in found else "")
-
-
-def cases(options: argparse.Namespace) -> Iterator[Case]:
-    """Yield every case asked for: periodic at each skin length, free without tension."""
-    common = (options.cutoff, options.load, options.seed)
-    for threads in options.threads:
-        for points in options.points:
-            for skin_length in options.skin_length:
-                yield Case("periodic", points, skin_length, threads, *common)
-        for points in options.free:
-            yield Case("free", points, 0.0, threads, *common)
+def line(name: str, case: Case, found: dict[str, Any], reference: float | None) -> str:
+    """Return a row of the table; its ratio is that to ``reference`` [s]."""
+    start = (name, found.get("version", ""), case.boundary, case.points, case.skin_length)
+    if "note" in found:
+        return f"{ROW.format(*start, case.threads, *[''] * 7).rstrip()}  {found['note']}"
+    counts = (found["iterations"] or "–", found["applications"] or "–", f"{found['seconds']:.2f}")
+    ratio = f"{found['seconds'] / reference:.2f}" if reference else "–"
+    residuals = (f"{found[name]:.1e}" for name in RESIDUALS)
+    return ROW.format(*start, case.threads, *counts, *residuals, ratio)
 
 
 def command_line() -> argparse.Namespace:
@@ -299,8 +263,6 @@ def command_line() -> argparse.Namespace:
     add("--skin-length", type=float, nargs="+", default=[0.0, 0.02], help="s/L, periodic")
     add("--threads", type=int, nargs="+", default=[1])
     add("--cutoff", type=float, default=8.0, help="shortest wavelength in cells")
-    add("--load", type=float, default=0.1, help="mean pressure over E* × rms slope")
-    add("--seed", type=int, default=1)
     add("--repeats", type=int, default=3, help="solves per row; their median counts")
     add("--target", type=float, default=1e-6, help="complementarity residual to reach")
     add("--limit", type=float, default=1800.0, help="seconds after which a row is given up")
@@ -319,18 +281,18 @@ def main() -> None:
             found = {"note": str(error)}
         print(json.dumps(found))
         return
-    print("".join(format(name, width.partition(".")[0]) for name, width in COLUMNS.items()))
-    for case in cases(options):
+    print(ROW.format(*HEADER, "seconds", *RESIDUALS, "ratio"))
+    surfaces = [("periodic", *each) for each in product(options.points, options.skin_length)]
+    surfaces += [("free", points, 0.0) for points in options.free]
+    names = [*(f"pellicle {solver}" for solver in options.solvers), *options.peers]
+    for threads, (boundary, points, skin_length) in product(options.threads, surfaces):
+        case = Case(boundary, points, skin_length, threads, options.cutoff)
         reference = None
-        shown = {"boundary": case.boundary, "points": case.points, "s/L": case.skin_length}
-        for name in [*(f"pellicle {solver}" for solver in options.solvers), *options.peers]:
-            found = {"code": name, "version": "", **shown, "threads": case.threads}
-            found |= row(name, case, options)
+        for name in names:
+            found = row(name, case, options)
             if name.startswith("pellicle "):
                 reference = reference or found.get("seconds")
-            if reference and "seconds" in found:
-                found["ratio"] = found["seconds"] / reference
-            print(line(found), flush=True)
+            print(line(name, case, found, reference), flush=True)
     print(FOOTER)
 
 

@@ -31,8 +31,8 @@ class Extension:
     """
 
     def __init__(self, known: NDArray[np.bool_], orders: Sequence[float]) -> None:
+        self.shape = known.shape
         weight = known.astype(np.float32)
-        self._known = weight
         self._free: list[Field] = []
         self._shares: list[Field] = []
         for order in orders:
@@ -57,7 +57,7 @@ class Extension:
         return filled
 
     def gather(self, values: Field) -> Field:
-        """Return the transpose of E applied to ``values``; 0 where not known."""
+        """Return the transpose of E applied to ``values``; of use only where known."""
         levels = [values]
         for free in self._free:
             levels.append(_transposed_interpolate(levels[-1] * free))
@@ -66,7 +66,6 @@ class Extension:
             gathered *= share
             gathered = _repeat(gathered)
             gathered += own
-        gathered *= self._known
         return gathered
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pellicle.operators import Array
 from pellicle.problem import Problem
 
-from .preconditioner import OnContact
+from .preconditioner import Cells, OnContact
 from .products import dot
 
 # The error shrinks by this factor before the contact is looked at again.
@@ -39,46 +38,51 @@ def inner_solve(
 
     Preconditioned conjugate gradients, with a prescribed force in the space of pressures that keep
     it. They go on beyond the first reduction of ``error`` [m] for as long as the contact would stay
-    as it is, until the error is at ``goal`` [m].
+    as it is, until the error is at ``goal`` [m]. All vectors are on the cells of the contact, but
+    the displacement, which tells where else the surface penetrates.
     """
-    contact = preconditioner.contact
+    cells = preconditioner.cells
     search = _Search(preconditioner, keeps_force=problem.prescribed == "force")
-    aloft = displacement - problem.profile
-    depth = problem.value if problem.prescribed == "depth" else float(aloft[contact].mean())
-    residual = np.where(contact, depth - aloft, 0.0)
-    pressure, displacement = pressure.copy(), displacement.copy()
+    whole = np.zeros(problem.grid.shape)
+    displacement = displacement.copy()
+    pressed = pressure.ravel()[cells]
+    residual = problem.profile.ravel()[cells] - displacement.ravel()[cells]
+    residual += problem.value if problem.prescribed == "depth" else -residual.mean()
     next_look = max(_REDUCTION * error, goal)
     direction = search(residual)
     descent = dot(residual, direction)
     while descent > 0:
-        change = problem.operator(direction)
-        curvature = dot(direction, change)
+        whole.ravel()[cells] = direction
+        change = problem.operator(whole)
+        curvature = dot(direction, change.ravel()[cells])
         if curvature <= 0:
             break
-        length = descent / curvature
-        pressure += length * direction
-        change *= length
+        change *= descent / curvature
         displacement += change
-        residual -= change * contact
+        residual -= change.ravel()[cells]
+        direction *= descent / curvature
+        pressed += direction
         error = search.error(residual)
         if error <= next_look:
-            settled = pressure.min() >= 0 and not _penetrates(problem, displacement, contact, error)
+            settled = pressed.min() >= 0 and not _penetrates(problem, displacement, cells, error)
             if error <= goal or not settled:
                 break
             next_look = max(_REDUCTION * next_look, goal)
         ascent = search(residual)
         before, descent = descent, dot(residual, ascent)
-        direction *= descent / before
+        # The direction was multiplied by its step length.
+        direction *= curvature / before * (descent / before)
         direction += ascent
-    return Inner(pressure, displacement, error)
+    whole.ravel()[cells] = pressed
+    return Inner(whole, displacement, error)
 
 
-def _penetrates(
-    problem: Problem, displacement: Array, contact: NDArray[np.bool_], error: float
-) -> bool:
+def _penetrates(problem: Problem, displacement: Array, cells: Cells, error: float) -> bool:
+    """Whether the surface penetrates off the contact by more than ``error`` [m]."""
     gap = displacement - problem.profile
-    depth = problem.value if problem.prescribed == "depth" else float(gap[contact].mean())
-    return bool(((gap < depth - error) & ~contact).any())
+    inside = gap.ravel()[cells]
+    depth = problem.value if problem.prescribed == "depth" else float(inside.mean())
+    return bool(np.count_nonzero(gap < depth - error) > np.count_nonzero(inside < depth - error))
 
 
 class _Search:
@@ -87,9 +91,8 @@ class _Search:
     def __init__(self, preconditioner: OnContact, *, keeps_force: bool) -> None:
         self._preconditioner = preconditioner
         self._keeps_force = keeps_force
-        self._contact = preconditioner.contact
         if keeps_force:
-            self._lift = preconditioner(self._contact.astype(np.float64))
+            self._lift = preconditioner(np.ones(preconditioner.cells.size))
             self._lift /= float(self._lift.sum())
 
     def __call__(self, residual: Array) -> Array:
@@ -100,8 +103,5 @@ class _Search:
 
     def error(self, residual: Array) -> float:
         """Return max |gap| on the contact; with a given force the mean gap is the depth's."""
-        if not self._keeps_force:
-            return max(float(residual.max()), -float(residual.min()))
-        inside = residual[self._contact]
-        mean = float(inside.mean())
-        return max(float(inside.max()) - mean, mean - float(inside.min()))
+        mean = float(residual.mean()) if self._keeps_force else 0.0
+        return max(float(residual.max()) - mean, mean - float(residual.min()))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from collections.abc import Callable
+from typing import Final
 
 import numpy as np
 import scipy.fft
@@ -12,6 +13,8 @@ from pellicle.grid import Grid
 from pellicle.operators import Array, Operator
 
 from .extension import Extension, Field
+
+Cells = NDArray[np.int64]
 
 # Without a margin, contact at the edge of a free domain couples across it.
 _FREE_MARGIN: Final = 1.25
@@ -40,28 +43,28 @@ class Preconditioner:
 
     def on(self, contact: NDArray[np.bool_]) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""
-        extension = Extension(self.pad(contact) > 0, self._orders)
-        return OnContact(self, contact, extension)
-
-    def pad(self, field: NDArray[Any]) -> Field:
-        """Return a field of the grid's shape on the extension's plane, zero or periodic there."""
         (nx, ny), (px, py) = self._shape, self._padded
-        padded = np.zeros((px, py), dtype=np.float32)
-        padded[:nx, :ny] = field
+        i, j = np.nonzero(contact)
+        places = i * py + j
+        copies, copied = [], []
         if self._plane == self._shape:
-            padded[nx:, :ny] = field[: px - nx]
-            padded[:, ny:] = padded[:, : py - ny]
-        return padded
+            # Beyond its period a periodic field goes on with its first cells.
+            for down, right in ((nx, 0), (0, ny), (nx, ny)):
+                here = np.flatnonzero((i + down < px) & (j + right < py))
+                copied.append(here)
+                copies.append(places[here] + down * py + right)
+        whole = np.concatenate([places, *copies])
+        known = np.zeros(self._padded, dtype=bool)
+        known.ravel()[whole] = True
+        return OnContact(
+            cells=np.flatnonzero(contact),
+            places=whole,
+            copied=np.concatenate([np.empty(0, dtype=np.int64), *copied]),
+            extension=Extension(known, self._orders),
+            stiffen=self._stiffen,
+        )
 
-    def unpad(self, field: Field) -> Array:
-        """Return the transpose of `pad` applied to a field."""
-        (nx, ny), (px, py) = self._shape, self._padded
-        if self._plane == self._shape:
-            field[: px - nx] += field[nx:]
-            field[:, : py - ny] += field[:, ny:]
-        return field[:nx, :ny].astype(np.float64)
-
-    def stiffen(self, field: Field) -> Field:
+    def _stiffen(self, field: Field) -> Field:
         """Return K applied to a field on the extension's plane; what is beyond the period is 0."""
         mx, my = self._plane
         transform = scipy.fft.rfft2(field[:mx, :my])
@@ -75,19 +78,34 @@ class Preconditioner:
 
 
 class OnContact:
-    """Eᵀ K E on one contact, in single precision."""
+    """Eᵀ K E on one contact, in single precision, from and to its cells."""
 
     def __init__(
-        self, whole: Preconditioner, contact: NDArray[np.bool_], extension: Extension
+        self,
+        cells: Cells,
+        places: Cells,
+        copied: Cells,
+        extension: Extension,
+        stiffen: Callable[[Field], Field],
     ) -> None:
-        self.contact = contact
-        self._whole = whole
+        self.cells = cells
+        """Flat index of each cell of the contact on the grid."""
+        self._places = places
+        self._copied = copied
         self._extension = extension
+        self._stiffen = stiffen
+        self._given = np.zeros(extension.shape, dtype=np.float32)
 
     def __call__(self, residual: Array) -> Array:
-        """Return the preconditioned residual; both are of the grid's shape, 0 off the contact."""
-        extended = self._extension.spread(self._whole.pad(residual))
-        return self._whole.unpad(self._extension.gather(self._whole.stiffen(extended)))
+        """Return the preconditioned residual; both have one value for each cell of `cells`."""
+        number, copied = self.cells.size, self._copied
+        given = self._given.ravel()
+        given[self._places[:number]] = residual
+        given[self._places[number:]] = residual[copied]
+        force = self._extension.gather(self._stiffen(self._extension.spread(self._given)))
+        there = force.ravel()[self._places].astype(np.float64)
+        np.add.at(there[:number], copied, there[number:])
+        return there[:number]
 
 
 def _free_shape(shape: tuple[int, int]) -> tuple[int, int]:

@@ -13,4 +13,4 @@ def dot(one: NDArray[Any], other: NDArray[Any]) -> float:
 
     Not by BLAS, whose threads keep a core busy waiting for more and take it from the transforms.
     """
-    return float(np.einsum("ij,ij->", one, other))
+    return float(np.einsum("i,i->", one.reshape(-1), other.reshape(-1)))
