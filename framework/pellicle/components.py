@@ -119,9 +119,12 @@ class IterativeSolver(Solver):
     def pressure(self, state: Any) -> Array:
         """Return the pressure [Pa] of a state."""
 
-    @abstractmethod
     def patience(self, problem: Problem) -> int:
-        """Return how many iterations without a new least residual mean that there is none."""
+        """Return how many iterations without a new least residual mean that there is none.
+
+        A multiple of N here: a gradient method needs O(N) iterations, some of them in vain.
+        """
+        return sum(problem.grid.shape) + 200
 
     def solve(self, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
         """Iterate until the tolerance is met, or it is plain that it will not be."""

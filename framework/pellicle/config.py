@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from pydantic.json_schema import JsonSchemaValue
 
 AnyComponent = TypeVar("AnyComponent", bound=Component)
-DEFAULT_SOLVER = "conjugate_gradient"
+DEFAULT_SOLVER = "active_set"
 _MOST_STEPS = 1_000_000
 
 

@@ -77,7 +77,7 @@ def measure(case: str, points: int, tension: float, solver: str, threads: int) -
         one = _median(lambda: operator(np.ones(given.grid.shape)))
         transforms: Counter[tuple[tuple[int, ...], str]] = Counter()
         _count(type(operator), "_apply", transforms, _plane_of_operator, "float64")
-        _count(Preconditioner, "stiffen", transforms, lambda it: it._plane, "float32")
+        _count(Preconditioner, "_stiffen", transforms, lambda it: it._plane, "float32")
         used = operator.applications
         started = time.perf_counter()
         solution = pl.solver(solver, tolerance=tolerance).solve(given, None, lambda *_: None)

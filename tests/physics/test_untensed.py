@@ -13,21 +13,22 @@ from pellicle_plugins.analytic.hertz import ellipse, sphere
 from pellicle_plugins.analytic.westergaard import wavy
 
 
-def _step(points: object, size: object, indenter: dict[str, object], **loading: float):
+def _step(solver: str, points: object, size: object, indenter: dict[str, object], **loading: float):
     run = pl.Run(
         grid={"points": points, "size": size},
         kernel={"type": "half_space", "reduced_modulus": 1.0},
         indenter=indenter,
         loading=loading,
+        solver={"type": solver},
         corrections=[{"type": "yastrebov"}],
     )
     return pl.run(run, progress=False).dataset.isel(step=0)
 
 
-def test_hertz_force_area_and_pressure() -> None:
+def test_hertz_force_area_and_pressure(solver: str) -> None:
     """A paraboloid at N = 256 gives Hertz's force to 1e-3 and his pressure where it is smooth."""
     true = sphere(1.0, 1.0, depth=0.01)
-    step = _step(256, 3 * true.semi_x, {"type": "paraboloid", "radius": 1.0}, depth=0.01)
+    step = _step(solver, 256, 3 * true.semi_x, {"type": "paraboloid", "radius": 1.0}, depth=0.01)
     assert float(step["force"]) == pytest.approx(true.force, rel=1e-3)
     assert float(step["contact_area_yastrebov"]) == pytest.approx(np.pi * true.semi_x**2, rel=5e-3)
     x, y = step["x"].values[:, None], step["y"].values[None]
@@ -36,39 +37,41 @@ def test_hertz_force_area_and_pressure() -> None:
     assert np.abs(step["pressure"].values - expected)[inner].max() < 1e-3 * true.peak_pressure
 
 
-def test_a_given_hertz_force_gives_the_hertz_depth() -> None:
+def test_a_given_hertz_force_gives_the_hertz_depth(solver: str) -> None:
     """Load control finds the depth that belongs to the force."""
     true = sphere(1.0, 1.0, depth=0.01)
-    step = _step(64, 3 * true.semi_x, {"type": "paraboloid", "radius": 1.0}, force=true.force)
+    step = _step(
+        solver, 64, 3 * true.semi_x, {"type": "paraboloid", "radius": 1.0}, force=true.force
+    )
     assert float(step["depth"]) == pytest.approx(0.01, rel=1e-3)
     assert float(step["force"]) == pytest.approx(true.force, rel=1e-12)
 
 
-def test_hertz_ellipse_on_rectangular_cells() -> None:
+def test_hertz_ellipse_on_rectangular_cells(solver: str) -> None:
     """A quadric on 96 × 64 cells of aspect ratio 3:4 gives Hertz's elliptic force and area."""
     true = ellipse(2.0, 1.0, 1.0, depth=0.01)
     size = [2.4 * true.semi_x, 2.4 * true.semi_x * 8 / 9]
     indenter = {"type": "quadric", "radius_x": 2.0, "radius_y": 1.0}
-    step = _step([96, 64], size, indenter, depth=0.01)
+    step = _step(solver, [96, 64], size, indenter, depth=0.01)
     assert float(step["force"]) == pytest.approx(true.force, rel=1e-3)
     area = np.pi * true.semi_x * true.semi_y
     assert float(step["contact_area_yastrebov"]) == pytest.approx(area, rel=1e-2)
 
 
-def test_sneddon_cone() -> None:
+def test_sneddon_cone(solver: str) -> None:
     """A cone gives Sneddon's force."""
     angle = np.radians(75)
     true = cone(angle, 1.0, depth=0.01)
     indenter = {"type": "cone", "half_angle": angle}
-    step = _step(128, 3 * true.contact_radius, indenter, depth=0.01)
+    step = _step(solver, 128, 3 * true.contact_radius, indenter, depth=0.01)
     assert float(step["force"]) == pytest.approx(true.force, rel=1e-3)
 
 
-def test_the_sphere_is_stiffer_than_its_paraboloid_by_the_quartic_term() -> None:
+def test_the_sphere_is_stiffer_than_its_paraboloid_by_the_quartic_term(solver: str) -> None:
     """The exact sphere differs from the paraboloid as the next term of its profile says."""
     radius, depth = 1.0, 0.05
-    paraboloid = _step(64, 0.7, {"type": "paraboloid", "radius": radius}, depth=depth)
-    exact = _step(64, 0.7, {"type": "sphere", "radius": radius}, depth=depth)
+    paraboloid = _step(solver, 64, 0.7, {"type": "paraboloid", "radius": radius}, depth=depth)
+    exact = _step(solver, 64, 0.7, {"type": "sphere", "radius": radius}, depth=depth)
     # Sneddon 1965, with L = ln((R+a)/(R−a)): δ = aL/2, F = E*[(R² + a²)L/2 − aR].
     a = brentq(lambda a: a * np.arctanh(a) - depth, 1e-3, 0.9)
     true = (1 + a**2) * np.arctanh(a) - a
@@ -79,14 +82,16 @@ def test_the_sphere_is_stiffer_than_its_paraboloid_by_the_quartic_term() -> None
     assert abs(true / hertz - 1) > 4e-3
 
 
-def test_flat_punch_force_converges_at_first_order() -> None:
+def test_flat_punch_force_converges_at_first_order(solver: str) -> None:
     """The force of a punch, singular at its rim, comes near 2 E* a δ at least as 1/N."""
     true = flat_punch(1.0, 1.0, depth=0.01).force
     points, errors = np.array([16, 32, 64, 128]), []
     for n in points:
         # Several offsets of the rim against the grid, as a circle of cells is never quite round.
         forces = [
-            float(_step(n, size, {"type": "flat_punch", "radius": 1.0}, depth=0.01)["force"])
+            float(
+                _step(solver, n, size, {"type": "flat_punch", "radius": 1.0}, depth=0.01)["force"]
+            )
             for size in np.linspace(2.2, 2.5, 7)
         ]
         errors.append(np.sqrt(np.mean((np.array(forces) / true - 1) ** 2)))
@@ -94,7 +99,7 @@ def test_flat_punch_force_converges_at_first_order() -> None:
     assert errors[-1] < 1e-2
 
 
-def test_westergaard_wavy_contact() -> None:
+def test_westergaard_wavy_contact(solver: str) -> None:
     """A cosine wave under a mean pressure touches over Westergaard's width."""
     n, amplitude, modulus = 256, 1e-3, 1.0
     true = wavy(amplitude, 1.0, modulus, half_width=0.2)
@@ -105,6 +110,7 @@ def test_westergaard_wavy_contact() -> None:
         kernel={"type": "half_space", "reduced_modulus": modulus},
         indenter={"type": "heights", "values": heights, "unit": 1.0},
         loading={"mean_pressure": true.mean_pressure},
+        solver={"type": solver},
     )
     step = pl.run(run, progress=False).dataset.isel(step=0)
     assert float(step["contact_fraction"]) == pytest.approx(0.4, abs=2 / n)

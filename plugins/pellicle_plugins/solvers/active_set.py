@@ -99,8 +99,12 @@ class ActiveSet(IterativeSolver):
             if coarse.touches:
                 tolerance = max(self.tolerance, _COARSE_TOLERANCE)
                 solver = self.model_copy(update={"tolerance": tolerance})
-                pressure = solver.solve(coarse, None, lambda iteration, excess: None).pressure
-                return prolong(pressure, problem.grid.shape)
+                found = solver.solve(coarse, None, lambda iteration, excess: None)
+                pressure = prolong(found.pressure, problem.grid.shape)
+                # A coarse cell may hang over the rim of the indenter.
+                pressure *= np.isfinite(problem.profile)
+                if pressure.any():
+                    return pressure
         return first_guess(problem)
 
 

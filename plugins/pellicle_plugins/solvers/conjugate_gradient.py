@@ -88,10 +88,6 @@ class ConjugateGradient(IterativeSolver):
             residual = max(state.inside, state.outside) / state.scale
         return residual
 
-    def patience(self, problem: Problem) -> int:
-        """Return a multiple of N: that many iterations it needs, some of them without progress."""
-        return sum(problem.grid.shape) + 200
-
     def pressure(self, state: _State) -> Array:
         """Return the pressure of a state."""
         return state.pressure

@@ -1,0 +1,58 @@
+"""Draws docs/images/applications.png: operator applications of both solvers against N.
+
+python docs/images/applications.py    (about three minutes on one core)
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+import pellicle as pl
+from pellicle.operators import make_operator
+from pellicle.problem import Problem
+
+POINTS = {"conjugate_gradient": (64, 128, 256, 512), "active_set": (64, 128, 256, 512, 1024)}
+TENSIONS = {0.0: "no tension", 0.02: "s = 0.02 L", 1.0: "s = L"}
+
+
+def applications(solver: str, points: int, s: float) -> int:
+    """Return the operator applications on the finest grid for a rough periodic contact."""
+    grid = pl.Grid(points=points, size=1.0, boundary="periodic")
+    kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=s / 2)
+    surface = pl.indenter(
+        "self_affine", rms_height=0.01, hurst=0.8, cutoff_wavelength=16 / points, seed=1
+    )
+    profile = surface.profile(*grid.coordinates())
+    slope = np.hypot(*np.gradient(profile, 1 / points))
+    force = 0.1 * float(np.sqrt(np.mean(slope**2)))
+    problem = Problem(grid, make_operator(kernel, grid), profile, "force", force)
+    pl.solver(solver, tolerance=1e-6).solve(problem, None, lambda iteration, excess: None)
+    return problem.operator.applications
+
+
+def main() -> None:
+    """Measure and draw."""
+    figure = Figure(figsize=(5.4, 3.8), dpi=150, layout="constrained")
+    axes = figure.add_subplot()
+    styles = {"conjugate_gradient": "s--", "active_set": "o-"}
+    for solver, style in styles.items():
+        for colour, (s, label) in enumerate(TENSIONS.items()):
+            counts = [applications(solver, points, s) for points in POINTS[solver]]
+            print(solver, s, counts)  # noqa: T201
+            axes.loglog(
+                POINTS[solver], counts, style, color=f"C{colour}", label=f"{solver}, {label}"
+            )
+    ticks = POINTS["active_set"]
+    axes.set_xticks(ticks, [str(points) for points in ticks])
+    axes.minorticks_off()
+    axes.set(xlabel="cells along an edge, N", ylabel="operator applications, finest grid")
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=7)
+    figure.savefig(Path(__file__).with_name("applications.png"))
+
+
+if __name__ == "__main__":
+    main()
