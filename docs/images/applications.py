@@ -41,7 +41,7 @@ def main() -> None:
     for solver, style in styles.items():
         for colour, (s, label) in enumerate(TENSIONS.items()):
             counts = [applications(solver, points, s) for points in POINTS[solver]]
-            print(solver, s, counts)  # noqa: T201
+            print(solver, s, counts)
             axes.loglog(
                 POINTS[solver], counts, style, color=f"C{colour}", label=f"{solver}, {label}"
             )

@@ -26,7 +26,7 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
         },
         "heights": {"path": str(Path(__file__).with_name("heights.txt")), "unit": "1 um"},
     },
-    "solver": {"conjugate_gradient": {"tolerance": 1e-9}},
+    "solver": {"active_set": {"tolerance": 1e-9}, "conjugate_gradient": {"tolerance": 1e-9}},
     "correction": {"yastrebov": {}},
     "output": {"hdf5": {}, "csv": {}, "figures": {"formats": ["png", "svg"]}},
     "executor": {},

@@ -22,10 +22,11 @@ from .preconditioner import Preconditioner
 # Coarse grids are solved to this share of the height range: with tension a smaller error than that
 # of the grid itself still moves the edge of the contact by several cells.
 _COARSE_TOLERANCE: Final = 1e-5
-# Grids with no more cells than this along their shorter edge are not coarsened.
+# Grids with no more cells than this along their longer edge are not coarsened.
 _COARSEST: Final = 48
-# An initial error above this share of the height range is worth a solve on a coarser grid.
-_CLOSE: Final = 0.3
+# A start with an error above this share of the height range costs more to mend, a layer of cells at
+# a time along the edge, than a solve from the coarser grids.
+_CLOSE: Final = 0.01
 
 
 @dataclass(frozen=True)
@@ -94,9 +95,10 @@ class ActiveSet(IterativeSolver):
         return 20
 
     def _cold_start(self, problem: Problem) -> Array:
-        if min(problem.grid.shape) > _COARSEST:
+        if max(problem.grid.shape) > _COARSEST:
             coarse = problem.coarsened()
-            if coarse.touches:
+            # An indenter of single cells may have none that a coarse cell sees.
+            if coarse.touches and np.isfinite(coarse.profile).any():
                 tolerance = max(self.tolerance, _COARSE_TOLERANCE)
                 solver = self.model_copy(update={"tolerance": tolerance})
                 found = solver.solve(coarse, None, lambda iteration, excess: None)

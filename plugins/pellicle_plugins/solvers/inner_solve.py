@@ -14,6 +14,8 @@ from .products import dot
 
 # The error shrinks by this factor before the contact is looked at again.
 _REDUCTION: Final = 0.03
+# Iterations without a smaller error after which round-off is taken to be all that is left of it.
+_PATIENCE: Final = 50
 
 
 class Inner(NamedTuple):
@@ -42,6 +44,8 @@ def inner_solve(
     the displacement, which tells where else the surface penetrates.
     """
     cells = preconditioner.cells
+    if not cells.size:
+        return Inner(np.zeros(problem.grid.shape), np.zeros(problem.grid.shape), 0.0)
     search = _Search(preconditioner, keeps_force=problem.prescribed == "force")
     whole = np.zeros(problem.grid.shape)
     displacement = displacement.copy()
@@ -49,9 +53,10 @@ def inner_solve(
     residual = problem.profile.ravel()[cells] - displacement.ravel()[cells]
     residual += problem.value if problem.prescribed == "depth" else -residual.mean()
     next_look = max(_REDUCTION * error, goal)
+    best, since_best = np.inf, 0
     direction = search(residual)
     descent = dot(residual, direction)
-    while descent > 0:
+    while descent > 0 and since_best < _PATIENCE:
         whole.ravel()[cells] = direction
         change = problem.operator(whole)
         curvature = dot(direction, change.ravel()[cells])
@@ -63,6 +68,7 @@ def inner_solve(
         direction *= descent / curvature
         pressed += direction
         error = search.error(residual)
+        best, since_best = (error, 0) if error < best else (best, since_best + 1)
         if error <= next_look:
             settled = pressed.min() >= 0 and not _penetrates(problem, displacement, cells, error)
             if error <= goal or not settled:
@@ -96,9 +102,11 @@ class _Search:
             self._lift /= float(self._lift.sum())
 
     def __call__(self, residual: Array) -> Array:
-        direction = self._preconditioner(residual)
-        if self._keeps_force:
-            direction -= self._lift * float(direction.sum())
+        if not self._keeps_force:
+            return self._preconditioner(residual)
+        # The mean has no effect but on round-off: single precision must not spend its digits on it.
+        direction = self._preconditioner(residual - residual.mean())
+        direction -= self._lift * float(direction.sum())
         return direction
 
     def error(self, residual: Array) -> float:

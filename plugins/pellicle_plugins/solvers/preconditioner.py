@@ -35,11 +35,13 @@ class Preconditioner:
         # The transform's shape, and that of the extension, whose pyramid needs even numbers.
         if grid.boundary == "periodic":
             self._plane = grid.shape
-            self._padded = _round_up(grid.shape, 2 ** _halvings(grid.shape))
+            levels = _halvings(grid.shape)
+            self._padded = _round_up(grid.shape, 2**levels)
         else:
             self._plane = self._padded = _free_shape(grid.shape)
+            levels = _halvings(self._padded)
         self._symbol = _stiffness(operator, self._plane)
-        self._orders = _orders(operator, _halvings(self._padded))
+        self._orders = _orders(operator, levels)
 
     def on(self, contact: NDArray[np.bool_]) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""

@@ -1,0 +1,132 @@
+"""Fields between a grid and a coarser one: restrict, prolong, and the problem that they make."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pellicle import Grid, Problem
+from pellicle.operators import make_operator
+from pellicle.transfer import prolong, restrict
+from pellicle_plugins.kernels.half_space import HalfSpace
+
+# Fine shape, coarse shape: halves, odd, primes, one cell, and numbers that share no factor.
+PAIRS = [
+    ((8, 6), (4, 3)),
+    ((9, 7), (5, 4)),
+    ((97, 61), (49, 31)),
+    ((12, 12), (5, 7)),
+    ((1, 5), (1, 3)),
+    ((1, 1), (1, 1)),
+]
+
+
+def field(shape: tuple[int, int]) -> np.ndarray:
+    """Return random negative heights."""
+    return -np.random.default_rng(2).uniform(0.5, 2, size=shape)
+
+
+@pytest.mark.parametrize(("fine", "coarse"), PAIRS)
+def test_restrict_is_the_mean_of_the_cells_within(
+    fine: tuple[int, int], coarse: tuple[int, int]
+) -> None:
+    """Each coarse cell holds the mean of those fine cells whose centres lie in it."""
+    heights = field(fine)
+    centres = [(np.arange(n) + 0.5) / n for n in fine]
+    expected = np.empty(coarse)
+    for i in range(coarse[0]):
+        for j in range(coarse[1]):
+            rows, columns = (
+                np.floor(c * n + 1e-12).astype(int) == k
+                for c, n, k in zip(centres, coarse, (i, j), strict=True)
+            )
+            expected[i, j] = heights[np.ix_(rows, columns)].mean()
+    np.testing.assert_allclose(restrict(heights, coarse), expected, rtol=1e-14)
+
+
+@pytest.mark.parametrize(("fine", "coarse"), PAIRS)
+def test_prolong_then_restrict_changes_nothing(
+    fine: tuple[int, int], coarse: tuple[int, int]
+) -> None:
+    """A pressure put on a finer grid is constant over what `restrict` takes the mean of."""
+    pressure = field(coarse)
+    finer = prolong(pressure, fine)
+    assert finer.shape == fine
+    np.testing.assert_allclose(restrict(finer, coarse), pressure, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("fine", "coarse"), [((8, 6), (4, 3)), ((9, 10), (3, 2)), ((5, 4), (5, 1))]
+)
+def test_means_are_kept_where_sizes_divide(fine: tuple[int, int], coarse: tuple[int, int]) -> None:
+    """The mean height, and the force of a pressure, are the same on both grids."""
+    heights = field(fine)
+    assert restrict(heights, coarse).mean() == pytest.approx(heights.mean(), rel=1e-14)
+    pressure = field(coarse)
+    assert prolong(pressure, fine).mean() == pytest.approx(pressure.mean(), rel=1e-14)
+
+
+def test_same_shape_is_the_same_field() -> None:
+    """On a grid of as many cells nothing changes, −inf included."""
+    heights = field((5, 4))
+    heights[1, 2] = -np.inf
+    np.testing.assert_array_equal(restrict(heights, (5, 4)), heights)
+    np.testing.assert_array_equal(prolong(heights, (5, 4)), heights)
+
+
+def test_half_without_indenter_is_without() -> None:
+    """−inf spreads to a coarse cell if half of it has none, and counts for nothing otherwise."""
+    nothing = -np.inf
+    heights = np.array(
+        [
+            [-1.0, -2.0, nothing, -3.0, nothing, nothing],
+            [-3.0, -6.0, -4.0, -5.0, -7.0, nothing],
+            [-1.0, nothing, nothing, nothing, -1.0, -1.0],
+            [nothing, -9.0, nothing, nothing, -1.0, -1.0],
+        ]
+    )
+    expected = [[-3.0, -4.0, nothing], [nothing, nothing, -1.0]]
+    np.testing.assert_array_equal(restrict(heights, (2, 3)), expected)
+
+
+@pytest.mark.parametrize(
+    ("points", "expected"),
+    [((8, 6), (4, 3)), ((9, 7), (5, 4)), ((97, 1), (49, 1)), ((1, 1), (1, 1)), ((3, 2), (2, 1))],
+)
+def test_coarsened_grid(points: tuple[int, int], expected: tuple[int, int]) -> None:
+    """Half as many cells, rounded up, on the same domain with the same boundary."""
+    grid = Grid(points=points, size=(2.0, 3.0), boundary="periodic")
+    coarse = grid.coarsened()
+    assert coarse.points == expected
+    assert coarse.size == grid.size
+    assert coarse.boundary == grid.boundary
+    assert Grid(**coarse.model_dump()) == coarse
+
+
+@pytest.mark.parametrize("prescribed", ["depth", "force"])
+def test_coarsened_problem(prescribed: str) -> None:
+    """The same load on the coarse grid; an operator of its own leaves the fine one's count."""
+    grid = Grid(points=(9, 6), size=(2.0, 3.0))
+    kernel = HalfSpace(reduced_modulus=2.0)
+    fine = Problem(grid, make_operator(kernel, grid), field(grid.shape), prescribed, 3.0)  # type: ignore[arg-type]
+    coarse = fine.coarsened()
+    assert coarse.grid == grid.coarsened() == coarse.operator.grid
+    assert (coarse.prescribed, coarse.value) == (prescribed, 3.0)
+    np.testing.assert_array_equal(coarse.profile, restrict(fine.profile, (5, 3)))
+    pressure = np.ones(coarse.grid.shape)
+    np.testing.assert_array_equal(
+        coarse.operator(pressure), make_operator(kernel, coarse.grid)(pressure)
+    )
+    assert (fine.operator.applications, coarse.operator.applications) == (0, 1)
+
+
+def test_coarsened_uniform_pressure_makes_the_same_displacement() -> None:
+    """Where both grids have a cell centre, a uniform pressure displaces it alike."""
+    grid = Grid(points=27, size=1.0)
+    problem = Problem(
+        grid, make_operator(HalfSpace(reduced_modulus=1.0), grid), field(grid.shape), "depth", 1.0
+    )
+    coarse = problem.coarsened().coarsened()
+    assert coarse.grid.shape == (7, 7)
+    fine = problem.operator(np.ones(grid.shape))[13, 13]
+    assert coarse.operator(np.ones(coarse.grid.shape))[3, 3] == pytest.approx(fine, rel=1e-12)

@@ -1,0 +1,174 @@
+"""The extension and the preconditioner made of it: transposes, known values, decay, positivity."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pellicle import Grid
+from pellicle.operators import make_operator
+from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.solvers.extension import Extension, _interpolate, _transposed_interpolate
+from pellicle_plugins.solvers.preconditioner import OnContact, Preconditioner
+
+SINGLE = float(np.finfo(np.float32).eps)
+ORDERS = [0.0, 0.5, 1.0, 1.7, 2.0]
+
+
+def product(one: NDArray[Any], other: NDArray[Any]) -> float:
+    """Return Σ one · other in double precision."""
+    return float((one.astype(np.float64) * other.astype(np.float64)).sum())
+
+
+def lone_cell(number: int, orders: list[float]) -> NDArray[np.float32]:
+    """Return E of 1 in one cell of a square of ``number``² cells; that cell is in the middle."""
+    known = np.zeros((number, number), dtype=bool)
+    known[number // 2, number // 2] = True
+    return Extension(known, orders).spread(known.astype(np.float32))
+
+
+@pytest.mark.parametrize("shape", [(8, 8), (32, 64), (96, 16), (160, 112)])
+@pytest.mark.parametrize("share", [0.01, 0.3, 0.9, 1.0])
+def test_gather_is_the_transpose_of_spread(shape: tuple[int, int], share: float) -> None:
+    """⟨E x, y⟩ = ⟨x, Eᵀ y⟩ to single precision, for any set, shape and order, level by level."""
+    random = np.random.default_rng(7)
+    for levels in range(4):
+        known = random.uniform(size=shape) < share
+        known[0, 0] = True
+        extension = Extension(known, list(random.choice(ORDERS, levels)))
+        x = np.where(known, random.normal(size=shape), 0).astype(np.float32)
+        y = random.normal(size=shape).astype(np.float32)
+        spread, gathered = extension.spread(x), extension.gather(y)
+        size = product(np.abs(spread), np.abs(y))
+        assert product(spread, y) == pytest.approx(product(x, gathered), abs=10 * SINGLE * size)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_known_values_are_kept(order: float) -> None:
+    """E changes nothing where the values are given, and E of nothing is nothing."""
+    random = np.random.default_rng(3)
+    known = random.uniform(size=(48, 32)) < 0.2
+    extension = Extension(known, [order] * 4)
+    values = np.where(known, random.normal(size=known.shape), 0).astype(np.float32)
+    spread = extension.spread(values)
+    np.testing.assert_array_equal(spread[known], values[known])
+    assert (spread[~known] != 0).any()
+    assert not extension.spread(np.zeros_like(values)).any()
+
+
+@pytest.mark.parametrize(("order", "least"), [(1.0, 0.85), (1.5, 0.9), (2.0, 1.0)])
+def test_constant_on_a_large_contact_goes_on_as_it_is(order: float, least: float) -> None:
+    """Next to a contact much wider than the cells E of 1 is nearly 1, and falls off outwards."""
+    known = np.zeros((128, 128), dtype=bool)
+    known[32:96, 32:96] = True
+    spread = Extension(known, [order] * 6).spread(known.astype(np.float32))
+    outwards = spread[31:16:-1, 64]
+    assert outwards[0] >= least  # 0.88, 0.93, 1
+    assert (np.diff(outwards) <= 0).all()
+    assert outwards[-1] > 0.5
+    assert spread.max() <= 1 + 4 * SINGLE
+
+
+def test_lone_cell_of_order_one_decays_as_the_distance() -> None:
+    """Of order 1, as for a half-space, E of one cell halves where the distance doubles."""
+    spread = lone_cell(256, [1.0] * 8)
+    across = np.arange(256) - 128
+    distance = np.hypot(across[:, None], across[None, :])
+    rings = [spread[(distance >= r / 1.2) & (distance < r * 1.2)].mean() for r in (4, 8, 16, 32)]
+    ratios = np.array(rings[1:]) / rings[:-1]
+    np.testing.assert_allclose(ratios, 0.5, atol=0.1)
+
+
+def test_lone_cell_loses_by_its_order() -> None:
+    """The one cell of the coarsest level has 2^(α − 2) for each level: 1 at order 2."""
+    number = 32
+    for order in ORDERS:
+        spread = lone_cell(number, [order] * 5)
+        assert spread.min() == pytest.approx(2.0 ** (5 * (order - 2)), rel=0.5)
+    np.testing.assert_array_equal(lone_cell(number, [2.0] * 5), 1.0)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 4), (2, 2), (3, 5), (16, 7)])
+def test_transposed_interpolation(shape: tuple[int, int]) -> None:
+    """The matrices of the interpolation and of its transpose are each other's, to the last bit."""
+    n, m = shape
+    down = np.eye(n * m, dtype=np.float32).reshape(-1, n, m)
+    up = np.eye(4 * n * m, dtype=np.float32).reshape(-1, 2 * n, 2 * m)
+    interpolation = np.array([_interpolate(unit).ravel() for unit in down])
+    transposed = np.array([_transposed_interpolate(unit).ravel() for unit in up])
+    np.testing.assert_array_equal(interpolation, transposed.T)
+    np.testing.assert_array_equal(interpolation.sum(axis=0), 1.0)
+
+
+def preconditioned(
+    points: tuple[int, int],
+    boundary: Literal["free", "periodic"],
+    contact: NDArray[np.bool_],
+    tension: float,
+) -> OnContact:
+    """Return the preconditioner of a tensed half-space on a contact."""
+    grid = Grid(points=points, size=(1.0, 0.8 * points[1] / points[0]), boundary=boundary)
+    kernel = TensedMembrane(reduced_modulus=1.0, tension=tension)
+    return Preconditioner(make_operator(kernel, grid)).on(contact)
+
+
+def matrix(on_contact: OnContact) -> NDArray[np.float64]:
+    """Return Eᵀ K E by its columns."""
+    return np.array([on_contact(unit) for unit in np.eye(on_contact.cells.size)]).T
+
+
+# Odd sizes of which one or both are rounded up to what the pyramid needs; thin; a single row.
+SHAPES = [(8, 8), (16, 12), (7, 9), (13, 6), (15, 31), (33, 17), (40, 2), (31, 1), (1, 5)]
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+@pytest.mark.parametrize("points", SHAPES)
+def test_preconditioner_is_symmetric_and_positive(
+    points: tuple[int, int], boundary: Literal["free", "periodic"]
+) -> None:
+    """On random contacts, full ones too, Eᵀ K E is symmetric to round-off and positive."""
+    random = np.random.default_rng(11)
+    for share, tension in [(0.15, 0.0), (0.5, 0.02), (1.0, 1.0)]:
+        contact = random.uniform(size=points) < share
+        contact[-1, -1] = True
+        dense = matrix(preconditioned(points, boundary, contact, tension))
+        largest = np.abs(dense).max()
+        np.testing.assert_allclose(dense, dense.T, atol=30 * SINGLE * largest)
+        assert np.linalg.eigvalsh(dense + dense.T).min() > 0
+
+
+@pytest.mark.parametrize("points", [(97, 61), (100, 36), (127, 128)])
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_preconditioner_of_large_odd_grids_is_symmetric(
+    points: tuple[int, int], boundary: Literal["free", "periodic"]
+) -> None:
+    """⟨M x, y⟩ = ⟨x, M y⟩ to single precision and ⟨M x, x⟩ > 0, whatever the number of cells."""
+    random = np.random.default_rng(5)
+    for share in (0.002, 0.2, 0.8):
+        contact = random.uniform(size=points) < share
+        on_contact = preconditioned(points, boundary, contact, tension=0.01)
+        x, y = random.normal(size=(2, on_contact.cells.size))
+        there, back = on_contact(x), on_contact(y)
+        size = product(np.abs(there), np.abs(y))
+        assert product(there, y) == pytest.approx(product(x, back), abs=10 * SINGLE * size)
+        assert product(there, x) > 0
+
+
+@pytest.mark.parametrize("tension", [0.0, 0.05, 5.0])
+def test_preconditioner_is_nearly_the_inverse(tension: float) -> None:
+    """The eigenvalues of M A on a disc spread over less than a factor of 30, ever fewer cells."""
+    grid = Grid(points=24, size=1.0, boundary="free")
+    x, y = grid.coordinates()
+    contact = np.hypot(x, y) < 0.35
+    operator = make_operator(TensedMembrane(reduced_modulus=1.0, tension=tension), grid)
+    on_contact = Preconditioner(operator).on(contact)
+    columns = []
+    for cell in on_contact.cells:
+        unit = np.zeros(grid.shape)
+        unit.flat[cell] = 1.0
+        columns.append(operator(unit)[contact])
+    values = np.linalg.eigvals(matrix(on_contact) @ np.array(columns)).real
+    assert 0 < values.max() < 30 * values.min()
