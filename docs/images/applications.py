@@ -50,7 +50,8 @@ def main() -> None:
     axes.minorticks_off()
     axes.set(xlabel="cells along an edge, N", ylabel="operator applications, finest grid")
     axes.grid(alpha=0.3)
-    axes.legend(fontsize=7)
+    axes.set_ylim(8, 2000)
+    axes.legend(fontsize=7, loc="upper left")
     figure.savefig(Path(__file__).with_name("applications.png"))
 
 

@@ -46,7 +46,7 @@ class _State:
 
 
 class ActiveSet(IterativeSolver):
-    """Solver whose operator applications grow neither with the grid nor with the tension.
+    """Solver whose operator applications hardly grow with the grid or with the tension.
 
     The contact is guessed on a coarser grid; an inner solve finds the pressure, of either sign,
     that closes the gap on it; cells that would need suction leave, cells that penetrate join
