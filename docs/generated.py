@@ -148,14 +148,8 @@ def _bounds(info: FieldInfo) -> Iterator[tuple[str, Any]]:
 
 
 def _range(quantity: Quantity) -> str:
-    bounds = (
-        (">", quantity.above),
-        ("≥", quantity.at_least),
-        ("<", quantity.below),
-        ("≤", quantity.at_most),
-    )
     unit = "number" if quantity.unit == "1" else quantity.unit
-    return ", ".join([unit, *(f"{sign} {bound:g}" for sign, bound in bounds if bound is not None)])
+    return ", ".join([unit, *quantity.bounds])
 
 
 def _metadata(info: FieldInfo) -> Iterator[object]:

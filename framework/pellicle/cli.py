@@ -156,17 +156,15 @@ def new(
     from importlib.resources import files
 
     from .errors import StorageError
+    from .storage import reported
 
     text = files("pellicle").joinpath("starter.toml").read_text(encoding="utf-8")
-    try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError:
-        raise StorageError(f"{path} exists already; give another name") from None
-    except OSError as error:
-        raise StorageError(
-            f"{path}: cannot be written ({error.strerror}); choose another folder"
-        ) from None
+    with reported(path):
+        try:
+            with path.open("x", encoding="utf-8") as file:
+                file.write(text)
+        except FileExistsError:
+            raise StorageError(f"{path} exists already; give another name") from None
     typer.echo(f"wrote {path}; next: pellicle run {path}")
 
 

@@ -72,10 +72,9 @@ class PeriodicOperator(Operator):
         super().__init__(kernel, grid)
         qx, qy = grid.wavenumbers()
         q = np.hypot(qx, qy)
-        q[0, 0] = np.inf
         self._symbol = np.zeros(q.shape)
-        resolved = np.isfinite(q)
-        self._symbol[resolved] = _checked(kernel.compliance(q[resolved]))
+        # The first wavenumber is 0, at which the mean displacement is chosen to be 0.
+        self._symbol.ravel()[1:] = _checked(kernel.compliance(q.ravel()[1:]))
 
     def _apply(self, pressure: Array) -> Array:
         transform = scipy.fft.rfft2(pressure)

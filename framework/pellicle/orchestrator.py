@@ -117,14 +117,14 @@ def execute(
 
 def _as_run(configuration: Run | Mapping[str, Any] | str | Path) -> tuple[Run, str]:
     if isinstance(configuration, Run):
-        return configuration, file_stem(configuration.title)
+        return configuration, _file_stem(configuration.title)
     if isinstance(configuration, Mapping):
         made = Run(**configuration)
-        return made, file_stem(made.title)
+        return made, _file_stem(made.title)
     return Run.from_toml(configuration), Path(configuration).stem
 
 
-def file_stem(title: str) -> str:
+def _file_stem(title: str) -> str:
     """Return a file name made of a title."""
     return re.sub(r"\W+", "-", title).strip("-").lower() or "run"
 
@@ -208,7 +208,7 @@ def _solve_steps(
         used = problem.operator.applications - before
         pressure = solution.pressure
         found = measure(problem, pressure)
-        status, message = _judge(run, found, solution.stop, problem, index)
+        status, message = _judge(run, found, solution.stop, index)
         areas = {
             f"contact_area_{correction.type}": correction.area(  # type: ignore[attr-defined]
                 found.contact, run.grid.spacing
@@ -232,9 +232,7 @@ def _solve(run: Run, problem: Problem, start: Array | None, monitor: Monitor) ->
     return run.solver.solve(problem, start, monitor)
 
 
-def _judge(
-    run: Run, found: Equilibrium, stop: Stop, problem: Problem, index: int
-) -> tuple[Status, str]:
+def _judge(run: Run, found: Equilibrium, stop: Stop, index: int) -> tuple[Status, str]:
     """Return the status of a step by its measured residuals, and what the user is told."""
     tolerance = run.solver.tolerance
     if not np.isfinite(found.force):

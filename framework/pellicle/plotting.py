@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .errors import StorageError
 from .operators import Array
 from .result import Result
+from .storage import reported
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -123,13 +123,9 @@ def save_figures(
             draw(result, figure.add_subplot())
             for format_ in formats:
                 path = directory / f"{name}-{ending}.{format_}"
-                try:
+                with reported(path):
                     directory.mkdir(parents=True, exist_ok=True)
                     figure.savefig(path)
-                except OSError as error:
-                    raise StorageError(
-                        f"{path}: cannot be written ({error.strerror}); choose another folder"
-                    ) from None
                 files.append(path)
     return tuple(files)
 

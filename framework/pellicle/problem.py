@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import isfinite
 from typing import Literal
 
 import numpy as np
@@ -33,8 +34,16 @@ class Problem:
     @property
     def touches(self) -> bool:
         """Whether anything has to be solved: the undeformed surface is not already the answer."""
-        lowest = self.profile.max()
-        return bool(self.value > (0.0 if self.prescribed == "force" else -lowest))
+        lowest = float(self.profile.max())
+        # A coarse grid may see nothing of an indenter of single cells.
+        return isfinite(lowest) and self.value > (0 if self.prescribed == "force" else -lowest)
+
+    def depth(self, aloft: Array) -> float:
+        """Return δ [m] from the values of u − f on the contact.
+
+        With a force prescribed it is that of no mean gap there (Polonsky & Keer 1999).
+        """
+        return self.value if self.prescribed == "depth" else float(aloft.mean())
 
     def coarsened(self) -> Problem:
         """Return the same problem with half as many cells each way.
@@ -88,10 +97,8 @@ def measure(problem: Problem, pressure: Array) -> Equilibrium:
     force = total * problem.grid.cell_area
     displacement = problem.operator(pressure)
     aloft = displacement - problem.profile
-    depth = problem.value
-    if problem.prescribed == "force":
-        # Polonsky & Keer 1999: the depth at which the mean gap in contact is zero.
-        depth = float(aloft[contact].mean()) if total else float(aloft.min())
+    # Without pressure the indenter just touches.
+    depth = problem.depth(aloft[contact] if total else aloft.min(keepdims=True))
     gap = aloft - depth
     scale = height_scale(problem.profile, contact, depth)
     inside = np.abs(gap[contact])

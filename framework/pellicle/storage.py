@@ -126,14 +126,15 @@ def check_writable(path: Path) -> None:
     StorageError
         It cannot.
     """
-    with _reported(path):
+    with reported(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path.parent):
             pass
 
 
 @contextmanager
-def _reported(path: Path) -> Iterator[None]:
+def reported(path: Path) -> Iterator[None]:
+    """Turn a failure to write ``path`` into a StorageError that says what to do."""
     try:
         yield
     except OSError as error:
@@ -146,7 +147,7 @@ def _reported(path: Path) -> Iterator[None]:
 def _aside(path: Path) -> Iterator[Path]:
     """Yield a name to write to; rename it to ``path`` when whole, leave nothing when not."""
     aside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    with _reported(path):
+    with reported(path):
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             yield aside

@@ -128,18 +128,20 @@ class Quantity:
             or (self.at_most is not None and number > self.at_most)
         )
 
+    @property
+    def bounds(self) -> list[str]:
+        """The bounds that there are, e.g. ``["> 0", "≤ 0.5"]``."""
+        all_four = (
+            (">", self.above),
+            ("≥", self.at_least),
+            ("<", self.below),
+            ("≤", self.at_most),
+        )
+        return [f"{sign} {bound:g}" for sign, bound in all_four if bound is not None]
+
     def _wanted(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
-        bounds = [
-            f"{sign} {bound:g}{unit}"
-            for sign, bound in (
-                (">", self.above),
-                ("≥", self.at_least),
-                ("<", self.below),
-                ("≤", self.at_most),
-            )
-            if bound is not None
-        ]
+        bounds = [f"{bound}{unit}" for bound in self.bounds]
         range_ = f" {' and '.join(bounds)}" if bounds else ""
         if self.unit == "1":
             return f"a plain number{range_}"

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Literal
 
 from pellicle import hookimpl, storage
 from pellicle.components import Output, Place
-from pellicle.errors import StorageError
 from pellicle.result import Result
 
 if TYPE_CHECKING:
@@ -34,16 +33,12 @@ class Csv(Output):
             if variable.dims == ("step",)
         }
         index = step["step"].item()
-        try:
-            with path.open("a" if index else "w", newline="", encoding="utf-8") as file:
-                writer = csv.DictWriter(file, ["step", *row])
-                if index == 0:
-                    writer.writeheader()
-                writer.writerow({"step": index, **row})
-        except OSError as error:
-            raise StorageError(
-                f"{path}: cannot be written ({error.strerror}); choose another folder"
-            ) from None
+        mode = "a" if index else "w"
+        with storage.reported(path), path.open(mode, newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, ["step", *row])
+            if index == 0:
+                writer.writeheader()
+            writer.writerow({"step": index, **row})
 
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Name the file, which is complete."""

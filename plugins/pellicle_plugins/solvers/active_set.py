@@ -78,7 +78,7 @@ class ActiveSet(IterativeSolver):
             goal,
         )
         gap = found.displacement - problem.profile
-        gap -= _depth(problem, gap, state.contact)
+        gap -= problem.depth(gap[state.contact])
         contact = np.where(state.contact, found.pressure > 0, gap < -max(found.error, goal))
         return _measured(problem, found.pressure, found.displacement, contact, state.preconditioner)
 
@@ -97,8 +97,7 @@ class ActiveSet(IterativeSolver):
     def _cold_start(self, problem: Problem) -> Array:
         if max(problem.grid.shape) > _COARSEST:
             coarse = problem.coarsened()
-            # An indenter of single cells may have none that a coarse cell sees.
-            if coarse.touches and np.isfinite(coarse.profile).any():
+            if coarse.touches:
                 tolerance = max(self.tolerance, _COARSE_TOLERANCE)
                 solver = self.model_copy(update={"tolerance": tolerance})
                 found = solver.solve(coarse, None, lambda iteration, excess: None)
@@ -131,7 +130,7 @@ def _measured(
         displacement = problem.operator(pressure)
     pressed = pressure > 0
     gap = displacement - problem.profile
-    depth = _depth(problem, gap, pressed)
+    depth = problem.depth(gap[pressed])
     gap -= depth
     inside = float(np.abs(gap[pressed]).max(initial=0.0))
     return _State(
@@ -143,13 +142,6 @@ def _measured(
         error=max(inside, -float(gap.min(initial=0.0))),
         preconditioner=preconditioner,
     )
-
-
-def _depth(problem: Problem, aloft: Array, contact: NDArray[np.bool_]) -> float:
-    """Return δ [m] from u − f: the given one, or with a given force that of no mean gap."""
-    if problem.prescribed == "depth":
-        return problem.value
-    return float(aloft[contact].mean())
 
 
 @hookimpl

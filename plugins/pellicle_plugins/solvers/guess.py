@@ -11,9 +11,9 @@ from .products import dot
 
 
 def first_guess(problem: Problem) -> Array:
-    """Return a pressure [Pa] that acts wherever there can be contact, of a sensible size."""
+    """Return a pressure [Pa] wherever there can be contact; see `with_force` for its size."""
     if problem.prescribed == "force":
-        return with_force(problem, np.isfinite(problem.profile).astype(np.float64))
+        return np.isfinite(problem.profile).astype(np.float64)
     overlap = np.maximum(problem.profile + problem.value, 0.0)
     response = problem.operator(overlap)
     # The multiple of the overlap whose displacement comes nearest to it in energy.

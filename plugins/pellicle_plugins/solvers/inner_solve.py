@@ -50,8 +50,8 @@ def inner_solve(
     whole = np.zeros(problem.grid.shape)
     displacement = displacement.copy()
     pressed = pressure.ravel()[cells]
-    residual = problem.profile.ravel()[cells] - displacement.ravel()[cells]
-    residual += problem.value if problem.prescribed == "depth" else -residual.mean()
+    aloft = displacement.ravel()[cells] - problem.profile.ravel()[cells]
+    residual = problem.depth(aloft) - aloft
     next_look = max(_REDUCTION * error, goal)
     best, since_best = np.inf, 0
     direction = search(residual)
@@ -87,8 +87,8 @@ def _penetrates(problem: Problem, displacement: Array, cells: Cells, error: floa
     """Whether the surface penetrates off the contact by more than ``error`` [m]."""
     gap = displacement - problem.profile
     inside = gap.ravel()[cells]
-    depth = problem.value if problem.prescribed == "depth" else float(inside.mean())
-    return bool(np.count_nonzero(gap < depth - error) > np.count_nonzero(inside < depth - error))
+    deepest = problem.depth(inside) - error
+    return bool(np.count_nonzero(gap < deepest) > np.count_nonzero(inside < deepest))
 
 
 class _Search:
