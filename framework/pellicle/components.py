@@ -8,10 +8,10 @@ pickles to workers. A concrete component declares ``type: Literal["name"] = "nam
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 Monitor = Callable[[int, float], None]
 """Called by a solver with its iteration and its residual over the tolerance, to show progress."""
 
-Task = TypeVar("Task")
 Outcome = TypeVar("Outcome")
 
 
@@ -201,16 +200,50 @@ class Output(Component):
         return ()
 
 
+class Task(Protocol):
+    """A run of a study, as an executor sees it; it pickles."""
+
+    @property
+    def name(self) -> str:
+        """A line for people."""
+        ...
+
+    @property
+    def memory(self) -> int:
+        """Memory that the task takes while it runs [bytes], estimated."""
+        ...
+
+
+AnyTask = TypeVar("AnyTask", bound=Task)
+Report = Callable[[AnyTask, Any], None]
+"""Called in the calling process with a task and what its work said."""
+Say = Callable[[Any], None]
+"""Called by work, wherever it runs, with something small that pickles, for `Report`."""
+
+
 class Executor(Component):
     """Carries out the runs of a study."""
 
     family: ClassVar[str] = "executor"
 
+    threads: Annotated[
+        int | None,
+        Field(ge=1, description="threads of each run's Fourier transforms; all cores if absent"),
+    ] = None
+
     @abstractmethod
     def map(
-        self, work: Callable[[Task], Outcome], tasks: Iterable[Task]
-    ) -> Iterator[tuple[Task, Outcome]]:
-        """Yield each task with what ``work`` returned for it, as they finish."""
+        self,
+        work: Callable[[AnyTask, Say], Outcome],
+        tasks: Sequence[AnyTask],
+        report: Report[AnyTask],
+    ) -> Iterator[tuple[AnyTask, Outcome | Exception]]:
+        """Yield each task once, as they finish, with what ``work(task, say)`` returned or raised.
+
+        ``work`` is a picklable function. A task whose worker died comes with an exception that says
+        so; it does not stop the others. What ``work`` says reaches ``report`` in this process, as
+        soon as may be, or not at all. Where the iterator is closed early, no task goes on.
+        """
 
 
 @dataclass(frozen=True)

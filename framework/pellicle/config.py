@@ -12,11 +12,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar, cast
 
-from pydantic import BaseModel, Field, model_validator
+from pydantic import Field, model_validator
 from pydantic_core import core_schema
 
 from .components import AreaCorrection, Component, Indenter, Kernel, Output, Solver
 from .errors import ConfigError, Problem, shown
+from .fields import FromRegistry
 from .grid import Grid
 from .model import Model, paths_relative_to
 from .plugins import registry
@@ -30,40 +31,6 @@ if TYPE_CHECKING:
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 DEFAULT_SOLVER = "active_set"
 _MOST_STEPS = 1_000_000
-
-
-class _FromRegistry:
-    """Annotation of a field that holds a component: any registered one of the field's family."""
-
-    def __get_pydantic_core_schema__(
-        self, source: type[Component], handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        return core_schema.no_info_plain_validator_function(
-            lambda given: registry().make(source, given),
-            serialization=core_schema.plain_serializer_function_ser_schema(
-                lambda component, info: component.model_dump(
-                    mode=info.mode, exclude_none=info.exclude_none
-                ),
-                info_arg=True,
-            ),
-            metadata={"family": source.family},
-        )
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> JsonSchemaValue:
-        found = registry().components[schema["metadata"]["family"]]
-        return {
-            "oneOf": [
-                handler(registered.component.__pydantic_core_schema__)
-                | {"required": ["type", *_required(registered.component)]}
-                for registered in found.values()
-            ]
-        }
-
-
-def _required(model: type[BaseModel]) -> list[str]:
-    return [name for name, info in model.model_fields.items() if info.is_required()]
 
 
 @dataclass(frozen=True)
@@ -180,23 +147,23 @@ class Run(Model):
 
     title: Annotated[str, Field(description="a line for figures and listings")] = ""
     grid: Annotated[Grid, Field(description="the domain and its cells")]
-    kernel: Annotated[Kernel, _FromRegistry(), Field(description="how the surface yields")]
-    indenter: Annotated[Indenter, _FromRegistry(), Field(description="what is pressed in")]
+    kernel: Annotated[Kernel, FromRegistry(), Field(description="how the surface yields")]
+    indenter: Annotated[Indenter, FromRegistry(), Field(description="what is pressed in")]
     loading: Annotated[Loading, Field(description="the load steps")]
     solver: Annotated[
         Solver,
-        _FromRegistry(),
+        FromRegistry(),
         Field(
             description="how it is solved",
             default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER}),
         ),
     ]
     corrections: Annotated[
-        tuple[Annotated[AreaCorrection, _FromRegistry()], ...],
+        tuple[Annotated[AreaCorrection, FromRegistry()], ...],
         Field(description="corrections of the contact area"),
     ] = ()
     outputs: Annotated[
-        tuple[Annotated[Output, _FromRegistry()], ...] | None,
+        tuple[Annotated[Output, FromRegistry()], ...] | None,
         Field(description="what the run leaves behind; all the standard outputs if not given"),
     ] = None
 
