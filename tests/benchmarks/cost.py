@@ -1,16 +1,19 @@
 """What solvers cost, in units of the bare Fourier transforms that they contain.
 
 Prints for each case: applications of the operator on the finest grid, seconds, the ratio of the
-whole solve to the bare scipy.fft pairs of all its transforms on all its grids, the set-up in
-operator applications, and the peak memory in arrays of the transform's real size. Each row is a
-process of its own. Ratios are what is comparable: the machine is not.
+whole solve to the bare scipy.fft pairs in double precision of all its applications of operator and
+preconditioner on all its grids, the same to pairs in the precision that each application has, the
+set-up in operator applications, and the peak memory in arrays of the transform's real size. Each
+row is a process of its own. Ratios are what is comparable: the machine is not.
 
     python tests/benchmarks/cost.py                                  # active_set, N = 256 … 1024
     python tests/benchmarks/cost.py --solvers active_set conjugate_gradient --points 256 512
     python tests/benchmarks/cost.py --cases punch --points 4096 --tension 0.02 --threads 2
+    python tests/benchmarks/cost.py --cases rough --cutoff 0.0625    # one surface on every grid
 
 Cases, lengths in units of the domain L, E* = 1, s = 2τ₀/E*:
-rough   periodic, self-affine (H = 0.8, cut-off 16 cells), mean pressure 0.1 × rms slope, to 1e-6
+rough   periodic, self-affine (H = 0.8, cut-off 16 cells or as given), to 1e-6 at a mean pressure of
+        0.1 × rms slope
 punch   free, self-affine (H = 0.7, rms 0.01, cut-off 16 cells), depth 0.1, to 1e-6
 smooth  free, paraboloid of radius 2.236, depth 0.1118 (domain 2 a_H), to 1e-8
 """
@@ -32,7 +35,7 @@ from typing import Any
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
-def problem(case: str, points: int, tension: float):  # type: ignore[no-untyped-def]
+def problem(case: str, points: int, tension: float, cutoff: float | None = None):  # type: ignore[no-untyped-def]
     """Return the problem of a case, its tolerance, and the seconds that its operator took."""
     import numpy as np
 
@@ -42,7 +45,7 @@ def problem(case: str, points: int, tension: float):  # type: ignore[no-untyped-
 
     grid = pl.Grid(points=points, size=1.0, boundary="periodic" if case == "rough" else "free")
     kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=tension / 2)
-    rough = {"rms_height": 0.01, "cutoff_wavelength": 16 / points, "seed": 1}
+    rough = {"rms_height": 0.01, "cutoff_wavelength": cutoff or 16 / points, "seed": 1}
     indenter = {
         "rough": lambda: pl.indenter("self_affine", hurst=0.8, **rough),
         "punch": lambda: pl.indenter("self_affine", hurst=0.7, **rough),
@@ -60,7 +63,9 @@ def problem(case: str, points: int, tension: float):  # type: ignore[no-untyped-
     return Problem(grid, operator, profile, "depth", depth), tolerance, setup
 
 
-def measure(case: str, points: int, tension: float, solver: str, threads: int) -> dict[str, object]:
+def measure(
+    case: str, points: int, tension: float, solver: str, threads: int, cutoff: float | None
+) -> dict[str, object]:
     """Return the costs of one solve in this process."""
     import numpy as np
     import scipy.fft
@@ -71,22 +76,25 @@ def measure(case: str, points: int, tension: float, solver: str, threads: int) -
 
     with scipy.fft.set_workers(threads):
         before = _peak()
-        given, tolerance, setup = problem(case, points, tension)
+        given, tolerance, setup = problem(case, points, tension, cutoff)
         operator = given.operator
         operator(np.ones(given.grid.shape))
         one = _median(lambda: operator(np.ones(given.grid.shape)))
         transforms: Counter[tuple[tuple[int, ...], str]] = Counter()
-        _count(type(operator), "_apply", transforms, _plane_of_operator, "float64")
-        _count(Preconditioner, "_stiffen", transforms, lambda it: it._plane, "float32")
+        _count(type(operator), "_apply", transforms, _plane_of_operator)
+        _count(Preconditioner, "_stiffen", transforms, lambda it: it._plane)
         used = operator.applications
         started = time.perf_counter()
         solution = pl.solver(solver, tolerance=tolerance).solve(given, None, lambda *_: None)
         seconds = time.perf_counter() - started
         used = operator.applications - used
         peak = _peak() - before
-        bare = sum(
-            number * _median(_bare_pair(shape, dtype))
-            for (shape, dtype), number in list(transforms.items())
+        double, own = (
+            sum(
+                number * _median(_bare_pair(shape, dtype if in_own else "float64"))
+                for (shape, dtype), number in list(transforms.items())
+            )
+            for in_own in (False, True)
         )
     found = measure_pressure(given, solution.pressure)
     return {
@@ -94,7 +102,8 @@ def measure(case: str, points: int, tension: float, solver: str, threads: int) -
         "iterations": solution.iterations,
         "applications": used,
         "seconds": seconds,
-        "ratio": seconds / bare,
+        "ratio": seconds / double,
+        "own": seconds / own,
         "setup": setup / one,
         "peak": peak / (8 * np.prod(_plane_of_operator(operator))),
         "contact": float(found.contact.mean()),
@@ -106,14 +115,14 @@ def _plane_of_operator(operator: object) -> tuple[int, ...]:
 
 
 def _count(
-    owner: type, method: str, counts: Counter[object], shape: Callable[[object], object], dtype: str
+    owner: type, method: str, counts: Counter[object], shape: Callable[[object], object]
 ) -> None:
     """Count the calls of a method by the shape and type of their transforms."""
     original = getattr(owner, method)
 
-    def counted(self: object, *arguments: object) -> object:
-        counts[shape(self), dtype] += 1
-        return original(self, *arguments)
+    def counted(self: object, field: Any) -> object:
+        counts[shape(self), str(field.dtype)] += 1
+        return original(self, field)
 
     setattr(owner, method, counted)
 
@@ -148,33 +157,34 @@ def main() -> None:
     parser.add_argument("--points", type=int, nargs="+", default=[256, 512, 1024])
     parser.add_argument("--tension", type=float, nargs="+", default=[0.0, 0.02, 1.0])
     parser.add_argument("--solvers", nargs="+", default=["active_set"])
+    parser.add_argument("--cutoff", type=float, help="shortest wavelength over L, on every grid")
     parser.add_argument("--threads", type=int, nargs="+", default=[1])
     parser.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
     rows = product(options.cases, options.tension, options.points, options.solvers, options.threads)
     if options.one:
         case, tension, points, solver, threads = next(rows)
-        print(json.dumps(measure(case, points, tension, solver, threads)))
+        print(json.dumps(measure(case, points, tension, solver, threads, options.cutoff)))
         return
     print(
         "| case | s/L | N | solver | threads | contact | iterations | applications | seconds "
-        "| solve ÷ pairs | set-up ÷ application | peak arrays |"
+        "| solve ÷ pairs | in own precision | set-up ÷ application | peak arrays |"
     )
-    print("|" + " --- |" * 12)
+    print("|" + " --- |" * 13)
     for case, tension, points, solver, threads in rows:
-        row = _in_process(case, tension, points, solver, threads)
+        row = _in_process(case, tension, points, solver, threads, options.cutoff)
         mark = "" if row["solved"] else " not solved"
         print(
             f"| {case} | {tension:g} | {points} | {solver}{mark} | {threads} "
             f"| {row['contact']:.3f} | {row['iterations']} | {row['applications']} "
-            f"| {row['seconds']:.2f} | {row['ratio']:.2f} | {row['setup']:.1f} "
+            f"| {row['seconds']:.2f} | {row['ratio']:.2f} | {row['own']:.2f} | {row['setup']:.1f} "
             f"| {row['peak']:.1f} |",
             flush=True,
         )
 
 
 def _in_process(
-    case: str, tension: float, points: int, solver: str, threads: int
+    case: str, tension: float, points: int, solver: str, threads: int, cutoff: float | None
 ) -> dict[str, Any]:
     arguments = {
         "--cases": case,
@@ -183,6 +193,8 @@ def _in_process(
         "--solvers": solver,
         "--threads": threads,
     }
+    if cutoff:
+        arguments["--cutoff"] = cutoff
     words = [str(word) for pair in arguments.items() for word in pair]
     done = subprocess.run(
         [sys.executable, __file__, "--one", *words],

@@ -61,10 +61,10 @@ class ActiveSet(IterativeSolver):
         """Return the state of the last step's pressure, or of the solution on a coarser grid."""
         preconditioner = Preconditioner(problem.operator)
         if start is not None and start.any():
-            state = _started(problem, start, preconditioner)
+            state = _clipped(problem, start, None, preconditioner)
             if state.error <= _CLOSE * state.scale:
                 return state
-        return _started(problem, self._cold_start(problem), preconditioner)
+        return _clipped(problem, self._cold_start(problem), None, preconditioner)
 
     def step(self, problem: Problem, state: _State) -> _State:
         """Return the state after one inner solve and one look at the contact."""
@@ -77,10 +77,15 @@ class ActiveSet(IterativeSolver):
             state.error,
             goal,
         )
-        gap = found.displacement - problem.profile
+        pulls = float(found.pressure.min()) < 0
+        # Where nothing pulls this pressure is the next state's, whose displacement is due anyway.
+        displacement = found.displacement if pulls else problem.operator(found.pressure)
+        gap = displacement - problem.profile
         gap -= problem.depth(gap[state.contact])
         contact = np.where(state.contact, found.pressure > 0, gap < -max(found.error, goal))
-        return _measured(problem, found.pressure, found.displacement, contact, state.preconditioner)
+        if pulls:
+            return _clipped(problem, found.pressure, contact, state.preconditioner)
+        return _measured(problem, found.pressure, displacement, contact, state.preconditioner)
 
     def residual(self, problem: Problem, state: _State) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""
@@ -109,26 +114,31 @@ class ActiveSet(IterativeSolver):
         return first_guess(problem)
 
 
-def _started(problem: Problem, start: Array, preconditioner: Preconditioner) -> _State:
-    return _measured(problem, with_force(problem, start), None, None, preconditioner)
+def _clipped(
+    problem: Problem,
+    pressure: Array,
+    contact: NDArray[np.bool_] | None,
+    preconditioner: Preconditioner,
+) -> _State:
+    """Return the state of the positive part of a pressure, with the force that is prescribed.
+
+    The contact, if not known, is where it presses: cells that penetrate under a pressure that does
+    not carry the load yet are many more than will touch.
+    """
+    pressure = with_force(problem, np.maximum(pressure, 0))
+    if contact is None:
+        contact = pressure > 0
+    return _measured(problem, pressure, problem.operator(pressure), contact, preconditioner)
 
 
 def _measured(
     problem: Problem,
     pressure: Array,
-    displacement: Array | None,
-    contact: NDArray[np.bool_] | None,
+    displacement: Array,
+    contact: NDArray[np.bool_],
     preconditioner: Preconditioner,
 ) -> _State:
-    """Return the state of a pressure without its negative part.
-
-    The displacement is applied afresh if it is not known or not that of the pressure any more;
-    the contact, if not known, is where pressure acts: cells that penetrate under a pressure that
-    does not carry the load yet are many more than will touch.
-    """
-    if displacement is None or float(pressure.min()) < 0:
-        pressure = with_force(problem, np.maximum(pressure, 0))
-        displacement = problem.operator(pressure)
+    """Return the state of a pressure ≥ 0 [Pa] and its displacement [m]."""
     pressed = pressure > 0
     gap = displacement - problem.profile
     depth = problem.depth(gap[pressed])
@@ -138,7 +148,7 @@ def _measured(
         pressure=pressure,
         displacement=displacement,
         gap=gap,
-        contact=pressed if contact is None else contact,
+        contact=contact,
         scale=height_scale(problem.profile, pressed, depth),
         error=max(inside, -float(gap.min(initial=0.0))),
         preconditioner=preconditioner,
