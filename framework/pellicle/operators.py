@@ -20,6 +20,9 @@ from .influence import cell_coefficients
 
 Array = NDArray[np.float64]
 
+# A cell's displacement under its own pressure over that of the finest wave, at least.
+_LEAST_OWN = 0.25
+
 
 class HasCompliance(Protocol):
     """What an operator needs of a kernel."""
@@ -97,12 +100,19 @@ class FreeOperator(Operator):
         cells = cell_coefficients(
             kernel.greens_function, kernel.radial_primitive, grid.shape, grid.spacing
         )
-        # Far away a layer may bulge outwards, under the pressure itself no surface does.
-        if not (np.isfinite(cells).all() and cells[0, 0] > 0):
+        if not np.isfinite(cells).all():
             raise ConfigError(
-                "the displacements under a pressed cell are negative, NaN or infinite; check the "
-                "parameters, or the formula if the kernel is yours",
+                "displacements are NaN or infinite; check the parameters, or the formula if the "
+                "kernel is yours",
                 "kernel",
+            )
+        finest = float(kernel.compliance(np.array([np.pi / min(grid.spacing)]))[0])
+        if not cells[0, 0] > _LEAST_OWN * finest:
+            raise ConfigError(
+                f"a pressed cell sinks by {cells[0, 0]:.2g} m/Pa at its centre, the finest wave by "
+                f"{finest:.2g}: the cells are much wider than an incompressible layer is thick, or "
+                "the formulas of the kernel contradict each other; use more points",
+                "grid.points",
             )
         self._padded = tuple(scipy.fft.next_fast_len(2 * n - 1, real=True) for n in grid.shape)
         # Even in both directions, so the transform of the wrapped coefficients is real.
