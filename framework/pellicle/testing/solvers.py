@@ -132,7 +132,7 @@ def _residual(problem: Problem, pressure: Any) -> float:
 
 def what_is_prescribed_is_solved(solver: Solver) -> None:
     """Pressure, gap and load meet the tolerance, for depth, force and mean pressure."""
-    for case, (problem, prescribed, value) in enumerate(_CASES):
+    for case, (_, prescribed, value) in enumerate(_CASES):
         require_close(
             _afresh(solver, case)[prescribed].item(),
             value,
