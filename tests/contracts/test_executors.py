@@ -1,15 +1,20 @@
 """What every executor keeps: each task once, failures as data, nothing left behind."""
 
+import sys
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import cloudpickle
 import pytest
 
 from pellicle import ConfigError, Executor
 from pellicle.components import Say
+
+# Workers cannot import a module of a folder that is no package.
+cloudpickle.register_pickle_by_value(sys.modules[__name__])
 
 
 @dataclass(frozen=True)
