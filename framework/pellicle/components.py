@@ -51,6 +51,14 @@ class Kernel(Component):
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa], of the shape of ``q`` > 0 [rad/m]."""
 
+    def mean_compliance(self) -> float:
+        """Return G(0) [m/Pa]: the displacement by a uniform pressure over a periodic domain.
+
+        ∞, as of a half-space, if there is no finite one: then the mean displacement is set to 0,
+        and depths are measured from the mean plane.
+        """
+        return np.inf
+
 
 class Indenter(Component):
     """The rigid body that is pressed in."""

@@ -26,6 +26,10 @@ class HasCompliance(Protocol):
         """Return G(q) [m/Pa] for wavenumbers q > 0 [rad/m]."""
         ...
 
+    def mean_compliance(self) -> float:
+        """Return G(0) [m/Pa], ∞ if the mean displacement is to be 0."""
+        ...
+
 
 @runtime_checkable
 class HasClosedForm(HasCompliance, Protocol):
@@ -64,17 +68,23 @@ class Operator(ABC):
 
 
 class PeriodicOperator(Operator):
-    """G(q) sampled on the wavenumbers of the FFT; the mean displacement is zero."""
+    """G(q) sampled on the wavenumbers of the FFT.
 
-    fixes_mean = False
+    The mean displacement is zero if a uniform pressure has no finite one.
+    """
 
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
         super().__init__(kernel, grid)
         qx, qy = grid.wavenumbers()
         q = np.hypot(qx, qy)
+        mean = kernel.mean_compliance()
+        # An incompressible layer has no mean displacement either.
+        self.fixes_mean = 0 < mean < np.inf
         self._symbol = np.zeros(q.shape)
-        # The first wavenumber is 0, at which the mean displacement is chosen to be 0.
-        self._symbol.ravel()[1:] = _checked(kernel.compliance(q.ravel()[1:]))
+        # The first wavenumber is 0.
+        self._symbol.ravel()[0] = 0.0 if mean == np.inf else mean
+        self._symbol.ravel()[1:] = kernel.compliance(q.ravel()[1:])
+        _checked(self._symbol)
 
     def _apply(self, pressure: Array) -> Array:
         transform = scipy.fft.rfft2(pressure)
@@ -137,7 +147,8 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
 def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array:
     """Return the surface displacement [m] of shape (nx, ny) under a pressure [Pa] of that shape.
 
-    One application of the operator; on a periodic grid the mean displacement is zero.
+    One application of the operator; on a periodic grid the mean displacement is zero, unless the
+    kernel says what a uniform pressure does (`Kernel.mean_compliance`).
 
     Raises
     ------
