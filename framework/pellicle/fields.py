@@ -47,34 +47,30 @@ class FromRegistry:
 def json_schema(model: type[BaseModel]) -> dict[str, Any]:
     """Return the JSON schema of a model whose fields take any component that is installed."""
     families = registry().components
-    members = {
-        family: [registered.component for registered in found.values()]
-        for family, found in families.items()
-    }
-    models = [model, *(component for found in members.values() for component in found)]
+    installed = [each for found in families.values() for each in found.values()]
+    models = [model, *(registered.component for registered in installed)]
     refs, made = models_json_schema([(each, "validation") for each in models])
-    choices = {
-        family: {
-            "oneOf": [
-                refs[component, "validation"] | {"required": ["type", *_required(component)]}
-                for component in found
-            ]
-        }
-        for family, found in members.items()
-    }
+    choices: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
+    for registered in installed:
+        component = registered.component
+        choices[component.family].append(
+            refs[component, "validation"]
+            | {"properties": {"type": {"const": registered.type}}}
+            | {"required": ["type", *_required(component)]}
+        )
     definitions = _filled(made["$defs"], choices)
     top = definitions.pop(refs[model, "validation"]["$ref"].rpartition("/")[2])
     return {"$defs": definitions, **top}
 
 
-def _filled(schema: Any, choices: dict[str, dict[str, Any]]) -> Any:
+def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
     """Return ``schema`` with the choices of a family wherever a field holds one of them."""
     if isinstance(schema, list):
         return [_filled(each, choices) for each in schema]
     if not isinstance(schema, dict):
         return schema
     filled = {name: _filled(each, choices) for name, each in schema.items() if name != _FAMILY}
-    return filled | choices[schema[_FAMILY]] if _FAMILY in schema else filled
+    return filled | {"oneOf": choices[schema[_FAMILY]]} if _FAMILY in schema else filled
 
 
 def _required(model: type[BaseModel]) -> list[str]:
