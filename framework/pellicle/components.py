@@ -43,7 +43,8 @@ class Kernel(Component):
 
     That is all it needs to give. On free boundaries its closed form, ``greens_function(r)`` [m/N]
     and ``radial_primitive(r)`` [m²/N] as in `pellicle.operators.HasClosedForm`, is used if it has
-    one, and is otherwise tabulated from G(q) by `pellicle.hankel`.
+    one, and is otherwise tabulated from G(q) by `pellicle.hankel`. On periodic ones a uniform
+    pressure has no displacement unless it also has `pellicle.operators.HasMeanCompliance`.
     """
 
     family: ClassVar[str] = "kernel"
@@ -51,14 +52,6 @@ class Kernel(Component):
     @abstractmethod
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa], of the shape of ``q`` > 0 [rad/m]."""
-
-    def mean_compliance(self) -> float:
-        """Return G(0) [m/Pa]: the displacement by a uniform pressure over a periodic domain.
-
-        ∞, as of a half-space, if there is no finite one: then the mean displacement is set to 0,
-        and depths are measured from the mean plane.
-        """
-        return np.inf
 
 
 class Indenter(Component):

@@ -28,10 +28,6 @@ class HasCompliance(Protocol):
         """Return G(q) [m/Pa] for wavenumbers q > 0 [rad/m]."""
         ...
 
-    def mean_compliance(self) -> float:
-        """Return G(0) [m/Pa], ∞ if the mean displacement is to be 0."""
-        ...
-
 
 @runtime_checkable
 class HasClosedForm(HasCompliance, Protocol):
@@ -44,6 +40,24 @@ class HasClosedForm(HasCompliance, Protocol):
     def radial_primitive(self, r: Array) -> Array:
         """Return ∫₀^r G(r') r' dr' [m²/N] for r ≥ 0 [m]."""
         ...
+
+
+@runtime_checkable
+class HasMeanCompliance(HasCompliance, Protocol):
+    """What a kernel has whose surface does not sink without bound under a uniform pressure."""
+
+    def mean_compliance(self) -> float:
+        """Return G(0) [m/Pa]: the displacement by a uniform pressure over a periodic domain.
+
+        ∞ if there is no finite one: then the mean displacement is set to 0, and depths are
+        measured from the mean plane.
+        """
+        ...
+
+
+def mean_compliance(kernel: HasCompliance) -> float:
+    """Return G(0) [m/Pa] of a kernel, ∞ if it says nothing, as a half-space does."""
+    return kernel.mean_compliance() if isinstance(kernel, HasMeanCompliance) else math.inf
 
 
 class Operator(ABC):
@@ -79,12 +93,12 @@ class PeriodicOperator(Operator):
         super().__init__(kernel, grid)
         qx, qy = grid.wavenumbers()
         q = np.hypot(qx, qy)
-        mean = kernel.mean_compliance()
+        mean = mean_compliance(kernel)
         # An incompressible layer has no mean displacement either.
-        self.fixes_mean = 0 < mean < np.inf
+        self.fixes_mean = 0 < mean < math.inf
         self._symbol = np.zeros(q.shape)
         # The first wavenumber is 0.
-        self._symbol.ravel()[0] = 0.0 if mean == np.inf else mean
+        self._symbol.ravel()[0] = 0.0 if mean == math.inf else mean
         self._symbol.ravel()[1:] = kernel.compliance(q.ravel()[1:])
         _checked(self._symbol)
 
@@ -156,7 +170,7 @@ def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array
     """Return the surface displacement [m] of shape (nx, ny) under a pressure [Pa] of that shape.
 
     One application of the operator; on a periodic grid the mean displacement is zero, unless the
-    kernel says what a uniform pressure does (`Kernel.mean_compliance`).
+    kernel says what a uniform pressure does (`HasMeanCompliance`).
 
     Raises
     ------

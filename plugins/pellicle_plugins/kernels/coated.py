@@ -10,7 +10,7 @@ from pydantic import Field
 from pellicle import hookimpl
 from pellicle.components import Kernel
 from pellicle.fields import FromRegistry
-from pellicle.operators import Array
+from pellicle.operators import Array, mean_compliance
 
 from .skin import Skin
 
@@ -34,7 +34,7 @@ class Coated(Skin):
 
     def mean_compliance(self) -> float:
         """Return that of the substrate [m/Pa]: a uniform displacement does not bend the skin."""
-        return self.substrate.mean_compliance()
+        return mean_compliance(self.substrate)
 
 
 @hookimpl

@@ -11,6 +11,7 @@ import pytest
 from scipy.linalg import null_space
 
 import pellicle as pl
+from pellicle.operators import mean_compliance
 
 YOUNGS, TENSION, BENDING, SURFACE = 9e3, 0.5, 2e-10, 1.5
 Q = np.geomspace(1.0, 1e9, 60)
@@ -161,9 +162,10 @@ def test_a_coat_is_not_felt_by_a_uniform_pressure() -> None:
     """The mean compliance is the substrate's, finite or not."""
     layer = made(LAYER)
     coated = pl.kernel("coated", tension=TENSION, substrate=LAYER)
-    assert coated.mean_compliance() == layer.mean_compliance() > 0
+    assert mean_compliance(coated) == mean_compliance(layer) > 0
     half_space = {"type": "half_space", "reduced_modulus": 1.0}
-    assert pl.kernel("coated", tension=TENSION, substrate=half_space).mean_compliance() == np.inf
+    membrane = pl.kernel("coated", tension=TENSION, substrate=half_space)
+    assert mean_compliance(membrane) == np.inf
 
 
 def test_coated_takes_its_substrate_in_any_form() -> None:
