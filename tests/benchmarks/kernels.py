@@ -5,7 +5,7 @@
 
 Domain L = 1 mm, E* = 10 kPa, to 1e-8; a row that did not converge says so:
 rough   periodic, self-affine (H = 0.8, rms 0.01 L, eight waves along the edge), 300 Pa
-free    paraboloid of radius L at a depth of 0.02 L, domain L/2
+free    paraboloid of radius L at a depth of 0.01 L, domain L/2
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def solve(case: str, kernel: dict[str, Any], points: int) -> Any:
     free = {
         "grid": {"points": points, "size": LENGTH / 2, "boundary": "free"},
         "indenter": {"type": "paraboloid", "radius": LENGTH},
-        "loading": {"depth": LENGTH / 50},
+        "loading": {"depth": LENGTH / 100},
     }
     run = pl.Run(kernel=kernel, **{"rough": rough, "free": free}[case])
     return pl.run(run, progress=False, threads=1).dataset.isel(step=0)
