@@ -130,8 +130,9 @@ def _samples(compliance: Symbol, shortest: float, longest: float) -> tuple[Array
             sampled = np.broadcast_to(np.asarray(compliance(q), dtype=np.float64), q.shape)
         wrong = np.flatnonzero(~(np.isfinite(sampled) & (sampled > 0)))
         if wrong.size:
+            nearest = wrong[np.argmin(np.abs(x[wrong] + np.log(shortest * longest) / 2))]
             raise ConfigError(
-                f"compliance(q) is {sampled[wrong[0]]:.3g} m/Pa at q = {q[wrong[0]]:.3g} rad/m; it "
+                f"compliance(q) is {sampled[nearest]:.3g} m/Pa at q = {q[nearest]:.3g} rad/m; it "
                 f"has to be positive and finite for {_wavenumbers(shortest, longest)}; check the "
                 "parameters, or the formula if the kernel is yours",
                 "kernel",
