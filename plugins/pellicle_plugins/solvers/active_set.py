@@ -24,9 +24,9 @@ from .preconditioner import Preconditioner
 _COARSE_TOLERANCE: Final = 1e-5
 # Grids with no more cells than this along their longer edge are not coarsened.
 _COARSEST: Final = 48
-# A start with an error above this share of the height range costs more to mend, a layer of cells at
-# a time along the edge, than a solve from the coarser grids.
-_CLOSE: Final = 0.01
+# A start with an error above this share of the height range costs more to mend, along the edge of
+# the contact, than a solve from the coarser grids.
+_CLOSE: Final = 0.05
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,8 @@ def _measured(
     """Return the state of a pressure without its negative part.
 
     The displacement is applied afresh if it is not known or not that of the pressure any more;
-    the contact, if not known, is where pressure acts or the surface penetrates.
+    the contact, if not known, is where pressure acts: cells that penetrate under a pressure that
+    does not carry the load yet are many more than will touch.
     """
     if displacement is None or float(pressure.min()) < 0:
         pressure = with_force(problem, np.maximum(pressure, 0))
@@ -137,7 +138,7 @@ def _measured(
         pressure=pressure,
         displacement=displacement,
         gap=gap,
-        contact=pressed | (gap < 0) if contact is None else contact,
+        contact=pressed if contact is None else contact,
         scale=height_scale(problem.profile, pressed, depth),
         error=max(inside, -float(gap.min(initial=0.0))),
         preconditioner=preconditioner,

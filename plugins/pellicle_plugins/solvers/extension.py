@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 Field = NDArray[np.float32]
+
+_NEAR: Final = np.float32(0.75)
+_FAR: Final = np.float32(0.25)
+# Fine cells that are worked on at a time, so that what is made of them stays in the cache.
+_BLOCK: Final = 2**17
 
 
 class Extension:
@@ -51,16 +57,14 @@ class Extension:
             levels[-1] *= share
         filled = levels.pop()
         for free, own in zip(reversed(self._free), reversed(levels), strict=True):
-            filled = _interpolate(filled)
-            filled *= free
-            filled += own
+            filled = _interpolate(filled, free, own)
         return filled
 
     def gather(self, values: Field) -> Field:
         """Return the transpose of E applied to ``values``; of use only where known."""
         levels = [values]
         for free in self._free:
-            levels.append(_transposed_interpolate(levels[-1] * free))
+            levels.append(_transposed_interpolate(levels[-1], free))
         gathered = levels.pop()
         for share, own in zip(reversed(self._shares), reversed(levels), strict=True):
             gathered *= share
@@ -82,38 +86,63 @@ def _repeat(coarse: Field) -> Field:
     return fine
 
 
-def _interpolate(coarse: Field) -> Field:
-    """Return the bilinear interpolation from cell centres to those of half the size."""
+def _interpolate(coarse: Field, free: Field, own: Field) -> Field:
+    """Return ``own`` + ``free`` × the bilinear interpolation from cells of twice the size."""
     n, m = coarse.shape
-    near, far = 0.75 * coarse, 0.25 * coarse
-    tall = np.empty((2 * n, m), coarse.dtype)
-    np.add(near[1:], far[:-1], out=tall[2::2])
-    np.add(near[:-1], far[1:], out=tall[1:-1:2])
-    np.add(near[0], far[-1], out=tall[0])
-    np.add(near[-1], far[0], out=tall[-1])
-    near, far = 0.75 * tall, 0.25 * tall
     fine = np.empty((2 * n, 2 * m), coarse.dtype)
-    np.add(near[:, 1:], far[:, :-1], out=fine[:, 2::2])
-    np.add(near[:, :-1], far[:, 1:], out=fine[:, 1:-1:2])
-    np.add(near[:, 0], far[:, -1], out=fine[:, 0])
-    np.add(near[:, -1], far[:, 0], out=fine[:, -1])
+    wide = _wrapped(coarse)
+    for rows in _blocks(n, m):
+        here = slice(2 * rows.start, 2 * rows.stop)
+        block = wide[rows.start : rows.stop + 2]
+        near, far = _NEAR * block[1:-1], _FAR * block
+        tall = np.empty((2 * len(near), m + 2), coarse.dtype)
+        np.add(near, far[:-2], out=tall[0::2])
+        np.add(near, far[2:], out=tall[1::2])
+        near, far = _NEAR * tall[:, 1:-1], _FAR * tall
+        filled = np.empty((len(tall), 2 * m), coarse.dtype)
+        np.add(near, far[:, :-2], out=filled[:, 0::2])
+        np.add(near, far[:, 2:], out=filled[:, 1::2])
+        filled *= free[here]
+        np.add(filled, own[here], out=fine[here])
     return fine
 
 
-def _transposed_interpolate(fine: Field) -> Field:
-    """Return the transpose of `_interpolate`."""
-    even, odd = fine[:, 0::2], fine[:, 1::2]
-    tall = 0.75 * (even + odd)
-    even, odd = 0.25 * even, 0.25 * odd
-    tall[:, :-1] += even[:, 1:]
-    tall[:, -1] += even[:, 0]
-    tall[:, 1:] += odd[:, :-1]
-    tall[:, 0] += odd[:, -1]
-    even, odd = tall[0::2], tall[1::2]
-    coarse = 0.75 * (even + odd)
-    even, odd = 0.25 * even, 0.25 * odd
-    coarse[:-1] += even[1:]
-    coarse[-1] += even[0]
-    coarse[1:] += odd[:-1]
-    coarse[0] += odd[-1]
-    return coarse
+def _transposed_interpolate(fine: Field, free: Field) -> Field:
+    """Return the transpose of `_interpolate`'s map from the coarse cells, applied to ``fine``."""
+    n, m = fine.shape[0] // 2, fine.shape[1] // 2
+    wide = np.zeros((n + 2, m + 2), fine.dtype)
+    for rows in _blocks(n, m):
+        here = slice(2 * rows.start, 2 * rows.stop)
+        block = fine[here] * free[here]
+        even, odd = block[:, 0::2], block[:, 1::2]
+        tall = np.zeros((len(block), m + 2), fine.dtype)
+        np.add(even, odd, out=tall[:, 1:-1])
+        tall *= _NEAR
+        tall[:, :-2] += _FAR * even
+        tall[:, 2:] += _FAR * odd
+        even, odd = tall[0::2], tall[1::2]
+        wide[rows.start + 1 : rows.stop + 1] += _NEAR * (even + odd)
+        wide[rows.start : rows.stop] += _FAR * even
+        wide[rows.start + 2 : rows.stop + 2] += _FAR * odd
+    wide[1] += wide[-1]
+    wide[-2] += wide[0]
+    wide[:, 1] += wide[:, -1]
+    wide[:, -2] += wide[:, 0]
+    return wide[1:-1, 1:-1]
+
+
+def _wrapped(field: Field) -> Field:
+    """Return a periodic field with one more cell at each end of each axis."""
+    n, m = field.shape
+    wide = np.empty((n + 2, m + 2), field.dtype)
+    wide[1:-1, 1:-1] = field
+    wide[0, 1:-1], wide[-1, 1:-1] = field[-1], field[0]
+    wide[:, 0], wide[:, -1] = wide[:, -2], wide[:, 1]
+    return wide
+
+
+def _blocks(n: int, m: int) -> Iterator[slice]:
+    """Yield slices of the ``n`` rows of coarse cells, ``m`` to a row, one block each."""
+    rows = max(1, _BLOCK // (4 * m))
+    for start in range(0, n, rows):
+        yield slice(start, min(start + rows, n))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pellicle import Grid
 from pellicle.operators import make_operator
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.solvers import extension
 from pellicle_plugins.solvers.extension import Extension, _interpolate, _transposed_interpolate
 from pellicle_plugins.solvers.preconditioner import OnContact, Preconditioner
 
@@ -97,10 +98,23 @@ def test_transposed_interpolation(shape: tuple[int, int]) -> None:
     n, m = shape
     down = np.eye(n * m, dtype=np.float32).reshape(-1, n, m)
     up = np.eye(4 * n * m, dtype=np.float32).reshape(-1, 2 * n, 2 * m)
-    interpolation = np.array([_interpolate(unit).ravel() for unit in down])
-    transposed = np.array([_transposed_interpolate(unit).ravel() for unit in up])
+    free, own = np.ones((2 * n, 2 * m), np.float32), np.zeros((2 * n, 2 * m), np.float32)
+    interpolation = np.array([_interpolate(unit, free, own).ravel() for unit in down])
+    transposed = np.array([_transposed_interpolate(unit, free).ravel() for unit in up])
     np.testing.assert_array_equal(interpolation, transposed.T)
     np.testing.assert_array_equal(interpolation.sum(axis=0), 1.0)
+
+
+def test_blocks_join_without_a_seam(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Worked on in one block or in many, the interpolation and its transpose are the same."""
+    rng = np.random.default_rng(5)
+    coarse = rng.normal(size=(13, 8)).astype(np.float32)
+    free, own = rng.uniform(size=(2, 26, 16)).astype(np.float32)
+    whole = _interpolate(coarse, free, own), _transposed_interpolate(own, free)
+    for block in (1, 4 * 8 * 3):
+        monkeypatch.setattr(extension, "_BLOCK", block)
+        np.testing.assert_array_equal(_interpolate(coarse, free, own), whole[0])
+        np.testing.assert_allclose(_transposed_interpolate(own, free), whole[1], rtol=1e-6)
 
 
 def preconditioned(
