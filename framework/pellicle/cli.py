@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 from typer.core import TyperGroup
 
-from .errors import PellicleError, PluginError
+from .errors import ConfigError, PellicleError, PluginError
 
 if TYPE_CHECKING:
     from .result import Result
@@ -150,22 +150,29 @@ def schema() -> None:
 
 @app.command()
 def new(
-    path: Annotated[Path, typer.Argument(help="File to write.")] = Path("indent.toml"),
+    path: Annotated[
+        Path | None,
+        typer.Argument(help="File to write, indent.toml; with --plugin, the component's name."),
+    ] = None,
+    plugin: Annotated[
+        str | None,
+        typer.Option(
+            "--plugin",
+            metavar="FAMILY",
+            help="Write the package of a kernel, indenter, solver, correction, output or executor.",
+        ),
+    ] = None,
 ) -> None:
-    """Write a commented starter file."""
-    from importlib.resources import files
+    """Write a commented starter file, or the package of a plugin."""
+    if plugin is None:
+        _write_starter(path or Path("indent.toml"))
+        return
+    from .scaffold import write_plugin
 
-    from .errors import StorageError
-    from .storage import reported
-
-    text = files("pellicle").joinpath("starter.toml").read_text(encoding="utf-8")
-    with reported(path):
-        try:
-            with path.open("x", encoding="utf-8") as file:
-                file.write(text)
-        except FileExistsError:
-            raise StorageError(f"{path} exists already; give another name") from None
-    typer.echo(f"wrote {path}; next: pellicle run {path}")
+    if path is None:
+        raise ConfigError(f"is missing; for example: pellicle new --plugin {plugin} mine", "NAME")
+    folder = write_plugin(plugin, str(path), Path())
+    typer.echo(f"wrote {folder}; next: cd {folder}, pip install -e ., python -m pytest")
 
 
 @app.command()
@@ -229,6 +236,22 @@ def validate() -> None:
     if not rows:
         raise PluginError("no cases are registered; see what is broken with `pellicle plugins`")
     raise typer.Exit(0 if passed else 1)
+
+
+def _write_starter(path: Path) -> None:
+    from importlib.resources import files
+
+    from .errors import StorageError
+    from .storage import reported
+
+    text = files("pellicle").joinpath("starter.toml").read_text(encoding="utf-8")
+    with reported(path):
+        try:
+            with path.open("x", encoding="utf-8") as file:
+                file.write(text)
+        except FileExistsError:
+            raise StorageError(f"{path} exists already; give another name") from None
+    typer.echo(f"wrote {path}; next: pellicle run {path}")
 
 
 def _print_steps(result: Result) -> None:

@@ -17,7 +17,7 @@ from pydantic_core import core_schema
 
 from .components import AreaCorrection, Component, Indenter, Kernel, Output, Solver
 from .errors import ConfigError, Problem, shown
-from .fields import FromRegistry
+from .fields import FromRegistry, json_schema
 from .grid import Grid
 from .model import Model, paths_relative_to
 from .plugins import registry
@@ -104,7 +104,8 @@ class Loading(Model):
         _Steps(Quantity("m", at_least=0)),
         Field(
             description="depth of the indenter's lowest point [m] below the undeformed surface, "
-            "or below the mean plane on a periodic grid: a value, a list or {start, stop, num}"
+            "or below the mean plane on a periodic grid, unless the kernel is a layer or springs: "
+            "a value, a list or {start, stop, num}"
         ),
     ] = None
     force: Annotated[
@@ -242,7 +243,7 @@ class Run(Model):
 
 def schema() -> dict[str, Any]:
     """Return the JSON schema of a run file, with every component that is installed."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | Run.model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | json_schema(Run)
 
 
 def component(base: type[AnyComponent], type_: str, fields: Mapping[str, Any]) -> AnyComponent:

@@ -46,6 +46,24 @@ class HasClosedForm(HasCompliance, Protocol):
         ...
 
 
+@runtime_checkable
+class HasMeanCompliance(HasCompliance, Protocol):
+    """What a kernel has whose surface does not sink without bound under a uniform pressure."""
+
+    def mean_compliance(self) -> float:
+        """Return G(0) [m/Pa]: the displacement by a uniform pressure over a periodic domain.
+
+        ∞ if there is no finite one: then the mean displacement is set to 0, and depths are
+        measured from the mean plane.
+        """
+        ...
+
+
+def mean_compliance(kernel: HasCompliance) -> float:
+    """Return G(0) [m/Pa] of a kernel, ∞ if it says nothing, as a half-space does."""
+    return kernel.mean_compliance() if isinstance(kernel, HasMeanCompliance) else math.inf
+
+
 class Operator(ABC):
     """The linear map from pressure [Pa] to displacement [m], both of the grid's shape.
 
@@ -86,18 +104,23 @@ class _Symbol:
 
 
 class PeriodicOperator(Operator):
-    """G(q) sampled on the wavenumbers of the FFT; the mean displacement is zero."""
+    """G(q) sampled on the wavenumbers of the FFT.
 
-    fixes_mean = False
+    The mean displacement is zero if a uniform pressure has no finite one.
+    """
 
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
         super().__init__(kernel, grid)
         qx, qy = grid.wavenumbers()
         q = np.hypot(qx, qy)
-        symbol = np.zeros(q.shape)
-        # The first wavenumber is 0, at which the mean displacement is chosen to be 0.
-        symbol.ravel()[1:] = _checked(kernel.compliance(q.ravel()[1:]))
-        self._symbol = _Symbol(symbol)
+        mean = mean_compliance(kernel)
+        # An incompressible layer has no mean displacement either.
+        self.fixes_mean = 0 < mean < math.inf
+        symbol = np.empty(q.shape)
+        # The first wavenumber is 0.
+        symbol.ravel()[0] = 0.0 if mean == math.inf else mean
+        symbol.ravel()[1:] = kernel.compliance(q.ravel()[1:])
+        self._symbol = _Symbol(_checked(symbol))
 
     def _apply(self, pressure: NDArray[Any]) -> object:
         transform = scipy.fft.rfft2(pressure)
@@ -180,7 +203,8 @@ def _in_real_space(kernel: HasCompliance, grid: Grid) -> HasClosedForm:
 def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array:
     """Return the surface displacement [m] of shape (nx, ny) under a pressure [Pa] of that shape.
 
-    One application of the operator; on a periodic grid the mean displacement is zero.
+    One application of the operator; on a periodic grid the mean displacement is zero, unless the
+    kernel says what a uniform pressure does (`HasMeanCompliance`).
 
     Raises
     ------

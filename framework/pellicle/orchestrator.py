@@ -6,7 +6,7 @@ import os
 import re
 import time
 import warnings
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import closing
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -20,6 +20,7 @@ from .components import Component, Monitor, Output, Place
 from .config import Run
 from .dataset import step_dataset
 from .errors import ConfigError, ConvergenceWarning
+from .model import Model
 from .operators import Array, Operator, make_operator
 from .plugins import registry
 from .problem import Equilibrium, Problem, measure
@@ -269,12 +270,12 @@ def _touches_edge(contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> b
 
 def _provenance(run: Run) -> dict[str, str]:
     """Return the attributes that say where a result comes from."""
-    used: list[Component] = [run.kernel, run.indenter, run.solver, *run.corrections]
+    used = {type(component) for component in _components(run)}
     owners = {
         registered.origin.distribution: registered.origin.version
         for family in registry().components.values()
         for registered in family.values()
-        if any(type(component) is registered.component for component in used)
+        if registered.component in used
     }
     versions = {"pellicle": version("pellicle"), "numpy": version("numpy")} | {
         "scipy": version("scipy"),
@@ -286,3 +287,12 @@ def _provenance(run: Run) -> dict[str, str]:
         "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
     }
+
+
+def _components(model: Model) -> Iterator[Component]:
+    """Yield the components in the fields of a model, and those in theirs."""
+    for _, value in model:
+        for each in value if isinstance(value, tuple) else (value,):
+            if isinstance(each, Component):
+                yield each
+                yield from _components(each)

@@ -26,6 +26,8 @@ _EXAMPLES = {
     "m": "10 um",
     "Pa": "10 kPa",
     "N/m": "50 mN/m",
+    "N*m": "1 pN*m",
+    "Pa/m": "1 kPa/mm",
     "N": "2 uN",
     "rad": "70 degree",
 }
@@ -181,6 +183,10 @@ Pressure = Annotated[float, Quantity("Pa", at_least=0)]
 """A pressure ≥ 0 [Pa]."""
 Tension = Annotated[float, Quantity("N/m", at_least=0)]
 """A surface tension ≥ 0 [N/m]."""
+BendingStiffness = Annotated[float, Quantity("N*m", at_least=0)]
+"""The bending stiffness of a plate ≥ 0 [N*m]."""
+FoundationStiffness = Annotated[float, Quantity("Pa/m", above=0)]
+"""A stiffness per area > 0 [Pa/m]."""
 Force = Annotated[float, Quantity("N", at_least=0)]
 """A force ≥ 0 [N]."""
 PoissonsRatio = Annotated[float, Quantity("1", above=-1, at_most=0.5)]

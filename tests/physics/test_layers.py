@@ -1,0 +1,130 @@
+"""Contact on finite layers and on springs, whose limits are known in closed form."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+
+YOUNGS, THICKNESS = 9e3, 5e-5
+PERIODIC = {"points": [24, 20], "size": [1e-3, 0.8e-3], "boundary": "periodic"}
+ROUGH = {"type": "self_affine", "rms_height": 5e-6, "hurst": 0.8, "cutoff_wavelength": 2e-4}
+
+
+def layer(base: str, poissons_ratio: float, thickness: float = THICKNESS) -> dict[str, Any]:
+    """Return the table of a layer."""
+    return {
+        "type": base,
+        "youngs_modulus": YOUNGS,
+        "poissons_ratio": poissons_ratio,
+        "thickness": thickness,
+    }
+
+
+def wave_modulus(nu: float) -> float:
+    """Return M = E(1 − ν)/((1 + ν)(1 − 2ν)) [Pa]."""
+    return YOUNGS * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+
+
+def solve(**tables: Any) -> Any:
+    """Return the only step of a run."""
+    return pl.run(pl.Run(**tables), progress=False).dataset.isel(step=0)
+
+
+@pytest.mark.parametrize("base", ["bonded_layer", "frictionless_layer"])
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
+def test_full_contact_compresses_a_layer_by_uniaxial_strain(
+    base: str, nu: float, solver: str
+) -> None:
+    """Beyond full contact each further step of mean pressure sinks the indenter by h/M times it."""
+    steps = np.array([4.0, 5.0, 7.0]) * wave_modulus(nu) * 2e-5 / THICKNESS
+    run = pl.Run(
+        grid=PERIODIC,
+        kernel=layer(base, nu),
+        indenter=ROUGH,
+        loading={"mean_pressure": list(steps)},
+        solver={"type": solver},
+    )
+    found = pl.run(run, progress=False).dataset
+    assert found["converged"].all()
+    assert found["contact"].all()
+    rise = np.diff(found["depth"].values) / np.diff(steps)
+    np.testing.assert_allclose(rise, THICKNESS / wave_modulus(nu), rtol=1e-6)
+
+
+def test_a_depth_on_a_layer_counts_from_first_touch(solver: str) -> None:
+    """Prescribed depths start at 0, go past full contact, and belong to the pressures they make."""
+    kernel, depths = layer("bonded_layer", 0.3), [1e-7, 1e-5, 4e-5]
+    made = [
+        solve(
+            grid=PERIODIC,
+            kernel=kernel,
+            indenter=ROUGH,
+            loading={"depth": depth},
+            solver={"type": solver},
+        )
+        for depth in depths
+    ]
+    assert all(step["converged"] for step in made)
+    # The lightest touch is on one cell or few; the deepest is beyond the mean plane.
+    assert made[0]["contact_fraction"] < 0.02
+    assert made[2]["contact"].all()
+    again = solve(
+        grid=PERIODIC,
+        kernel=kernel,
+        indenter=ROUGH,
+        loading={"mean_pressure": float(made[1]["mean_pressure"])},
+        solver={"type": solver},
+    )
+    assert float(again["depth"]) == pytest.approx(depths[1], rel=1e-6)
+
+
+def test_an_incompressible_layer_keeps_its_mean_plane() -> None:
+    """With ν = ½ no pressure moves the mean plane, so a depth beyond it is refused as ever."""
+    with pytest.raises(pl.ConfigError, match="beyond full contact"):
+        solve(
+            grid=PERIODIC,
+            kernel=layer("bonded_layer", 0.5),
+            indenter=ROUGH,
+            loading={"depth": 1e-3},
+        )
+
+
+@pytest.mark.parametrize("boundary", ["periodic"])
+def test_a_paraboloid_on_springs(boundary: str, solver: str) -> None:
+    """The pressure is k times the overlap in each cell, the force π k R δ² (Johnson 1985, 4.3)."""
+    k, radius, depth = 1e8, 1e-3, 2e-5
+    step = solve(
+        grid={"points": 96, "size": 6e-4, "boundary": boundary},
+        kernel={"type": "winkler", "foundation": k},
+        indenter={"type": "paraboloid", "radius": radius},
+        loading={"depth": depth},
+        solver={"type": solver},
+    )
+    x, y = step["x"].values[:, None], step["y"].values[None]
+    overlap = np.maximum(depth - (x**2 + y**2) / (2 * radius), 0)
+    np.testing.assert_allclose(step["pressure"].values, k * overlap, atol=1e-6 * k * depth)
+    assert float(step["force"]) == pytest.approx(np.pi * k * radius * depth**2, rel=1e-3)
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.45])
+def test_a_thin_layer_under_a_paraboloid_is_springs(nu: float) -> None:
+    """Its force is that of springs M/h, less 2c h²/Rδ of it, where G = (h/M)(1 + c(qh)² + …).
+
+    The elastic energy of a given displacement changes by −½ c h² (h/M) ∫ |∇p|² to first order.
+    """
+    radius, depth, h = 1e-3, 1e-5, 4e-6
+    step = solve(
+        grid={"points": 192, "size": 3.6e-4, "boundary": "periodic"},
+        kernel=layer("bonded_layer", nu, h),
+        indenter={"type": "paraboloid", "radius": radius},
+        loading={"depth": depth},
+    )
+    assert step["converged"]
+    springs = np.pi * wave_modulus(nu) / h * radius * depth**2
+    c = (3 - 4 * nu) / (3 * (1 - 2 * nu)) - 1 / (1 - nu)
+    softer = 2 * c * h**2 / (radius * depth)
+    assert 1 - float(step["force"]) / springs == pytest.approx(softer, rel=0.1)
