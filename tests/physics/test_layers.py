@@ -216,3 +216,46 @@ def test_a_coated_half_space_on_a_free_boundary_is_a_tensed_membrane(tension: fl
         pl.displacement(pressure, kernel=known, grid=grid),
         rtol=1e-10,
     )
+
+
+@pytest.mark.parametrize(("nu", "slope"), [(0.3, 0.8806), (0.5, 1.1329)])
+def test_a_paraboloid_feels_a_distant_base_as_published(nu: float, slope: float) -> None:
+    """F over that on the half-space grows as 1 + 2|α₀|χ/π, χ = √(Rδ)/h (Dimitriadis et al. 2002).
+
+    Their α₀ = −(1.2876 − 1.4678ν + 1.3442ν²)/(1 − ν) of a bonded layer is a fit in ν.
+    """
+    radius, depth = 1e-3, 1e-5
+    problem = {
+        "grid": {"points": 96, "size": 2.4e-4},
+        "indenter": {"type": "paraboloid", "radius": radius},
+        "loading": {"depth": depth},
+    }
+    solid = {"youngs_modulus": YOUNGS, "poissons_ratio": nu}
+    bare = float(solve(kernel={"type": "half_space", **solid}, **problem)["force"])
+    excess = []
+    for chi in (0.01, 0.02):
+        kernel = layer("bonded_layer", nu, np.sqrt(radius * depth) / chi)
+        excess.append((float(solve(kernel=kernel, **problem)["force"]) / bare - 1) / chi)
+    assert 2 * excess[0] - excess[1] == pytest.approx(slope, rel=0.01)
+
+
+def test_a_paraboloid_on_a_thin_incompressible_layer_is_on_a_film() -> None:
+    """As h falls F comes near 2πμR²δ³/h³ and a near 2 √(Rδ), twice Hertz's (lubrication)."""
+    radius, depth = 1e-3, 1e-5
+    reach = np.sqrt(radius * depth)
+    ratios, radii = [], []
+    for h in (0.1 * reach, 0.2 * reach):
+        step = solve(
+            grid={"points": 128, "size": 4.8 * reach},
+            kernel=layer("bonded_layer", 0.5, h),
+            indenter={"type": "paraboloid", "radius": radius},
+            loading={"depth": depth},
+        )
+        assert step["converged"]
+        film = 2 * np.pi * YOUNGS / 3 * radius**2 * depth**3 / h**3
+        ratios.append(float(step["force"]) / film)
+        radii.append(np.sqrt(float(step["contact_area"]) / np.pi) / (2 * reach))
+    # Measured: the force is off by the order of (h/a)², the radius by that of h/a.
+    assert (4 * ratios[0] - ratios[1]) / 3 == pytest.approx(1, abs=0.01)
+    assert 2 * radii[0] - radii[1] == pytest.approx(1, abs=0.02)
+    assert abs(ratios[0] - 1) < 0.05
