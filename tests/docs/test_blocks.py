@@ -21,7 +21,7 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli import app
-from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
+from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
 
 LANGUAGES = {"python", "pycon", "toml", "console", "sh"}
 DIRECTIVES = {"{eval-rst}", "{toctree}"}
@@ -38,6 +38,7 @@ _TABLES: dict[str, Any] = {
     "solver": Solver,
     "corrections": AreaCorrection,
     "outputs": Output,
+    "executor": Executor,
 }
 _OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 _ONE_THREAD = 1
@@ -72,7 +73,9 @@ class Reader:
 
     def python(self, block: Block) -> None:
         """Execute a block in the namespace of its page."""
-        exec(compile(block.text, str(block), "exec", dont_inherit=True), self.names)
+        code = compile(block.text, str(block), "exec", dont_inherit=True)
+        if "untested" not in block.comments:
+            exec(code, self.names)
 
     def pycon(self, block: Block) -> None:
         """Execute an interactive session and compare what it shows."""
@@ -177,6 +180,8 @@ def check_part(data: dict[str, Any]) -> None:
             pl.Grid(**table)
         elif name == "loading":
             pl.Loading(**table)
+        elif name == "study":
+            check_part(table)
         else:
             for entry in table if isinstance(table, list) else [table]:
                 pl.registry().make(_TABLES[name], entry)

@@ -58,9 +58,8 @@ def attempt_far(parcel: bytes, say: Say) -> bytes:
 def _packed(outcome: Any, name: str) -> bytes:
     try:
         packed: bytes = cloudpickle.dumps(outcome)
-        if isinstance(outcome, Exception):
-            # One with arguments of its own often pickles, and cannot be made again.
-            pickle.loads(packed)
+        # Exceptions with arguments of their own often pickle, and cannot be made again.
+        pickle.loads(packed)
     except Exception as error:
         if isinstance(outcome, Exception):
             return pickle.dumps(PellicleError(_line(outcome)))
