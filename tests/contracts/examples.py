@@ -29,5 +29,5 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
     "solver": {"active_set": {"tolerance": 1e-9}, "conjugate_gradient": {"tolerance": 1e-9}},
     "correction": {"yastrebov": {}},
     "output": {"hdf5": {}, "csv": {}, "figures": {"formats": ["png", "svg"]}},
-    "executor": {},
+    "executor": {"serial": {"threads": 1}, "processes": {"workers": 2}},
 }
