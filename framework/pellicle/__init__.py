@@ -1,8 +1,8 @@
 """Contact mechanics of soft solids under a tensed skin.
 
 Give an indenter, a soft material and the tension in its surface; get the contact pressure, area,
-force and depth. `run` solves a `Run`, `run_study` a `Study`; `kernel`, `indenter` and `solver` make components by name;
-`displacement` applies one operator.
+force and depth. `run` solves a `Run`, `run_study` all runs of a `Study`; `kernel`, `indenter` and
+`solver` make components by name; `displacement` applies one operator.
 """
 
 from __future__ import annotations

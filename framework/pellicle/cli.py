@@ -126,9 +126,7 @@ def _run_study(
     from .study import carry_out
 
     try:
-        done = carry_out(
-            made, folder, progress=not quiet, overwrite=overwrite, threads=threads
-        )
+        done = carry_out(made, folder, progress=not quiet, overwrite=overwrite, threads=threads)
     except KeyboardInterrupt:
         typer.echo(
             f"interrupted; what was finished is in {folder}, and the same command goes on", err=True

@@ -237,9 +237,7 @@ class _Interrupt:
             raise KeyboardInterrupt
 
 
-def _update(
-    bar: rich.progress.Progress, task: rich.progress.TaskID, name: str, said: Said
-) -> None:
+def _update(bar: rich.progress.Progress, task: rich.progress.TaskID, name: str, said: Said) -> None:
     bar.update(
         task,
         completed=said.done,

@@ -31,7 +31,7 @@ Axes = Mapping[str, axes.Values]
 class Point(NamedTuple):
     """One run of a study."""
 
-    index: tuple[int, ...]
+    place: tuple[int, ...]
     """Where it is along each dimension of the study."""
     name: str
     """What is varied, with its values."""
@@ -101,9 +101,10 @@ class Study(Model):
         BeforeValidator(axes.expand),
         Field(
             description="dotted parameter → values, each combined with each: a list, or {start, "
-            'stop, num} with spacing = "log" if need be'
+            'stop, num} with spacing = "log" if need be',
+            default_factory=dict,
         ),
-    ] = {}
+    ]
     zip: Annotated[
         tuple[dict[str, tuple[Any, ...]], ...],
         BeforeValidator(_each_expanded),
@@ -111,8 +112,11 @@ class Study(Model):
     ] = ()
     derived: Annotated[
         dict[str, str],
-        Field(description="further numbers of the table: name → arithmetic expression"),
-    ] = {}
+        Field(
+            description="further numbers of the table: name → arithmetic expression",
+            default_factory=dict,
+        ),
+    ]
     executor: Annotated[
         Executor,
         FromRegistry(),
@@ -156,7 +160,7 @@ class Study(Model):
         """Return the dimension and the values of each varied parameter, SI."""
         made = {}
         for number, (dimension, along) in enumerate(self.dimensions.items()):
-            runs = [point.run for point in self.points if not any(_without(point.index, number))]
+            runs = [point.run for point in self.points if not any(_without(point.place, number))]
             for key, values in along.items():
                 made[key] = dimension, _coordinate(runs, key, values)
         return made
@@ -253,8 +257,8 @@ class Study(Model):
         """Yield each value of an axis with a run that has it."""
         number = next(n for n, along in enumerate(self.dimensions.values()) if key in along)
         for point in self.points:
-            if not any(_without(point.index, number)):
-                yield values[point.index[number]], point.run
+            if not any(_without(point.place, number)):
+                yield values[point.place[number]], point.run
 
     def _check_axes(self) -> None:
         keys = [*self.vary, *itertools.chain.from_iterable(self.zip)]
@@ -316,7 +320,9 @@ class Study(Model):
     def _located(self, problem: Problem, values: Mapping[str, Any]) -> Problem:
         """Return a problem of a run under the name of the axis that caused it, if one did."""
         for key, value in values.items():
-            invented = key.startswith(f"{problem.field}.") and _reach(self.run, problem.field) is None
+            invented = (
+                key.startswith(f"{problem.field}.") and _reach(self.run, problem.field) is None
+            )
             if f"{problem.field}.".startswith(f"{key}.") or invented:
                 said = "" if shown(value) in problem.message else f"{shown(value)}: "
                 return Problem(f"vary.{key}", f"{said}{problem.message}")
