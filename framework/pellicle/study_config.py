@@ -59,6 +59,20 @@ def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
     return kind.from_toml(path, overrides)
 
 
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of a run or study file, with every component that is installed."""
+    run, study = Run.model_json_schema(), Study.model_json_schema()
+    definitions = run.pop("$defs", {}) | study.pop("$defs", {})
+    study["properties"].pop("run")
+    study["required"] = []
+    run["properties"]["study"] = study
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **run,
+        "$defs": definitions,
+    }
+
+
 def _as_table(given: object) -> object:
     if isinstance(given, Run):
         return {name: getattr(given, name) for name in given.model_fields_set}
@@ -93,12 +107,12 @@ class Study(Model):
 
     run: Annotated[
         dict[str, Any],
-        BeforeValidator(_as_table),
+        BeforeValidator(_as_table, json_schema_input_type=dict[str, Any]),
         Field(description="what all runs share: a run, or a mapping of the form of a run file"),
     ]
     vary: Annotated[
         dict[str, tuple[Any, ...]],
-        BeforeValidator(axes.expand),
+        BeforeValidator(axes.expand, json_schema_input_type=dict[str, Any]),
         Field(
             description="dotted parameter → values, each combined with each: a list, or {start, "
             'stop, num} with spacing = "log" if need be',
@@ -107,7 +121,7 @@ class Study(Model):
     ]
     zip: Annotated[
         tuple[dict[str, tuple[Any, ...]], ...],
-        BeforeValidator(_each_expanded),
+        BeforeValidator(_each_expanded, json_schema_input_type=list[dict[str, Any]]),
         Field(description="tables of parameters that take their values together, not combined"),
     ] = ()
     derived: Annotated[
