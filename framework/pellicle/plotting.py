@@ -151,8 +151,8 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     # Seeds are repetitions, not what is compared.
     rest = [d for d in dimensions if d != along]
     compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
-    scale, name = axis_unit(table[variable].values, table[variable].attrs.get("units", "1"))
-    x_scale, x_name = _coordinate_unit(table[against])
+    scale, name = _unit_near_one(table[variable])
+    x_scale, x_name = _unit_near_one(table[against])
     stacked = [d for d in table["status"].dims if d not in (along, *compared)]
     for number, part in enumerate(_each(table, compared)):
         colour = _colour(number, table.sizes[compared[0]] if compared else 1)
@@ -203,16 +203,16 @@ def _each(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Data
         yield table.isel(dict(zip(dimensions, index, strict=True)))
 
 
-def _coordinate_unit(values: xr.DataArray) -> tuple[float, str]:
-    unit = values.attrs.get("units", "")
-    return axis_unit(values.values, unit) if unit else (1.0, "")
+def _unit_near_one(values: xr.DataArray) -> tuple[float, str]:
+    unit = values.attrs.get("units", "1")
+    return axis_unit(values.values, unit) if unit != "1" else (1.0, "")
 
 
 def _label(part: xr.Dataset, name: str) -> str:
     value = part[name]
     if value.dtype.kind not in "if":
         return f"{name} = {value.item()}"
-    scale, unit = _coordinate_unit(value)
+    scale, unit = _unit_near_one(value)
     return f"{name} = {value.item() * scale:.4g} {unit}".rstrip()
 
 

@@ -14,7 +14,7 @@ import re
 import shutil
 import socket
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -22,11 +22,13 @@ from typing import TYPE_CHECKING, Any, Literal
 from .errors import StorageError
 
 if TYPE_CHECKING:
-    import h5netcdf
+    import h5py
     import xarray as xr
 
 SCHEMA_VERSION = 1
 """Version of the layout, in the attribute ``schema_version`` of every file."""
+_SMALL = 4_000_000
+"""Files that are copied for each step [bytes]: it takes no longer than beginning another one."""
 
 
 def write(dataset: xr.Dataset, path: Path) -> None:
@@ -42,9 +44,11 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     encoding: dict[Any, Any] = {
         name: packed for name, variable in dataset.data_vars.items() if "x" in variable.dims
     }
+    # Only what may grow needs a dimension that can: h5netcdf is slow with these.
+    grows = ["step"] if "x" in dataset.dims and path.suffix != ".tail" else []
     with aside(path) as part:
         dataset.assign_attrs(schema_version=SCHEMA_VERSION).to_netcdf(
-            part, engine="h5netcdf", unlimited_dims=["step"], encoding=encoding
+            part, engine="h5netcdf", unlimited_dims=grows, encoding=encoding
         )
         # While the old file still has the name: its tails must never continue the new one.
         for tail in _tails(path):
@@ -61,7 +65,7 @@ def append(dataset: xr.Dataset, path: Path) -> None:
     """
     first, *tails = _parts(path)
     own, waiting = _steps(first), sum(map(_steps, tails))
-    if waiting + dataset.sizes["step"] >= own:
+    if waiting + dataset.sizes["step"] >= own or path.stat().st_size < _SMALL:
         _join(path, tails, dataset)
     else:
         write(dataset, path.with_name(f".{path.name}.{own + waiting:08d}.tail"))
@@ -210,10 +214,10 @@ def _read_one(path: Path) -> xr.Dataset:
 
 def _steps(path: Path) -> int:
     """Return how many steps a file of its own holds."""
-    import h5netcdf
+    import h5py
 
-    with _readable(path), h5netcdf.File(path, "r") as file:
-        return int(file.dimensions["step"].size)
+    with _readable(path), h5py.File(path) as file:
+        return int(file["step"].size)
 
 
 def _tails(path: Path) -> list[Path]:
@@ -237,29 +241,31 @@ def _parts(path: Path) -> list[Path]:
 
 def _join(path: Path, tails: Sequence[Path], *more: xr.Dataset) -> None:
     """Replace a file by itself, its tails and more steps."""
-    import h5netcdf
+    import h5py
 
     with aside(path) as part:
         shutil.copyfile(path, part)
-        with h5netcdf.File(part, "a") as file:
+        with h5py.File(part, "r+") as file:
             for tail in tails:
-                _extend(file, _read_one(tail))
+                with _readable(tail), h5py.File(tail) as source:
+                    _extend(file, {name: source[name][:] for name in file if _grows(file[name])})
             for dataset in more:
-                _extend(file, dataset)
+                values = {str(name): each.values for name, each in dataset.variables.items()}
+                _extend(file, {name: values[name] for name in file if _grows(file[name])})
     with reported(path):
         for tail in _tails(path):
             tail.unlink()
 
 
-def _extend(file: h5netcdf.File, dataset: xr.Dataset) -> None:
-    done = file.dimensions["step"].size
-    total = done + dataset.sizes["step"]
-    file.resize_dimension("step", total)
-    for name, variable in dataset.variables.items():
-        if "step" in variable.dims:
-            values = variable.values
-            stored = file.variables[name]
-            stored[done:total] = values.astype("i1") if values.dtype == bool else values
+def _grows(stored: h5py.Dataset) -> bool:
+    return bool(stored.maxshape[:1] == (None,))
+
+
+def _extend(file: h5py.File, values: Mapping[str, Any]) -> None:
+    done = file["step"].size
+    for name, added in values.items():
+        file[name].resize(done + len(added), axis=0)
+        file[name][done:] = added
 
 
 def check_writable(path: Path) -> None:
