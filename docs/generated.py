@@ -177,7 +177,7 @@ def _kind(annotation: Any) -> str:
     if origin is tuple:
         kinds = {_kind(kind) for kind in inner if kind is not Ellipsis}
         return f"list of {' and '.join(sorted(kinds))}"
-    if annotation in (pl.Grid, pl.Loading) or annotation in FAMILIES.values():
+    if origin is dict or annotation in (pl.Grid, pl.Loading, *FAMILIES.values()):
         return "table"
     names = {int: "whole number", float: "number", str: "text", Path: "file", Any: "array"}
     return names[annotation]
