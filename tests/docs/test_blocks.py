@@ -20,6 +20,7 @@ from blocks import PAGES, ROOT, Block, blocks
 from typer.testing import CliRunner
 
 import pellicle as pl
+from pellicle import study_config
 from pellicle.cli import app
 from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
 
@@ -87,10 +88,13 @@ class Reader:
         assert not runner.summarize(verbose=False).failed, "".join(said)
 
     def toml(self, block: Block) -> None:
-        """Solve a complete run; check the tables of a part of one."""
+        """Solve a complete run or study; check the tables of a part of one."""
         data = tomllib.loads(block.text)
         if "project" in data:
             assert block.comments["file"] == "pyproject.toml"
+        elif "study" in data:
+            table = pl.run_study(data, progress=False, threads=_ONE_THREAD)
+            assert table["converged"].all(), block
         elif "grid" in data:
             run = pl.Run(**data)
             result = pl.run(
@@ -236,5 +240,5 @@ def test_study_of_the_readme_is_the_starter_file() -> None:
     "path", sorted((ROOT / "docs/studies").glob("*.toml")), ids=lambda p: p.name
 )
 def test_study_is_valid(path: Path) -> None:
-    """Every file in docs/studies makes a run."""
-    pl.Run.from_toml(path)
+    """Every file in docs/studies makes a run or a study."""
+    study_config.from_toml(path)
