@@ -1,7 +1,7 @@
 """Contact mechanics of soft solids under a tensed skin.
 
 Give an indenter, a soft material and the tension in its surface; get the contact pressure, area,
-force and depth. `run` solves a `Run`; `kernel`, `indenter` and `solver` make components by name;
+force and depth. `run` solves a `Run`, `run_study` a `Study`; `kernel`, `indenter` and `solver` make components by name;
 `displacement` applies one operator.
 """
 
@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from .plugins import registry
     from .problem import Problem
     from .result import Result, Solution, Status, Stop, load
+    from .study import run_study
+    from .study_config import Study
     from .validation import validate
 
 # Numpy, scipy and pydantic take a second to import; a name pays for its own module only.
@@ -65,11 +67,13 @@ _HOME = {
     "Status": "result",
     "Stop": "result",
     "StorageError": "errors",
+    "Study": "study_config",
     "displacement": "operators",
     "hookimpl": "hookspecs",
     "load": "result",
     "registry": "plugins",
     "run": "orchestrator",
+    "run_study": "study",
     "schema": "config",
     "validate": "validation",
 }
@@ -98,6 +102,7 @@ __all__ = [
     "Status",
     "Stop",
     "StorageError",
+    "Study",
     "__version__",
     "displacement",
     "hookimpl",
@@ -106,6 +111,7 @@ __all__ = [
     "load",
     "registry",
     "run",
+    "run_study",
     "schema",
     "solver",
     "validate",

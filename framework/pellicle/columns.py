@@ -31,14 +31,35 @@ REDUCTIONS: dict[str, Callable[[Any], Any]] = {
 """Functions that make one number for each step of a field over the cells."""
 
 
+FIRST_RUN = "first_run"
+"""Attribute of the table of a study: the configuration of its first run, JSON, SI."""
+
+
 def names(data: xr.Dataset) -> dict[str, Any]:
-    """Return what expressions over ``data`` may name.
+    """Return what expressions over ``data``, a result or the table of a study, may name.
 
     These are its numeric variables and coordinates, and the numbers of its configuration by their
     dotted path, such as ``kernel.tension`` or ``grid.size.0``, where no coordinate varies them.
     """
+    said = json.loads(data.attrs.get(FIRST_RUN, data.attrs["configuration"]))
+    varied = tuple(f"{name}." for name in data.coords)
+    fixed = {key: value for key, value in constants(said).items() if not key.startswith(varied)}
     numeric = {str(name): data[name] for name in data.variables if data[name].dtype.kind in "biuf"}
-    return {**constants(json.loads(data.attrs["configuration"])), **numeric}
+    return {**fixed, **numeric}
+
+
+def derive(table: xr.Dataset, expressions: Mapping[str, str]) -> xr.Dataset:
+    """Return the table of a study with further columns, each of which may name those before.
+
+    Raises
+    ------
+    ConfigError
+        An expression is not arithmetic, or names what is not there.
+    """
+    for name, text in expressions.items():
+        table = table.assign({name: 0.0 * table["converged"] + evaluate(text, names(table))})
+        table[name].attrs = {"long_name": text}
+    return table
 
 
 def constants(configuration: object, path: str = "") -> dict[str, float]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from .result import Result
 from .storage import reported
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -113,11 +115,77 @@ def save_figures(
     StorageError
         A file cannot be written.
     """
-    files: list[Path] = []
-    for ending, draw in FIGURES.items():
+    drawings = {ending: partial(draw, result) for ending, draw in FIGURES.items()}
+    return _save(drawings, directory, name, formats)
 
-        def fill(figure: Figure, draw: Callable[[Result, Axes], None] = draw) -> None:
-            draw(result, figure.add_subplot())
+
+def save_study_figures(
+    table: xr.Dataset, directory: Path, name: str, formats: Iterable[str]
+) -> tuple[Path, ...]:
+    """Write force and contact fraction of a study as ``directory/name-figure.format``.
+
+    Parameters are as for `save_figures`; ``table`` is that of `pellicle.run_study`.
+
+    Raises
+    ------
+    StorageError
+        A file cannot be written.
+    """
+    if "force" not in table:
+        return ()
+    drawings = {
+        what: partial(study_curves, table, variable=what) for what in ("force", "contact_fraction")
+    }
+    return _save(drawings, directory, name, formats)
+
+
+def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
+    """Draw a variable of a study against the depth, one colour for each value of its first axis.
+
+    Where each run has one step only, it is drawn against the first axis of numbers instead.
+    """
+    dimensions = [str(d) for d in table["status"].dims if d != "step"]
+    numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
+    against = "depth" if table.sizes["step"] > 1 or not numbers else numbers[0]
+    along = "step" if against == "depth" else against
+    # Seeds are repetitions, not what is compared.
+    rest = [d for d in dimensions if d != along]
+    compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
+    scale, name = axis_unit(table[variable].values, table[variable].attrs.get("units", "1"))
+    x_scale, x_name = _coordinate_unit(table[against])
+    stacked = [d for d in table["status"].dims if d not in (along, *compared)]
+    for number, part in enumerate(_each(table, compared)):
+        colour = f"C{number}" if not compared or table.sizes[compared[0]] <= 10 else None
+        colour = colour or _shade(number / (table.sizes[compared[0]] - 1))
+        label = _label(part, compared[0]) if compared else ""
+        for line in _each(part, stacked):
+            x, y = line[against].values * x_scale, line[variable].values * scale
+            axes.plot(x, y, "o-", color=colour, label=label, markersize=4, mfc="white")
+            good = line["converged"].values
+            axes.plot(x[~good], y[~good], "x", color="red", markersize=9)
+            label = ""
+    axes.set(
+        xlabel=f"{against} [{x_name}]" if x_name else against,
+        ylabel=f"{variable.replace('_', ' ')} [{name}]" if name else variable.replace("_", " "),
+        title=table.attrs.get("title", ""),
+    )
+    axes.set_ylim(bottom=0.0)
+    axes.grid(alpha=0.3)
+    if compared:
+        axes.legend(fontsize="small")
+
+
+def _save(
+    drawings: Mapping[str, Callable[[Axes], None]],
+    directory: Path,
+    name: str,
+    formats: Iterable[str],
+) -> tuple[Path, ...]:
+    files: list[Path] = []
+    for ending, draw in drawings.items():
+
+        def fill(figure: Figure, draw: Callable[[Axes], None] = draw) -> None:
+            draw(figure.add_subplot())
 
         files += save_figure(fill, directory / f"{name}-{ending}", formats)
     return tuple(files)
@@ -150,6 +218,31 @@ def save_figure(
                 figure.savefig(path)
             files.append(path)
     return tuple(files)
+
+
+def _each(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Dataset]:
+    """Yield the parts of a table at each combination of places along dimensions."""
+    for index in np.ndindex(*(table.sizes[d] for d in dimensions)):
+        yield table.isel(dict(zip(dimensions, index, strict=True)))
+
+
+def _coordinate_unit(values: xr.DataArray) -> tuple[float, str]:
+    unit = values.attrs.get("units", "")
+    return axis_unit(values.values, unit) if unit else (1.0, "")
+
+
+def _label(part: xr.Dataset, name: str) -> str:
+    value = part[name]
+    if value.dtype.kind not in "if":
+        return f"{name} = {value.item()}"
+    scale, unit = _coordinate_unit(value)
+    return f"{name} = {value.item() * scale:.4g} {unit}".rstrip()
+
+
+def _shade(share: float) -> tuple[float, float, float, float]:
+    import matplotlib
+
+    return matplotlib.colormaps["viridis"](0.9 * share)  # type: ignore[return-value]
 
 
 def _curve(

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
-from .components import Case
+from .components import Case, Place
 from .config import Run
 from .orchestrator import execute
 from .plugins import registry
+from .progress import Progress
 from .result import Result
 
 
@@ -47,7 +49,10 @@ def validate(cases: Iterable[Case] | None = None) -> Iterator[Verdict]:
         key = json.dumps(case.configuration, sort_keys=True)
         if key not in solved:
             # Only the latest run is kept: cases that share one are registered in a row.
-            result, _ = execute(Run(**case.configuration), None)
+            run = Run(**case.configuration)
+            nowhere = Place(Path(), "case", run.to_json())
+            bar = Progress(len(run.loading.values), enabled=False)
+            result = execute(run, nowhere, (), bar).result
             solved = {key: result}
         result = solved[key]
         yield Verdict(case, case.computed(result), result.converged)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle import Run
-from pellicle.columns import Runs
+from pellicle.columns import Runs, derive
 from pellicle.errors import ConfigError
 
 from .axisymmetric import AxisymmetricContact, indent
@@ -98,7 +99,8 @@ def exact(runs: Runs) -> Runs:
             **areas,
         }
     )
-    return Runs(table, no_fields)
+    derived = json.loads(table.attrs["configuration"]).get("study", {}).get("derived", {})
+    return Runs(derive(table, derived), no_fields)
 
 
 def exact_line(run: xr.Dataset) -> xr.Dataset:
