@@ -45,5 +45,5 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
         "maps": {"field": "displacement - depth - gap", "name": "indenter"},
         "compliance": {"x": "q * indenter.radius"},
     },
-    "executor": {},
+    "executor": {"serial": {"threads": 1}, "processes": {"workers": 2}},
 }
