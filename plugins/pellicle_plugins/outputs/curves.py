@@ -125,7 +125,9 @@ class Curves(Drawing):
                 if self.by:
                     style = replace(style, colour=f"C{index}")
                 # Colours tell the values of by, markers the several y.
-                said = ("" if number else name) if self.by else series if len(ys) > 1 else ""
+                said = "" if number else name
+                if not self.by and (self.series or len(ys) > 1):
+                    said = series
                 curve = self._curve(here, _at(x, at), _at(y, at))
                 curve.draw(axes, said, style, factors)
                 head = {"curve": name, "series": series}
