@@ -11,7 +11,6 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 import pellicle as pl
-from pellicle.components import FAMILIES
 from pellicle.dataset import DESCRIPTIONS
 from pellicle.model import Model
 from pellicle.units import Quantity

@@ -1,8 +1,8 @@
 """Contact mechanics of soft solids under a tensed skin.
 
 Give an indenter, a soft material and the tension in its surface; get the contact pressure, area,
-force and depth. `run` solves a `Run`, `run_study` a `Study`; `kernel`, `indenter` and `solver` make components by name;
-`displacement` applies one operator.
+force and depth. `run` solves a `Run`, `run_study` all runs of a `Study`; `kernel`, `indenter` and
+`solver` make components by name; `displacement` applies one operator.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
         Place,
         Solver,
     )
-    from .config import Loading, Run, schema
+    from .config import Loading, Run
     from .errors import (
         ConfigError,
         ConvergenceError,
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from .problem import Problem
     from .result import Result, Solution, Status, Stop, load
     from .study import run_study
-    from .study_config import Study
+    from .study_config import Study, schema
     from .validation import validate
 
 # Numpy, scipy and pydantic take a second to import; a name pays for its own module only.
@@ -74,7 +74,7 @@ _HOME = {
     "registry": "plugins",
     "run": "orchestrator",
     "run_study": "study",
-    "schema": "config",
+    "schema": "study_config",
     "validate": "validation",
 }
 

@@ -192,8 +192,8 @@ def plugins(
 
 @app.command()
 def schema() -> None:
-    """Print the JSON schema of a run file, with all installed components, for editors."""
-    from .config import schema as make_schema
+    """Print the JSON schema of a run or study file, with all installed components, for editors."""
+    from .study_config import schema as make_schema
 
     _print_json(make_schema())
 

@@ -300,11 +300,6 @@ def _digest(path: Path, changed: int, size: int) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def schema() -> dict[str, Any]:
-    """Return the JSON schema of a run file, with every component that is installed."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | Run.model_json_schema()
-
-
 def component(base: type[AnyComponent], type_: str, fields: Mapping[str, Any]) -> AnyComponent:
     """Return a component of ``base``'s family by its type and fields.
 

@@ -96,23 +96,22 @@ def execute(
     """
     import scipy.fft
 
-    values = run.loading.values
-    memory.require(run.grid, len(values))
+    memory.require(run.grid, len(run.loading.values))
     steps: list[xr.Dataset] = []
     files: list[Path] = []
     with scipy.fft.set_workers(threads or _cores()), bar:
         try:
+            problems = _problems(run)
             for output in outputs:
                 output.open(place)
             steps = _resume(outputs, place)
             taken = len(steps)
-            if taken < len(values):
-                # closing: the generator's arrays go before the outputs draw.
-                with closing(_solve_steps(run, steps[-1:], bar)) as solved:
-                    for step in solved:
-                        steps.append(step)
-                        for output in outputs:
-                            output.step(place, step)
+            # closing: the generator's arrays go before the outputs draw.
+            with closing(_solve_steps(run, problems, steps[-1:], bar)) as solved:
+                for step in solved:
+                    steps.append(step)
+                    for output in outputs:
+                        output.step(place, step)
         except MemoryError:
             raise ConfigError(
                 f"{run.grid.points} cells do not fit in memory; use fewer points", "grid.points"
@@ -221,11 +220,10 @@ def _check_depths(depths: Sequence[float], profile: Array, operator: Operator) -
 
 
 def _solve_steps(
-    run: Run, last: Sequence[xr.Dataset], bar: Bar
+    run: Run, problems: Sequence[Problem], last: Sequence[xr.Dataset], bar: Bar
 ) -> Generator[xr.Dataset, None, None]:
     """Yield each load step after the ``last`` as soon as it is solved, started from that before."""
     origin = _provenance(run)
-    problems = _problems(run)
     first, pressure = 0, None
     for before in last:
         first = before["step"].item() + 1

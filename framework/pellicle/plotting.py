@@ -155,8 +155,7 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     x_scale, x_name = _coordinate_unit(table[against])
     stacked = [d for d in table["status"].dims if d not in (along, *compared)]
     for number, part in enumerate(_each(table, compared)):
-        colour = f"C{number}" if not compared or table.sizes[compared[0]] <= 10 else None
-        colour = colour or _shade(number / (table.sizes[compared[0]] - 1))
+        colour = _colour(number, table.sizes[compared[0]] if compared else 1)
         label = _label(part, compared[0]) if compared else ""
         for line in _each(part, stacked):
             x, y = line[against].values * x_scale, line[variable].values * scale
@@ -239,10 +238,12 @@ def _label(part: xr.Dataset, name: str) -> str:
     return f"{name} = {value.item() * scale:.4g} {unit}".rstrip()
 
 
-def _shade(share: float) -> tuple[float, float, float, float]:
+def _colour(number: int, count: int) -> str | tuple[float, float, float, float]:
+    if count <= 10:
+        return f"C{number}"
     import matplotlib
 
-    return matplotlib.colormaps["viridis"](0.9 * share)  # type: ignore[return-value]
+    return matplotlib.colormaps["viridis"](0.9 * number / (count - 1))
 
 
 def _curve(

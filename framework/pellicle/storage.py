@@ -165,27 +165,29 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
 
     if not path.is_file():
         raise StorageError(f"{path}: no such file; give a result file (.h5) that pellicle wrote")
-    with _readable(path):
-        # Phony dimensions only let a foreign file open far enough to be told apart.
-        with xr.open_dataset(path, engine="h5netcdf", phony_dims="sort") as dataset:
-            version = dataset.attrs.pop("schema_version", None)
-            if version is None or not {"configuration", "versions"} <= dataset.attrs.keys():
-                raise StorageError(
-                    f"{path}: not a result of pellicle; give an .h5 file that pellicle wrote"
-                )
-            if version != SCHEMA_VERSION:
-                raise StorageError(
-                    f"{path}: schema version {version}, and this pellicle reads {SCHEMA_VERSION}; "
-                    f"read it with what wrote it ({dataset.attrs['versions']}), or run it again"
-                )
-            if kind == "result" and "axes" in dataset.attrs:
-                raise StorageError(
-                    f"{path}: the table of a study, not a result; open it with xarray, or give one "
-                    "of the results in runs/"
-                )
-            if kind == "table" and "axes" not in dataset.attrs:
-                raise StorageError(f"{path}: a result, not the table of a study")
-            yield dataset
+    # Phony dimensions only let a foreign file open far enough to be told apart.
+    with (
+        _readable(path),
+        xr.open_dataset(path, engine="h5netcdf", phony_dims="sort") as dataset,
+    ):
+        version = dataset.attrs.pop("schema_version", None)
+        if version is None or not {"configuration", "versions"} <= dataset.attrs.keys():
+            raise StorageError(
+                f"{path}: not a result of pellicle; give an .h5 file that pellicle wrote"
+            )
+        if version != SCHEMA_VERSION:
+            raise StorageError(
+                f"{path}: schema version {version}, and this pellicle reads {SCHEMA_VERSION}; "
+                f"read it with what wrote it ({dataset.attrs['versions']}), or run it again"
+            )
+        if kind == "result" and "axes" in dataset.attrs:
+            raise StorageError(
+                f"{path}: the table of a study, not a result; open it with xarray, or give one "
+                "of the results in runs/"
+            )
+        if kind == "table" and "axes" not in dataset.attrs:
+            raise StorageError(f"{path}: a result, not the table of a study")
+        yield dataset
 
 
 @contextmanager

@@ -173,7 +173,7 @@ def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[Run
     for point in study.points:
         identity = point.run.identity
         place = Place(directory / "runs", identity[:16], point.run.to_json(), identity, overwrite)
-        made.append(RunTask(point.name, point.run, place, point.index, _by_run(named)))
+        made.append(RunTask(point.name, point.run, place, point.place, _by_run(named)))
     return made
 
 
@@ -203,10 +203,8 @@ def _carry_out(
     storage.check_writable(directory / "runs" / "run.h5")
     _require_table(directory / "study.h5", overwrite)
     rows = table.Table(study)
-    unfinished = []
-    for task in tasks(study, directory, overwrite=overwrite):
-        if _collect(task, rows) < task.steps:
-            unfinished.append(task)
+    every = tasks(study, directory, overwrite=overwrite)
+    unfinished = [task for task in every if _collect(task, rows) < task.steps]
     taken = len(study.points) - len(unfinished)
     files = _Writer(directory)
     files.write(rows)
@@ -282,7 +280,7 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
 
 def is_table(path: Path) -> bool:
     """Whether a path is the folder of a study, or its table."""
-    return path.is_dir() or path.name == "study.h5"
+    return path.name == "study.h5" or (path / "study.h5").is_file()
 
 
 def rows(made: xr.Dataset) -> list[dict[str, str]]:
@@ -300,7 +298,7 @@ def rows(made: xr.Dataset) -> list[dict[str, str]]:
         found.append(
             {
                 "run": str(row["run"].item()),
-                **{key: _text(row[key].item()) for key in row.coords if key != "step"},
+                **{str(key): _text(row[key].item()) for key in row.coords if key != "step"},
                 "steps": f"{done}/{len(statuses)}",
                 **last,
                 "status": worst or "converged",
@@ -314,7 +312,8 @@ def reasons(made: xr.Dataset) -> Iterator[str]:
     for row in _runs(made):
         bad = [s for s in map(str, row["status"].values) if s not in ("", "converged")]
         if bad and bad[0] != table.NOT_RUN:
-            where = ", ".join(f"{k} = {_text(row[k].item())}" for k in row.coords if k != "step")
+            names = (name for name in row.coords if name != "step")
+            where = ", ".join(f"{name} = {_text(row[name].item())}" for name in names)
             yield f"{row['run'].item()} ({where}): {bad[0]}"
 
 

@@ -34,7 +34,7 @@ Axes = Mapping[str, axes.Values]
 class Point(NamedTuple):
     """One run of a study."""
 
-    index: tuple[int, ...]
+    place: tuple[int, ...]
     """Where it is along each dimension of the study."""
     name: str
     """What is varied, with its values."""
@@ -60,6 +60,20 @@ def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
     """
     kind = Study if "study" in read(path, overrides) else Run
     return kind.from_toml(path, overrides)
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of a run or study file, with every component that is installed."""
+    run, study = Run.model_json_schema(), Study.model_json_schema()
+    definitions = run.pop("$defs", {}) | study.pop("$defs", {})
+    study["properties"].pop("run")
+    study["required"] = []
+    run["properties"]["study"] = study
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **run,
+        "$defs": definitions,
+    }
 
 
 def _as_table(given: object) -> object:
@@ -96,26 +110,30 @@ class Study(Model):
 
     run: Annotated[
         dict[str, Any],
-        BeforeValidator(_as_table),
+        BeforeValidator(_as_table, json_schema_input_type=dict[str, Any]),
         Field(description="what all runs share: a run, or a mapping of the form of a run file"),
     ]
     vary: Annotated[
         dict[str, tuple[Any, ...]],
-        BeforeValidator(axes.expand),
+        BeforeValidator(axes.expand, json_schema_input_type=dict[str, Any]),
         Field(
             description="dotted parameter → values, each combined with each: a list, or {start, "
-            'stop, num} with spacing = "log" if need be'
+            'stop, num} with spacing = "log" if need be',
+            default_factory=dict,
         ),
-    ] = {}
+    ]
     zip: Annotated[
         tuple[dict[str, tuple[Any, ...]], ...],
-        BeforeValidator(_each_expanded),
+        BeforeValidator(_each_expanded, json_schema_input_type=list[dict[str, Any]]),
         Field(description="tables of parameters that take their values together, not combined"),
     ] = ()
     derived: Annotated[
         dict[str, str],
-        Field(description="further numbers of the table: name → arithmetic expression"),
-    ] = {}
+        Field(
+            description="further numbers of the table: name → arithmetic expression",
+            default_factory=dict,
+        ),
+    ]
     executor: Annotated[
         Executor,
         FromRegistry(),
@@ -160,7 +178,7 @@ class Study(Model):
         """Return the dimension and the values of each varied parameter, SI."""
         made = {}
         for number, (dimension, along) in enumerate(self.dimensions.items()):
-            runs = [point.run for point in self.points if not any(_without(point.index, number))]
+            runs = [point.run for point in self.points if not any(_without(point.place, number))]
             for key, values in along.items():
                 made[key] = dimension, _coordinate(runs, key, values)
         return made
@@ -257,8 +275,8 @@ class Study(Model):
         """Yield each value of an axis with a run that has it."""
         number = next(n for n, along in enumerate(self.dimensions.values()) if key in along)
         for point in self.points:
-            if not any(_without(point.index, number)):
-                yield values[point.index[number]], point.run
+            if not any(_without(point.place, number)):
+                yield values[point.place[number]], point.run
 
     def _check_axes(self) -> None:
         keys = [*self.vary, *itertools.chain.from_iterable(self.zip)]

@@ -33,13 +33,13 @@ class Table:
             "axes": json.dumps({name: list(axes) for name, axes in study.dimensions.items()}),
             **now_with(point.run for point in study.points),
         }
-        steps = {point.index: len(point.run.loading.values) for point in study.points}
+        steps = {point.place: len(point.run.loading.values) for point in study.points}
         shape = *study.shape, max(steps.values())
         self._status = np.full(shape, "", dtype=object)
         self._runs = np.full(study.shape, "", dtype=object)
         for point in study.points:
-            self._status[point.index][: steps[point.index]] = NOT_RUN
-            self._runs[point.index] = point.run.identity[:16]
+            self._status[point.place][: steps[point.place]] = NOT_RUN
+            self._runs[point.place] = point.run.identity[:16]
         self._numbers: dict[str, np.ndarray[Any, np.dtype[Any]]] = {}
         self._said: dict[str, dict[str, str]] = {}
 

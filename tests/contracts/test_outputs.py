@@ -36,7 +36,8 @@ def leave(output: Output, place: Place, result: Result, steps: int) -> tuple[Pat
 @pytest.fixture
 def place(tmp_path: Path) -> Place:
     """Return a place in a folder that does not exist yet."""
-    return Place(tmp_path / "new" / "folder", "indent", pl.Run(**RUN).to_json())
+    run = pl.Run(**RUN)
+    return Place(tmp_path / "new" / "folder", "indent", run.to_json(), run.identity)
 
 
 @pytest.mark.parametrize("steps", [1, 2])

@@ -71,6 +71,7 @@ def test_readable_by_others(path: Path) -> None:
     """The file opens with h5py and with xarray's own NetCDF reader."""
     storage.write(steps(0, 1), path)
     storage.append(steps(2), path)
+    storage.close(path)
     with h5py.File(path) as file:
         assert file["pressure"].shape == (3, 5, 4)
         assert file["pressure"].attrs["units"] == "Pa"
@@ -128,13 +129,13 @@ def test_check_writable(tmp_path: Path) -> None:
         storage.check_writable(tmp_path / "file" / "c.h5")
 
 
-def test_configuration(path: Path) -> None:
-    """The configuration is read without the fields, and only from a result."""
+def test_attributes(path: Path) -> None:
+    """The attributes are read without the fields, and only from a result."""
     storage.write(steps(0), path)
-    assert storage.configuration(path) == ATTRIBUTES["configuration"]
+    assert storage.attributes(path) == ATTRIBUTES
     path.write_bytes(b"junk")
     with pytest.raises(StorageError, match="not a readable result file"):
-        storage.configuration(path)
+        storage.attributes(path)
 
 
 def test_other_schema_version(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
