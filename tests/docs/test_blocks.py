@@ -225,11 +225,3 @@ def test_study_of_the_readme_is_the_starter_file() -> None:
     """What the README runs is what ``pellicle new`` writes."""
     starter = Path(pl.__file__).with_name("starter.toml")
     assert (ROOT / "docs/studies/indent.toml").read_bytes() == starter.read_bytes()
-
-
-@pytest.mark.parametrize(
-    "path", sorted((ROOT / "docs/studies").glob("*.toml")), ids=lambda p: p.name
-)
-def test_study_is_valid(path: Path) -> None:
-    """Every file in docs/studies makes a run."""
-    pl.Run.from_toml(path)
