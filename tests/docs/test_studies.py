@@ -142,7 +142,8 @@ def rough(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "indenter.cutoff_wavelength='0.125 mm'",
         "loading.depth=['40 um','100 um']",
     )
-    axes = 'study.vary={"kernel.tension"=["0 mN/m","10 mN/m","50 mN/m","100 mN/m"],"indenter.seed"=[0,1]}'
+    tensions = '"kernel.tension"=["0 mN/m","10 mN/m","50 mN/m","100 mN/m"]'
+    axes = f'study.vary={{{tensions},"indenter.seed"=[0,1]}}'
     for name in ("fig8.toml", "fig9.toml"):
         run(name, folder, *smaller, axes)
     return folder
