@@ -11,8 +11,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 import pellicle as pl
-from pellicle.components import FAMILIES
 from pellicle.dataset import DESCRIPTIONS
+from pellicle.model import Model
 from pellicle.units import Quantity
 
 _HEADINGS = {
@@ -177,7 +177,7 @@ def _kind(annotation: Any) -> str:
     if origin is tuple:
         kinds = {_kind(kind) for kind in inner if kind is not Ellipsis}
         return f"list of {' and '.join(sorted(kinds))}"
-    if origin is dict or annotation in (pl.Grid, pl.Loading, *FAMILIES.values()):
+    if origin is dict or (isinstance(annotation, type) and issubclass(annotation, Model)):
         return "table"
     names = {int: "whole number", float: "number", str: "text", Path: "file", Any: "array"}
     return names[annotation]

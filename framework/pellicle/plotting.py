@@ -16,6 +16,7 @@ from .storage import reported
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f"}
 
@@ -40,11 +41,10 @@ def pressure_map(result: Result, axes: Axes, step: int = -1) -> None:
     pressure = data["pressure"].values
     length, length_name = axis_unit(np.append(data["x"].values, data["y"].values), "m")
     scale, name = axis_unit(pressure, "Pa")
-    edges = [[edge * length for edge in _edges(data[axis].values)] for axis in ("x", "y")]
     image = axes.imshow(
         np.ma.masked_equal(pressure.T * scale, 0.0),
         origin="lower",
-        extent=(edges[0][0], edges[0][1], edges[1][0], edges[1][1]),
+        extent=extent(data["x"].values * length, data["y"].values * length),
         cmap="viridis",
         vmin=0.0,
         interpolation="nearest",
@@ -180,20 +180,42 @@ def _save(
     name: str,
     formats: Iterable[str],
 ) -> tuple[Path, ...]:
+    files: list[Path] = []
+    for ending, draw in drawings.items():
+
+        def fill(figure: Figure, draw: Callable[[Axes], None] = draw) -> None:
+            draw(figure.add_subplot())
+
+        files += save_figure(fill, directory / f"{name}-{ending}", formats)
+    return tuple(files)
+
+
+def save_figure(
+    draw: Callable[[Figure], None],
+    stem: Path,
+    formats: Iterable[str],
+    size: tuple[float, float] = (5.4, 4.2),
+) -> tuple[Path, ...]:
+    """Let ``draw`` fill a figure of ``size`` [inch], and write it as ``stem.format``.
+
+    Raises
+    ------
+    StorageError
+        A file cannot be written.
+    """
     import matplotlib.style
     from matplotlib.figure import Figure
 
     files = []
-    for ending, draw in drawings.items():
-        with matplotlib.style.context("default"):
-            figure = Figure(figsize=(5.4, 4.2), dpi=150, layout="constrained")
-            draw(figure.add_subplot())
-            for format_ in formats:
-                path = directory / f"{name}-{ending}.{format_}"
-                with reported(path):
-                    directory.mkdir(parents=True, exist_ok=True)
-                    figure.savefig(path)
-                files.append(path)
+    with matplotlib.style.context("default"):
+        figure = Figure(figsize=size, dpi=150, layout="constrained")
+        draw(figure)
+        for format_ in formats:
+            path = stem.with_name(f"{stem.name}.{format_}")
+            with reported(path):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                figure.savefig(path)
+            files.append(path)
     return tuple(files)
 
 
@@ -259,6 +281,11 @@ def _caption(result: Result, step: int) -> str:
     if not bool(data["converged"]):
         caption += ", NOT CONVERGED"
     return f"{title}\n{caption}" if title else caption
+
+
+def extent(x: Array, y: Array) -> tuple[float, float, float, float]:
+    """Return the outer edges of cells by their centres, as ``Axes.imshow`` takes them."""
+    return (*_edges(x), *_edges(y))
 
 
 def _edges(centres: Array) -> tuple[float, float]:

@@ -13,9 +13,12 @@ import numpy as np
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from . import axes, memory
+from .columns import FIELDS, constants
 from .components import Executor
 from .config import Run, read
+from .dataset import DESCRIPTIONS
 from .errors import ConfigError, Problem, shown
+from .expression import evaluate
 from .fields import FromRegistry, json_schema
 from .model import Model, paths_relative_to, replaced
 from .plugins import registry
@@ -147,6 +150,7 @@ class Study(Model):
         # Workers may have another current folder.
         with paths_relative_to(None):
             self._points = tuple(self._make_points())
+        self._check_derived()
         return self
 
     @property
@@ -292,6 +296,24 @@ class Study(Model):
                 f"them alone, and {there / 1e9:.3g} GB are available; give fewer values",
                 "vary",
             )
+
+    def _check_derived(self) -> None:
+        """Refuse expressions that name what a table will not have, before anything is run."""
+        run = self.points[0].run
+        there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - {"status"}
+        there |= {f"contact_area_{getattr(each, 'type', '')}" for each in run.corrections}
+        there |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
+        problems: list[Problem] = []
+        for name, text in self.derived.items():
+            try:
+                if name in there:
+                    raise ConfigError(f"{shown(name)} is a column already; give another name")
+                evaluate(text, dict.fromkeys(there - {*FIELDS}, np.float64(1.0)))
+            except ConfigError as error:
+                problems.extend(error.within(f"derived.{name}").problems)
+            there.add(name)
+        if problems:
+            raise ConfigError(problems)
 
     def _make_points(self) -> Iterator[Point]:
         """Yield the runs; raise all that is wrong with them, each problem once."""

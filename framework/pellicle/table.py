@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import storage
+from .columns import FIRST_RUN, derive
 from .dataset import header
 from .orchestrator import now_with
 from .study_config import Study
@@ -28,6 +29,7 @@ class Table:
         self._attributes = {
             "title": study.points[0].run.title,
             "configuration": study.to_json(),
+            FIRST_RUN: study.points[0].run.to_json(),
             "axes": json.dumps({name: list(axes) for name, axes in study.dimensions.items()}),
             **now_with(point.run for point in study.points),
         }
@@ -79,7 +81,8 @@ class Table:
             np.arange(self._status.shape[-1]),
             {"long_name": "load step"},
         )
-        return xr.Dataset(variables, coordinates, self._attributes)
+        made = xr.Dataset(variables, coordinates, self._attributes)
+        return derive(made, self._study.derived) if self._numbers else made
 
 
 _COUNTS = ("iterations", "operator_applications")

@@ -20,7 +20,6 @@ from blocks import PAGES, ROOT, Block, blocks
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle import study_config
 from pellicle.cli import app
 from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
 
@@ -234,11 +233,3 @@ def test_study_of_the_readme_is_the_starter_file() -> None:
     """What the README runs is what ``pellicle new`` writes."""
     starter = Path(pl.__file__).with_name("starter.toml")
     assert (ROOT / "docs/studies/indent.toml").read_bytes() == starter.read_bytes()
-
-
-@pytest.mark.parametrize(
-    "path", sorted((ROOT / "docs/studies").glob("*.toml")), ids=lambda p: p.name
-)
-def test_study_is_valid(path: Path) -> None:
-    """Every file in docs/studies makes a run or a study."""
-    study_config.from_toml(path)
