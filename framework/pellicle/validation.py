@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from .components import Case
 from .config import Run
+from .orchestrator import solve
 from .plugins import registry
 from .result import Result
 
