@@ -20,6 +20,7 @@ from blocks import PAGES, ROOT, Block, blocks
 from typer.testing import CliRunner
 
 import pellicle as pl
+from pellicle import axes
 from pellicle.cli import app
 from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
 
@@ -91,7 +92,7 @@ class Reader:
         data = tomllib.loads(block.text)
         if "project" in data:
             assert block.comments["file"] == "pyproject.toml"
-        elif "study" in data:
+        elif {"grid", "study"} <= data.keys():
             table = pl.run_study(data, progress=False, threads=_ONE_THREAD)
             assert table["converged"].all(), block
         elif "grid" in data:
@@ -184,7 +185,8 @@ def check_part(data: dict[str, Any]) -> None:
         elif name == "loading":
             pl.Loading(**table)
         elif name == "study":
-            check_part(table)
+            check_part({key: part for key, part in table.items() if key == "executor"})
+            assert all(axes.expand(table.get("vary", {})).values())
         else:
             for entry in table if isinstance(table, list) else [table]:
                 pl.registry().make(_TABLES[name], entry)
