@@ -6,7 +6,7 @@ import logging
 import pickle
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from queue import Empty, SimpleQueue
 from types import TracebackType
@@ -14,6 +14,7 @@ from typing import Any, Generic, Self
 from uuid import uuid4
 
 import cloudpickle
+from dask import config as configuration
 from dask.system import CPU_COUNT
 from distributed import Client, Future, KilledWorker, LocalCluster, get_worker
 
@@ -24,6 +25,8 @@ from .attempt import attempt_far, pack
 
 _LOOK_EVERY = 2.0
 """Time without news after which we look whether there are workers [s]."""
+_START_WITHIN = 60.0
+"""Time for a worker to start [s]."""
 
 
 @contextmanager
@@ -137,13 +140,20 @@ class Submission(Generic[AnyTask]):
 
     def _finished(self, report: Report[AnyTask]) -> Iterator[tuple[int, Any]]:
         """Yield the outcome of each task that is submitted, and report what is said meanwhile."""
+        revivals = configuration.get("distributed.scheduler.allowed-failures") + 1
+        left = revivals
         while self._futures:
             try:
                 index, said = self._news.get(timeout=_LOOK_EVERY)
             except Empty:
                 if _is_deserted(self._client):
-                    yield from self._lost()
+                    if left:
+                        left -= 1
+                        _revive(self._client)
+                    else:
+                        yield from self._lost()
                 continue
+            left = revivals
             if said is not None:
                 report(self._tasks[index], pickle.loads(said))
             elif index in self._futures:
@@ -164,6 +174,13 @@ def _is_deserted(client: Client) -> bool:
     with an address workers may yet come.
     """
     return client.cluster is not None and not client.cluster.workers
+
+
+def _revive(client: Client) -> None:
+    """Start as many workers as there were at first, and wait for one."""
+    client.cluster.scale(len(client.cluster.worker_spec))
+    with suppress(TimeoutError):
+        client.wait_for_workers(1, timeout=_START_WITHIN)
 
 
 def _bootstrap() -> Callable[..., bytes]:
