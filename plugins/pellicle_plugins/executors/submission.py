@@ -14,7 +14,6 @@ from typing import Any, Generic, Self
 from uuid import uuid4
 
 import cloudpickle
-from dask import config as configuration
 from dask.system import CPU_COUNT
 from distributed import Client, Future, KilledWorker, LocalCluster, get_worker
 
@@ -25,8 +24,21 @@ from .attempt import attempt_far, pack
 
 _LOOK_EVERY = 2.0
 """Time without news after which we look whether there are workers [s]."""
-_START_WITHIN = 60.0
-"""Time for a worker to start [s]."""
+_RESTARTS = 3
+"""Times that we start workers in place of those that dask has given up, before we do too."""
+_START_WITHIN = 30.0
+"""Time that dask has to start a worker again [s]."""
+
+
+class _Local(LocalCluster):
+    """A cluster on this machine that can lose a worker before it has heard of it.
+
+    dask would stop listening to its scheduler over it, and raise when it closes.
+    """
+
+    def _update_worker_status(self, op: str, msg: Any) -> None:
+        with suppress(KeyError):
+            super()._update_worker_status(op, msg)  # type: ignore[no-untyped-call]
 
 
 @contextmanager
@@ -51,13 +63,13 @@ def cluster(address: str | None, workers: int | None, threads: int) -> Iterator[
             yield client
         return
     with (
-        LocalCluster(
+        _Local(  # type: ignore[no-untyped-call]
             n_workers=workers or max(1, CPU_COUNT // threads),
             threads_per_worker=1,
             # Without an address its port is 8787, and another scheduler here has that.
             dashboard_address=":0",
             scheduler_kwargs={"dashboard": False},
-            silence_logs=logging.ERROR,
+            silence_logs=logging.CRITICAL,
         ) as ours,
         Client(ours, set_as_default=False) as client,
     ):
@@ -140,8 +152,7 @@ class Submission(Generic[AnyTask]):
 
     def _finished(self, report: Report[AnyTask]) -> Iterator[tuple[int, Any]]:
         """Yield the outcome of each task that is submitted, and report what is said meanwhile."""
-        revivals = configuration.get("distributed.scheduler.allowed-failures") + 1
-        left = revivals
+        left = _RESTARTS
         while self._futures:
             try:
                 index, said = self._news.get(timeout=_LOOK_EVERY)
@@ -149,11 +160,11 @@ class Submission(Generic[AnyTask]):
                 if _is_deserted(self._client):
                     if left:
                         left -= 1
-                        _revive(self._client)
+                        _restart(self._client)
                     else:
                         yield from self._lost()
                 continue
-            left = revivals
+            left = _RESTARTS
             if said is not None:
                 report(self._tasks[index], pickle.loads(said))
             elif index in self._futures:
@@ -173,14 +184,21 @@ def _is_deserted(client: Client) -> bool:
     dask starts a worker that died again, but not one that died while it started. To a scheduler
     with an address workers may yet come.
     """
-    return client.cluster is not None and not client.cluster.workers
-
-
-def _revive(client: Client) -> None:
-    """Start as many workers as there were at first, and wait for one."""
-    client.cluster.scale(len(client.cluster.worker_spec))
-    with suppress(TimeoutError):
+    if client.cluster is None or client.cluster.scheduler_info["workers"]:
+        return False
+    try:
         client.wait_for_workers(1, timeout=_START_WITHIN)
+    except TimeoutError:
+        return True
+    return False
+
+
+def _restart(client: Client) -> None:
+    """Start as many workers as there were at first."""
+    assert client.cluster is not None
+    workers = len(client.cluster.worker_spec)
+    client.cluster.scale(0)
+    client.cluster.scale(workers)
 
 
 def _bootstrap() -> Callable[..., bytes]:
