@@ -23,7 +23,7 @@ from .fields import FromRegistry, json_schema
 from .model import Model, paths_relative_to, replaced
 from .plugins import registry
 from .toml import toml_lines
-from .units import Quantity
+from .units import Quantity, split
 
 DEFAULT_EXECUTOR = "serial"
 _BYTES_PER_RUN = 40_000
@@ -424,6 +424,8 @@ def _short(value: object) -> str:
     if isinstance(value, Mapping):
         return str(value.get("type", "{…}"))
     text = value if isinstance(value, str) else json.dumps(value, default=str)
+    if (found := split(text)) is not None:
+        text = f"{found[0]:.6g} {found[1]}".rstrip()
     return text if len(text) <= 30 else f"{text[:29]}…"
 
 

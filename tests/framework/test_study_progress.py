@@ -36,10 +36,10 @@ class Screen:
         """Return itself, whichever console is asked for."""
         return self._console
 
-    def lines(self, progress: StudyProgress) -> list[str]:
-        """Return what stands on it."""
+    def lines(self, progress: StudyProgress, width: int = 200) -> list[str]:
+        """Return what stands on it, or would on one of another width."""
         assert progress._bar is not None
-        paper = Console(file=io.StringIO(), width=200)
+        paper = Console(file=io.StringIO(), width=width)
         with paper.capture() as capture:
             paper.print(progress._bar.get_renderable())
         return capture.get().splitlines()
@@ -61,31 +61,45 @@ def test_runs_done_failed_and_left(screen: Screen) -> None:
     """The line of the study counts runs; those done before count as done."""
     with StudyProgress(5, 1, enabled=True) as progress:
         (line,) = screen.lines(progress)
-        assert line.startswith("study")
-        assert "1 runs done, 0 failed, 4 left" in line
+        assert line.startswith("runs")
+        assert "1 done, 0 failed, 4 left" in line
         progress.finished(ONE, "converged", failed=False)
         progress.finished(TWO, "failed: struck by lightning", failed=True)
         (line,) = screen.lines(progress)
-        assert "2 runs done, 1 failed, 2 left" in line
+        assert "2 done, 1 failed, 2 left" in line
 
 
 def test_one_line_for_each_run_at_work(screen: Screen) -> None:
-    """A run has a line from its first word to its end: its name, step, iteration and residual."""
+    """A run has a line from its first word to its end: its name, step and iteration."""
     with StudyProgress(3, 0, enabled=True) as progress:
         progress.report(ONE, Said(0, 4, 3, 2e5, 0.25))
         progress.report(TWO, Said(1, 2, 7, 3.0, 1.5))
         study, one, two = screen.lines(progress)
-        assert "0 runs done, 0 failed, 3 left" in study
-        assert one.strip().startswith("kernel.tension = 1 N/m: step 1/4")
-        assert "iteration 3 residual 2.0e+05 × tolerance" in one
-        assert two.strip().startswith("kernel.tension = 2 N/m: step 2/2")
+        assert "0 done, 0 failed, 3 left" in study
+        assert one.strip().startswith("kernel.tension = 1 N/m ")
+        assert "step 1/4 iteration 3" in one
+        assert two.strip().startswith("kernel.tension = 2 N/m ")
+        assert "step 2/2 iteration 7" in two
         progress.report(ONE, Said(3, 4, 9, 1.0, 4.0))
         _, one, _ = screen.lines(progress)
         assert "step 4/4" in one
         progress.finished(ONE, "converged", failed=False)
         study, two = screen.lines(progress)
-        assert "1 runs done, 0 failed, 2 left" in study
+        assert "1 done, 0 failed, 2 left" in study
         assert "2 N/m" in two
+
+
+def test_narrow_terminal(screen: Screen) -> None:
+    """Where there is no room for all it is the names that are cut, and nothing in them is lost."""
+    job = Job("loading.depth = [1e-6, 2e-6], kernel.tension = 1 N/m, indenter.radius = 1 mm")
+    with StudyProgress(1000, 100, enabled=True) as progress:
+        progress.report(job, Said(0, 4, 3, 2e5, 0.25))
+        study, run = screen.lines(progress, width=80)
+    assert "100 done, 0 failed, 900 left time left -:--:--" in " ".join(study.split())
+    assert run.startswith("  loading.depth = [1e-6")
+    assert "…" in run
+    assert "step 1/4 iteration 3" in run
+    assert max(len(study), len(run)) <= 80
 
 
 def test_time_left(screen: Screen) -> None:

@@ -48,7 +48,7 @@ def cluster(address: str | None, workers: int | None, threads: int) -> Iterator[
     Raises
     ------
     ConfigError
-        No scheduler answers.
+        No scheduler answers, or none can be started.
     """
     if address is not None:
         try:
@@ -63,17 +63,27 @@ def cluster(address: str | None, workers: int | None, threads: int) -> Iterator[
             yield client
         return
     with (
-        _Local(  # type: ignore[no-untyped-call]
-            n_workers=workers or max(1, CPU_COUNT // threads),
+        _started_here(workers or max(1, CPU_COUNT // threads)) as ours,
+        Client(ours, set_as_default=False) as client,
+    ):
+        yield client
+
+
+def _started_here(workers: int) -> LocalCluster:
+    try:
+        return _Local(  # type: ignore[no-untyped-call]
+            n_workers=workers,
             threads_per_worker=1,
             # Without an address its port is 8787, and another scheduler here has that.
             dashboard_address=":0",
             scheduler_kwargs={"dashboard": False},
             silence_logs=logging.CRITICAL,
-        ) as ours,
-        Client(ours, set_as_default=False) as client,
-    ):
-        yield client
+        )
+    except RuntimeError as error:
+        raise ConfigError(
+            f"dask cannot start its workers ({error}); they import the script that starts them, so "
+            'put what it does under if __name__ == "__main__":, or take the executor "processes"'
+        ) from None
 
 
 class Submission(Generic[AnyTask]):
