@@ -41,6 +41,9 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     StorageError
         The file cannot be written.
     """
+    import h5netcdf
+    from xarray.backends import H5NetCDFStore
+
     # Fields compress two- to tenfold at the lowest level; higher ones only cost time.
     packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
     encoding: dict[Any, Any] = {
@@ -49,10 +52,13 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     # Only what may grow needs a dimension that can: h5netcdf is slow with these.
     grows = ["step"] if "x" in dataset.dims and path.suffix != ".tail" else []
     with aside(path) as part:
-        image = dataset.assign_attrs(schema_version=SCHEMA_VERSION).to_netcdf(
-            engine="h5netcdf", unlimited_dims=grows, encoding=encoding
-        )
-        part.write_bytes(image)
+        image = io.BytesIO()
+        with h5netcdf.File(image, "w") as file:
+            # Dataset.to_netcdf would, on a worker of dask, ask its scheduler for a lock.
+            dataset.assign_attrs(schema_version=SCHEMA_VERSION).dump_to_store(
+                H5NetCDFStore(file, lock=False), unlimited_dims=grows, encoding=encoding
+            )
+        part.write_bytes(image.getbuffer())
         # While the old file still has the name: its tails must never continue the new one.
         for tail in _tails(path):
             tail.unlink()
