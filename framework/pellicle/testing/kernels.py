@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.integrate import quad
 
 from pellicle.components import Kernel
 from pellicle.grid import Grid
@@ -218,6 +217,8 @@ def _middle_by_compliance(kernel: Kernel, cell: float = 0.0) -> float:
 
 def _integral(function: Callable[[Array], float]) -> float:
     """Return ∫ f(t) exp(−t²/2) dt over t > 0."""
+    # Here, not above: the workers of `check_executor` import this package too.
+    from scipy.integrate import quad
 
     def integrand(t: float) -> float:
         return function(np.array([t])) * float(np.exp(-(t**2) / 2))
