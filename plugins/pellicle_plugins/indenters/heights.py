@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
 
 from pellicle import hookimpl
-from pellicle.components import Indenter
+from pellicle.components import Footprint, Indenter
 from pellicle.errors import ConfigError
 from pellicle.model import InputPath
 from pellicle.operators import Array
@@ -25,7 +25,7 @@ class Heights(Indenter):
     its content hash only.
     """
 
-    footprint: ClassVar[Literal["unbounded", "domain"]] = "domain"
+    footprint: ClassVar[Footprint] = "domain"
     type: Literal["heights"] = "heights"
     path: Annotated[
         InputPath | None,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from pellicle import hookimpl
-from pellicle.components import Indenter
+from pellicle.components import Footprint, Indenter
 from pellicle.errors import ConfigError
 from pellicle.operators import Array
 from pellicle.units import Length, Quantity
@@ -29,7 +29,7 @@ class SelfAffine(Indenter):
     2020, eq. 12), q₀ = 2π/roll_off_wavelength, q_s = 2π/cutoff_wavelength.
     """
 
-    footprint: ClassVar[Literal["unbounded", "domain"]] = "domain"
+    footprint: ClassVar[Footprint] = "domain"
     type: Literal["self_affine"] = "self_affine"
     rms_height: Annotated[Length, Field(description="root mean square of the heights [m]")]
     hurst: Annotated[
