@@ -178,7 +178,14 @@ def _kind(annotation: Any) -> str:
         return f"list of {' and '.join(sorted(kinds))}"
     if annotation in (pl.Grid, pl.Loading) or annotation in FAMILIES.values():
         return "table"
-    names = {int: "whole number", float: "number", str: "text", Path: "file", Any: "array"}
+    names = {
+        bool: "true or false",
+        int: "whole number",
+        float: "number",
+        str: "text",
+        Path: "file",
+        Any: "array",
+    }
     return names[annotation]
 
 

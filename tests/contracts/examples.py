@@ -52,6 +52,7 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
             "seed": 3,
         },
         "heights": {"path": str(Path(__file__).with_name("heights.txt")), "unit": "1 um"},
+        "topography": {"path": str(Path(__file__).parents[1] / "data" / "patch.x3p"), "fill": 0.01},
         "sum": {
             "parts": [
                 {"type": "sphere", "radius": "1 mm"},

@@ -1,0 +1,193 @@
+"""Reads the files of profilometers and scanning probe microscopes, by SurfaceTopography."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import warnings
+from math import prod
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from pellicle import memory
+from pellicle.errors import ConfigError
+from pellicle.operators import Array
+from pellicle.units import Quantity
+
+# Peak while a scan is read and laid on the grid, in arrays of its points.
+_ARRAYS = 8
+
+
+class Scan(NamedTuple):
+    """A measured surface."""
+
+    heights: Array
+    """[m], along x then y; NaN where a point is missing."""
+    size: tuple[float, float]
+    """Edge lengths [m]."""
+    digest: str
+    """SHA-256 of the file."""
+
+
+def read_scan(
+    path: Path,
+    channel: str | None = None,
+    unit: float | None = None,
+    size: tuple[float, float] | None = None,
+) -> Scan:
+    """Return the surface in a file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    channel
+        Name of the data set; the one that the format means as a rule if None.
+    unit
+        Length that 1 in the file stands for [m], if the file does not say it.
+    size
+        Edge lengths [m], if the file does not say them.
+
+    Raises
+    ------
+    ConfigError
+        The extra is not installed, or the file cannot be used.
+    """
+    library = _library()
+    content = _content(path)
+    # The readers warn of what is not ours to mend, and raise whatever a damaged file leads to.
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        try:
+            found = _channel(library.open_topography(io.BytesIO(content)), path, channel)
+            scale = _scale(found, path, unit)
+            edges = _size(found, path, scale, size)
+            _check_memory(found, path)
+            # Sizes are not needed for the heights, but asked for where the file has none.
+            dummy = None if found.physical_sizes is not None else (1.0, 1.0)
+            heights = found.topography(physical_sizes=dummy).heights()
+        except ConfigError:
+            raise
+        except library.CannotDetectFileFormat:
+            raise ConfigError(
+                f"{path} is of no format that can be read, or damaged; give one of "
+                f"{', '.join(sorted(reader.format() for reader in library.readers))}, or plain "
+                "numbers as type = 'heights'",
+                "path",
+            ) from None
+        except Exception as error:
+            raise ConfigError(
+                f"{path} is damaged or incomplete ({_reason(error)}); export it again", "path"
+            ) from None
+    values = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan) * scale
+    values[~np.isfinite(values)] = np.nan
+    return Scan(values, edges, hashlib.sha256(content).hexdigest())
+
+
+def _library() -> Any:
+    try:
+        with warnings.catch_warnings():
+            # It says that there is no MPI, which is not asked for.
+            warnings.simplefilter("ignore", ImportWarning)
+            import SurfaceTopography.IO
+    except ImportError as error:
+        raise ConfigError(
+            f"needs SurfaceTopography, which is not installed ({error}); "
+            "pip install 'pellicle[topography]'",
+            "type",
+        ) from None
+    return SurfaceTopography.IO
+
+
+def _content(path: Path) -> bytes:
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise ConfigError(f"{path}: {error.strerror}; give the file of a scan", "path") from None
+    except MemoryError:
+        raise ConfigError(f"{path} does not fit in memory; export a part of it", "path") from None
+    if not content:
+        raise ConfigError(f"{path} is empty; give the file of a scan", "path")
+    return content
+
+
+def _channel(reader: Any, path: Path, name: str | None) -> Any:
+    """Return the data set that is meant, which is heights over a regular grid."""
+    channels = {each.name: each for each in reader.channels}
+    heights = ", ".join(repr(each.name) for each in reader.height_channels) or "none"
+    if name is not None and name not in channels:
+        raise ConfigError(
+            f"{name!r} is not in {path}; its channels of heights are: {heights}", "channel"
+        )
+    found = reader.default_channel if name is None else channels[name]
+    if not found.is_height_channel:
+        raise ConfigError(
+            f"{found.name!r} of {path} is in {found.data_unit}, not heights; its channels of "
+            f"heights are: {heights}",
+            "channel",
+        )
+    if found.dim != 2:
+        raise ConfigError(
+            f"{path} is a profile along a line, and contact needs an area; give an areal scan, or "
+            "repeat the profile along y and give it as type = 'heights'",
+            "path",
+        )
+    if found.is_uniform is False:
+        raise ConfigError(
+            f"{path} has points at irregular distances; resample it to a regular grid first",
+            "path",
+        )
+    return found
+
+
+def _scale(found: Any, path: Path, unit: float | None) -> float:
+    """Return the length that 1 in the file stands for [m]."""
+    if found.unit is None:
+        if unit is None:
+            raise ConfigError(
+                f"is missing, and {path} does not say in which unit its heights are; give the "
+                "length that 1 stands for: '1 um'",
+                "unit",
+            )
+        return unit
+    if unit is not None:
+        raise ConfigError(f"{path} states its own unit, {found.unit}; leave this out", "unit")
+    try:
+        return Quantity("m")(f"1 {found.unit}")
+    except ValueError as error:
+        raise ConfigError(f"{path} is in a unit that is no length: {error}", "path") from None
+
+
+def _size(
+    found: Any, path: Path, scale: float, size: tuple[float, float] | None
+) -> tuple[float, float]:
+    if found.physical_sizes is None:
+        if size is None:
+            raise ConfigError(
+                f"is missing, and {path} does not say it; give the edge lengths of the scan, such "
+                "as ['80 um', '60 um']",
+                "size",
+            )
+        return size
+    x, y = (float(edge) * scale for edge in found.physical_sizes)
+    if size is not None:
+        raise ConfigError(f"{path} states its own size, {x:g} × {y:g} m; leave this out", "size")
+    return x, y
+
+
+def _check_memory(found: Any, path: Path) -> None:
+    """Refuse heights that do not fit, before they are read."""
+    needed, there = 8.0 * _ARRAYS * prod(found.nb_grid_pts), memory.available()
+    if there is not None and needed > there:
+        nx, ny = found.nb_grid_pts
+        raise ConfigError(
+            f"{path} has {nx} × {ny} points, which need about {memory.shortage(needed, there)}; "
+            "export a part of it",
+            "path",
+        )
+
+
+def _reason(error: Exception) -> str:
+    return (str(error).splitlines() or [""])[0][:200] or type(error).__name__
