@@ -45,22 +45,26 @@ class FromRegistry:
 
 
 def json_schema(model: type[BaseModel]) -> dict[str, Any]:
-    """Return the JSON schema of a model whose fields take any component that is installed."""
+    """Return the JSON schema of a model whose fields take any component that is installed.
+
+    Where such a field is the model's own the components are written out; within components, which
+    may hold others of their own family without end, they are referred to.
+    """
     families = registry().components
     installed = [each for found in families.values() for each in found.values()]
     models = [model, *(registered.component for registered in installed)]
     refs, made = models_json_schema([(each, "validation") for each in models])
-    choices: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
+    names = {each: refs[each, "validation"]["$ref"].rpartition("/")[2] for each in models}
+    definitions: dict[str, Any] = made["$defs"]
+    referred: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
+    written: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
     for registered in installed:
         component = registered.component
-        choices[component.family].append(
-            refs[component, "validation"]
-            | {"properties": {"type": {"const": registered.type}}}
-            | {"required": ["type", *_required(component)]}
-        )
-    definitions = _filled(made["$defs"], choices)
-    top = definitions.pop(refs[model, "validation"]["$ref"].rpartition("/")[2])
-    return {"$defs": definitions, **top}
+        required = {"required": ["type", *_required(component)]}
+        referred[component.family].append(refs[component, "validation"] | required)
+        written[component.family].append(definitions[names[component]] | required)
+    top = _filled(_filled(definitions.pop(names[model]), written), referred)
+    return {"$defs": _filled(definitions, referred), **top}
 
 
 def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:

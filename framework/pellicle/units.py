@@ -46,6 +46,24 @@ def _registry() -> pint.UnitRegistry[Any]:
     return registry
 
 
+def ramp(start: float, stop: float, num: int, *, log: bool = False) -> list[float]:
+    """Return ``num`` values from ``start`` to ``stop``, evenly spaced, or their logarithms so."""
+    shares = [i / (num - 1) for i in range(num)]
+    values = (
+        [start * (stop / start) ** share for share in shares]
+        if log
+        else [(start * (num - 1 - i) + stop * i) / (num - 1) for i in range(num)]
+    )
+    # Fifteen digits are what a user can have meant: 3e-05, not 3.0000000000000004e-05.
+    return [float(f"{value:.15g}") for value in values]
+
+
+def split(text: str) -> tuple[float, str] | None:
+    """Return number and unit of a text like ``"10 kPa"``; None if it is none."""
+    match = _NUMBER_AND_UNIT.fullmatch(text)
+    return (float(match[1]), match[2]) if match else None
+
+
 @dataclass(frozen=True)
 class Quantity:
     """Annotation of a float field: its SI unit and the values that make sense.

@@ -79,6 +79,22 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
     },
     "solver": {"active_set": {"tolerance": 1e-9}, "conjugate_gradient": {"tolerance": 1e-9}},
     "correction": {"yastrebov": {}},
-    "output": {"hdf5": {}, "csv": {}, "figures": {"formats": ["png", "svg"]}},
+    "output": {
+        "hdf5": {},
+        "csv": {},
+        "figures": {"formats": ["png", "svg"]},
+        "curves": {
+            "x": "depth / indenter.radius",
+            "y": ["contact_area", "contact_area_yastrebov"],
+            "series": ["counted", "corrected"],
+            "log": ["x"],
+            "reference": "axisymmetric",
+            "published": [{"label": "by hand", "x": [0.005], "y": [2e-8]}],
+            "formats": ["png", "svg"],
+        },
+        "profiles": {"by": "step", "label": "{depth * 1e6} µm", "reference": "axisymmetric"},
+        "maps": {"field": "displacement - depth - gap", "name": "indenter"},
+        "compliance": {"x": "q * indenter.radius"},
+    },
     "executor": {"serial": {"threads": 1}, "processes": {"workers": 2}, "dask": {"workers": 2}},
 }

@@ -73,13 +73,7 @@ def test_packages_are_listed(environment: dict[str, str], tmp_path: Path) -> Non
     assert all(each["description"].endswith((".", ").")) for each in mine)
 
 
-NO_STUDIES = pytest.mark.xfail(reason="run files hold no study yet", strict=True)
-
-
-@pytest.mark.parametrize(
-    "family",
-    [pytest.param(f, marks=NO_STUDIES) if f == "executor" else f for f in FAMILIES],
-)
+@pytest.mark.parametrize("family", FAMILIES)
 def test_example_runs(
     family: str, folders: dict[str, Path], environment: dict[str, str], tmp_path: Path
 ) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import xarray as xr
 
 from pellicle.config import Run
-from pellicle.orchestrator import execute
+from pellicle.orchestrator import solve
 
 from .rules import require
 
@@ -15,7 +15,7 @@ from .rules import require
 def solved(configuration: dict[str, Any]) -> xr.Dataset:
     """Return the dataset of a run, every step of which must converge."""
     run = Run(**configuration)
-    result, _ = execute(run, None)
+    result = solve(run)
     for index, message in result.failures():
         what = f"{run.grid.boundary} boundary, {run.loading.prescribed} prescribed"
         require(False, f"step {index + 1} of a run ({what}) did not converge: {message}")

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from importlib.metadata import version
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 from types import TracebackType
 from typing import Any, Generic, Self
 from uuid import uuid4
@@ -21,6 +21,9 @@ from pellicle import ConfigError, PellicleError, memory
 from pellicle.components import AnyTask, Report, Say
 
 from .attempt import attempt_far, pack
+
+_LOOK_EVERY = 2.0
+"""Time without news after which we look whether there are workers [s]."""
 
 
 @contextmanager
@@ -135,12 +138,32 @@ class Submission(Generic[AnyTask]):
     def _finished(self, report: Report[AnyTask]) -> Iterator[tuple[int, Any]]:
         """Yield the outcome of each task that is submitted, and report what is said meanwhile."""
         while self._futures:
-            index, said = self._news.get()
+            try:
+                index, said = self._news.get(timeout=_LOOK_EVERY)
+            except Empty:
+                if _is_deserted(self._client):
+                    yield from self._lost()
+                continue
             if said is not None:
                 report(self._tasks[index], pickle.loads(said))
             elif index in self._futures:
                 # A result that is taken is let go of: nobody computes it again if its worker dies.
                 yield index, _outcome(self._futures.pop(index))
+
+    def _lost(self) -> Iterator[tuple[int, Any]]:
+        """Yield every task that is submitted, as failed."""
+        for index in [*self._futures]:
+            del self._futures[index]
+            yield index, PellicleError("all workers that were started for it died")
+
+
+def _is_deserted(client: Client) -> bool:
+    """Whether a scheduler that was started here has no worker left, so that tasks would wait on.
+
+    dask starts a worker that died again, but not one that died while it started. To a scheduler
+    with an address workers may yet come.
+    """
+    return client.cluster is not None and not client.cluster.workers
 
 
 def _bootstrap() -> Callable[..., bytes]:

@@ -66,10 +66,16 @@ def die_the_first_time(job: Job, say: Say) -> int:
 
 
 def always_die(job: Job, say: Say) -> int:
-    """Kill the own worker at the second job, whenever it is tried."""
+    """Kill the own worker at the second job, whenever it is tried, but not while it starts."""
     if job.number == 1:
+        time.sleep(0.5)
         os.kill(os.getpid(), signal.SIGKILL)
     return job.number
+
+
+def die_at_once(job: Job, say: Say) -> None:
+    """Kill the own worker, as soon as there is one."""
+    os.kill(os.getpid(), signal.SIGKILL)
 
 
 def talk_for_ever(job: Job, say: Say) -> None:
@@ -103,27 +109,36 @@ def test_scheduler_by_address(address: str) -> None:
 
 
 @posix
-def test_task_of_a_killed_worker_runs_elsewhere(address: str, tmp_path: Path) -> None:
+def test_task_of_a_killed_worker_runs_elsewhere(tmp_path: Path) -> None:
     """The table is that of an undisturbed study, and no finished task was begun again."""
     jobs = [Job(i, tmp_path) for i in range(6)]
-    found = dict(dask(address=address).map(die_the_first_time, jobs, silence))
+    found = dict(dask(workers=2).map(die_the_first_time, jobs, silence))
     assert found == {job: job.number for job in jobs}
     assert len(list(tmp_path.glob("1-*"))) == 2
 
 
 @posix
-def test_task_that_kills_every_worker_is_given_up(address: str) -> None:
+def test_task_that_kills_every_worker_is_given_up() -> None:
     """It says how many died of it; the others are carried out."""
-    found = dict(dask(address=address).map(always_die, [Job(i) for i in range(3)], silence))
+    with configuration.set({"distributed.scheduler.allowed-failures": 1}):
+        found = dict(dask(workers=2).map(always_die, [Job(i) for i in range(3)], silence))
     assert (found[Job(0)], found[Job(2)]) == (0, 2)
     assert isinstance(found[Job(1)], pl.PellicleError)
-    assert str(found[Job(1)]).startswith("4 workers died of it")
+    assert str(found[Job(1)]).startswith("2 workers died of it")
+
+
+@posix
+def test_no_worker_is_left() -> None:
+    """Tasks for which there are no workers any more fail, and do not wait for ever."""
+    found = list(dask(workers=1).map(die_at_once, [Job(0), Job(1)], silence))
+    assert len(found) == 2
+    for _, outcome in found:
+        assert isinstance(outcome, pl.PellicleError)
+        assert "died" in str(outcome)
 
 
 def test_task_larger_than_every_worker(address: str) -> None:
     """It is not sent off to die four times; the others run."""
-    with distributed.Client(address, set_as_default=False) as client:
-        client.wait_for_workers(2)
     jobs = [Job(0, memory=3 * 10**9), Job(2)]
     found = dict(dask(address=address).map(square, jobs, silence))
     assert found[jobs[1]] == 4
