@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import warnings
-from math import prod
+from functools import lru_cache
 from pathlib import Path
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,8 +16,10 @@ from pellicle.errors import ConfigError
 from pellicle.operators import Array
 from pellicle.units import Quantity
 
-# Peak while a scan is read and laid on the grid, in arrays of its points.
-_ARRAYS = 8
+# Peak while a scan is read and laid on the grid, in arrays of its points, and while plain text is
+# parsed, in lengths of the file: above what was measured at 2000² points (8) and 1000² (11).
+_ARRAYS = 9
+_TIMES_TEXT = 12
 
 
 class Scan(NamedTuple):
@@ -55,16 +57,54 @@ def read_scan(
     ConfigError
         The extra is not installed, or the file cannot be used.
     """
+    if not path.is_file():
+        raise ConfigError(f"{path}: no such file; give the file of a scan", "path")
+    stat = path.stat()
+    if stat.st_size == 0:
+        raise ConfigError(f"{path} is empty; give the file of a scan", "path")
+    return _read(path.absolute(), stat.st_mtime_ns, stat.st_size, channel, unit, size)
+
+
+# The runs of a study may take many parts of one large scan.
+@lru_cache(maxsize=1)
+def _read(
+    path: Path,
+    changed: int,
+    length: int,
+    channel: str | None,
+    unit: float | None,
+    size: tuple[float, float] | None,
+) -> Scan:
+    """Return what `read_scan` does; a file that was written to since is read again."""
     library = _library()
-    content = _content(path)
+    try:
+        file = path.open("rb")
+    except OSError as error:
+        raise ConfigError(f"{path}: {error.strerror}; give the file of a scan", "path") from None
     # The readers warn of what is not ours to mend, and raise whatever a damaged file leads to.
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
+    with file, warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
+        text = b"\0" not in file.read(512)
+        require_memory(
+            length * (_TIMES_TEXT if text else 1),
+            f"{path}, a file of {length / 1e9:.3g} GB,",
+            "export a part of it",
+            "path",
+        )
+        file.seek(0)
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+        file.seek(0)
         try:
-            found = _channel(library.open_topography(io.BytesIO(content)), path, channel)
+            found = _channel(library.open_topography(file), path, channel)
             scale = _scale(found, path, unit)
             edges = _size(found, path, scale, size)
-            _check_memory(found, path)
+            nx, ny = found.nb_grid_pts
+            require_memory(
+                8.0 * _ARRAYS * nx * ny,
+                f"{path} with its {nx} × {ny} points",
+                "export a part of it",
+                "path",
+            )
             # Sizes are not needed for the heights, but asked for where the file has none.
             dummy = None if found.physical_sizes is not None else (1.0, 1.0)
             heights = found.topography(physical_sizes=dummy).heights()
@@ -81,12 +121,13 @@ def read_scan(
             raise ConfigError(
                 f"{path} is damaged or incomplete ({_reason(error)}); export it again", "path"
             ) from None
-    values = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan) * scale
+        values = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan) * scale
     values[~np.isfinite(values)] = np.nan
-    return Scan(values, edges, hashlib.sha256(content).hexdigest())
+    values.setflags(write=False)
+    return Scan(values, edges, digest)
 
 
-def _library() -> Any:
+def _library() -> ModuleType:
     try:
         with warnings.catch_warnings():
             # It says that there is no MPI, which is not asked for.
@@ -98,19 +139,7 @@ def _library() -> Any:
             "pip install 'pellicle[topography]'",
             "type",
         ) from None
-    return SurfaceTopography.IO
-
-
-def _content(path: Path) -> bytes:
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise ConfigError(f"{path}: {error.strerror}; give the file of a scan", "path") from None
-    except MemoryError:
-        raise ConfigError(f"{path} does not fit in memory; export a part of it", "path") from None
-    if not content:
-        raise ConfigError(f"{path} is empty; give the file of a scan", "path")
-    return content
+    return SurfaceTopography.IO  # type: ignore[no-any-return]
 
 
 def _channel(reader: Any, path: Path, name: str | None) -> Any:
@@ -134,9 +163,10 @@ def _channel(reader: Any, path: Path, name: str | None) -> Any:
             "repeat the profile along y and give it as type = 'heights'",
             "path",
         )
-    if found.is_uniform is False:
+    # Columns x, y, z that make no regular grid are read as a narrow matrix of heights.
+    if found.is_uniform is False or (reader.format() == "asc" and found.nb_grid_pts[0] == 3):
         raise ConfigError(
-            f"{path} has points at irregular distances; resample it to a regular grid first",
+            f"{path} has points at irregular distances; resample them to a regular grid first",
             "path",
         )
     return found
@@ -177,16 +207,18 @@ def _size(
     return x, y
 
 
-def _check_memory(found: Any, path: Path) -> None:
-    """Refuse heights that do not fit, before they are read."""
-    needed, there = 8.0 * _ARRAYS * prod(found.nb_grid_pts), memory.available()
+def require_memory(needed: float, asked: str, remedy: str, field: str) -> None:
+    """Refuse what needs more memory [bytes] than there is.
+
+    Raises
+    ------
+    ConfigError
+        In ``field``: it does not fit.
+    """
+    there = memory.available()
     if there is not None and needed > there:
-        nx, ny = found.nb_grid_pts
-        raise ConfigError(
-            f"{path} has {nx} × {ny} points, which need about {memory.shortage(needed, there)}; "
-            "export a part of it",
-            "path",
-        )
+        shortage = memory.shortage(needed, there)
+        raise ConfigError(f"{asked} needs about {shortage}; {remedy}", field)
 
 
 def _reason(error: Exception) -> str:
