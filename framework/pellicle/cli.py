@@ -76,7 +76,9 @@ def run(
         list[str] | None,
         typer.Option("--set", help='Replace a value: --set kernel.tension="5 mN/m".'),
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")
+    ] = False,
     threads: Annotated[
         int | None, typer.Option(min=1, help="Threads of the Fourier transforms; all cores.")
     ] = None,

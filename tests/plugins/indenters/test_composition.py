@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from math import pi
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -237,6 +239,42 @@ def test_parts_that_do_not_meet_are_refused() -> None:
     parts = [{"type": "shifted", "x": x, "part": punch} for x in ("-0.2 mm", "0.2 mm")]
     with pytest.raises(pl.ConfigError, match=r"indenter\.parts: are nowhere there together"):
         pl.run(_run({"type": "sum", "parts": parts}), progress=False)
+
+
+def test_nested_file_is_recorded_in_si(tmp_path: Path) -> None:
+    """Parts of parts take units in a file, and the result records them, defaults included."""
+    path = tmp_path / "nested.toml"
+    path.write_text("""
+        [grid]
+        points = 24
+        size = "1 mm"
+        [kernel]
+        type = "half_space"
+        reduced_modulus = "10 kPa"
+        [indenter]
+        type = "sum"
+        [[indenter.parts]]
+        type = "rotated"
+        angle = "30 degree"
+        part = { type = "quadric", radius_x = "1 mm", radius_y = "4 mm" }
+        [[indenter.parts]]
+        type = "scaled"
+        factor = 0.5
+        [indenter.parts.part]
+        type = "self_affine"
+        rms_height = "400 nm"
+        hurst = 0.7
+        cutoff_wavelength = "0.2 mm"
+        [loading]
+        depth = "1 um"
+        """)
+    result = pl.run(path, progress=False)
+    assert result.converged
+    turned, scaled = json.loads(result.dataset.attrs["configuration"])["indenter"]["parts"]
+    assert turned["angle"] == pytest.approx(pi / 6)
+    assert turned["part"] == {"type": "quadric", "radius_x": 1e-3, "radius_y": 4e-3}
+    assert scaled["part"]["rms_height"] == 4e-7
+    assert scaled["part"]["seed"] == 0
 
 
 def test_file_round_trip() -> None:
