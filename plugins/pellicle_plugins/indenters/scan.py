@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import warnings
 from functools import lru_cache
+from math import inf
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -76,7 +77,7 @@ def _read(
     size: tuple[float, float] | None,
 ) -> Scan:
     """Return what `read_scan` does; a file that was written to since is read again."""
-    library = _library()
+    io = library().IO
     try:
         file = path.open("rb")
     except OSError as error:
@@ -95,7 +96,7 @@ def _read(
         digest = hashlib.file_digest(file, "sha256").hexdigest()
         file.seek(0)
         try:
-            found = _channel(library.open_topography(file), path, channel)
+            found = _channel(io.open_topography(file), path, channel)
             scale = _scale(found, path, unit)
             edges = _size(found, path, scale, size)
             nx, ny = found.nb_grid_pts
@@ -110,10 +111,10 @@ def _read(
             heights = found.topography(physical_sizes=dummy).heights()
         except ConfigError:
             raise
-        except library.CannotDetectFileFormat:
+        except io.CannotDetectFileFormat:
             raise ConfigError(
                 f"{path} is of no format that can be read, or damaged; give one of "
-                f"{', '.join(sorted(reader.format() for reader in library.readers))}, or plain "
+                f"{', '.join(sorted(reader.format() for reader in io.readers))}, or plain "
                 "numbers as type = 'heights'",
                 "path",
             ) from None
@@ -127,7 +128,14 @@ def _read(
     return Scan(values, edges, digest)
 
 
-def _library() -> ModuleType:
+def library() -> ModuleType:
+    """Return the package SurfaceTopography, which takes seconds to import.
+
+    Raises
+    ------
+    ConfigError
+        It is not installed.
+    """
     try:
         with warnings.catch_warnings():
             # It says that there is no MPI, which is not asked for.
@@ -139,7 +147,7 @@ def _library() -> ModuleType:
             "pip install 'pellicle[topography]'",
             "type",
         ) from None
-    return SurfaceTopography.IO  # type: ignore[no-any-return]
+    return SurfaceTopography  # type: ignore[no-any-return]
 
 
 def _channel(reader: Any, path: Path, name: str | None) -> Any:
@@ -193,7 +201,9 @@ def _scale(found: Any, path: Path, unit: float | None) -> float:
 def _size(
     found: Any, path: Path, scale: float, size: tuple[float, float] | None
 ) -> tuple[float, float]:
-    if found.physical_sizes is None:
+    stated = found.physical_sizes
+    # Programs that do not know the size write 0.
+    if stated is None or not all(0 < edge < inf for edge in stated):
         if size is None:
             raise ConfigError(
                 f"is missing, and {path} does not say it; give the edge lengths of the scan, such "
@@ -201,7 +211,7 @@ def _size(
                 "size",
             )
         return size
-    x, y = (float(edge) * scale for edge in found.physical_sizes)
+    x, y = (float(edge) * scale for edge in stated)
     if size is not None:
         raise ConfigError(f"{path} states its own size, {x:g} × {y:g} m; leave this out", "size")
     return x, y

@@ -22,7 +22,7 @@ from pellicle.units import Length, Quantity
 
 from .axis import Axis
 from .measured import Measured
-from .scan import read_scan, require_memory
+from .scan import library, read_scan, require_memory
 
 _Position = Annotated[float, Quantity("m", at_least=0)]
 _Level = Literal["none", "mean", "tilt", "curvature"]
@@ -180,11 +180,9 @@ class Topography(Measured):
 
 def _filled(heights: Array, missing: NDArray[np.bool_]) -> Array:
     """Return heights whose missing ones solve Laplace's equation among the others."""
-    # That there is no MPI was said when the scan was read.
-    from SurfaceTopography import Topography as Measurement
-
     known = np.ma.masked_array(np.where(missing, 0.0, heights), mask=missing)
-    filled = Measurement(known, heights.shape).interpolate_undefined_data_with_harmonic_function()
+    scan = library().Topography(known, heights.shape)
+    filled = scan.interpolate_undefined_data_with_harmonic_function()
     return np.asarray(np.ma.getdata(filled.heights()), dtype=np.float64)
 
 

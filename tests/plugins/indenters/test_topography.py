@@ -300,6 +300,17 @@ def test_what_a_file_does_not_say_is_asked_for(
         pl.indenter("topography", path=tmp_path / "a.txt", **fields)
 
 
+def test_size_of_zero_is_none(tmp_path: Path) -> None:
+    """A file whose edges are 0 does not say its size: it is asked for, and taken."""
+    path = tmp_path / "a.txt"
+    header = "Channel: Height\nWidth: 0 um\nHeight: 0 um\nValue units: um"
+    np.savetxt(path, _heights().T * 1e6, header=header)
+    with pytest.raises(pl.ConfigError, match=r"^size: is missing, .* does not say it"):
+        pl.indenter("topography", path=path)
+    sized = _profile(path=path, level="none", size=GRID.size)
+    assert sized == pytest.approx(_profile(level="none"), abs=1e-19)
+
+
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
