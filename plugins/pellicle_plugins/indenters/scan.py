@@ -167,8 +167,8 @@ def _channel(reader: Any, path: Path, name: str | None) -> Any:
         )
     if found.dim != 2:
         raise ConfigError(
-            f"{path} is a profile along a line, and contact needs an area; give an areal scan, or "
-            "repeat the profile along y and give it as type = 'heights'",
+            f"{path} is a profile along a line, and contact needs an area; give an areal scan, or, "
+            "for line contact, the heights alone as type = 'heights' with grid.points = […, 1]",
             "path",
         )
     # Columns x, y, z that make no regular grid are read as a narrow matrix of heights.

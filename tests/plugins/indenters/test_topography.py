@@ -377,7 +377,9 @@ def test_profile_along_a_line_is_refused(tmp_path: Path, power: int) -> None:
     """A line scan, of equal or unequal steps, is answered with what to do instead."""
     x = np.linspace(0, 1, 20) ** power
     np.savetxt(tmp_path / "line.txt", np.stack([x, np.sin(x)], axis=1))
-    with pytest.raises(pl.ConfigError, match=r"^path: .*profile along a line.*type = 'heights'"):
+    with pytest.raises(
+        pl.ConfigError, match=r"^path: .*profile along a line.*grid\.points = \[…, 1\]"
+    ):
         pl.indenter("topography", path=tmp_path / "line.txt", unit="1 um")
 
 
