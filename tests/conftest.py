@@ -30,6 +30,8 @@ def forked_dask() -> Iterator[None]:
 
     Where the system cannot, and in tests without this, they are started as for users.
     """
+    # Its defaults, first: `set` would take them along when it takes back what it has set.
+    import distributed  # noqa: F401
     from dask import config
 
     method = "forkserver"

@@ -376,7 +376,7 @@ class Relative(Indenter):
 class Aloof(Indenter):
     """Ends with the domain, its lowest point a twentieth of its range too high."""
 
-    footprint = "domain"
+    footprint: ClassVar[Any] = "domain"
 
     def profile(self, x: Any, y: Any) -> Any:
         found = super().profile(x, y)
