@@ -21,6 +21,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from . import netcdf
 from .errors import StorageError
 
 if TYPE_CHECKING:
@@ -41,24 +42,11 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     StorageError
         The file cannot be written.
     """
-    import h5netcdf
-    from xarray.backends import H5NetCDFStore
-
-    # Fields compress two- to tenfold at the lowest level; higher ones only cost time.
-    packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
-    encoding: dict[Any, Any] = {
-        name: packed for name, variable in dataset.data_vars.items() if "x" in variable.dims
-    }
-    # Only what may grow needs a dimension that can: h5netcdf is slow with these.
-    grows = ["step"] if "x" in dataset.dims and path.suffix != ".tail" else []
+    fields = [str(name) for name, each in dataset.data_vars.items() if "x" in each.dims]
+    grows = ["step"] if fields and path.suffix != ".tail" else []
     with aside(path) as part:
-        image = io.BytesIO()
-        with h5netcdf.File(image, "w") as file:
-            # Dataset.to_netcdf would, on a worker of dask, ask its scheduler for a lock.
-            dataset.assign_attrs(schema_version=SCHEMA_VERSION).dump_to_store(
-                H5NetCDFStore(file, lock=False), unlimited_dims=grows, encoding=encoding
-            )
-        part.write_bytes(image.getbuffer())
+        described = dataset.assign_attrs(schema_version=SCHEMA_VERSION)
+        part.write_bytes(netcdf.image(described, grows=grows, packed=fields))
         # While the old file still has the name: its tails must never continue the new one.
         for tail in _tails(path):
             tail.unlink()
