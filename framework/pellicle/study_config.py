@@ -20,6 +20,7 @@ from .dataset import DESCRIPTIONS
 from .errors import ConfigError, Problem, shown
 from .expression import evaluate
 from .fields import FromRegistry, json_schema
+from .loading import ON_DEMAND
 from .model import Model, paths_relative_to, replaced
 from .plugins import registry
 from .toml import toml_lines
@@ -300,7 +301,8 @@ class Study(Model):
     def _check_derived(self) -> None:
         """Refuse expressions that name what a table will not have, before anything is run."""
         run = self.points[0].run
-        there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - {"status"}
+        absent = {"status"} | (ON_DEMAND - run.loading.brings)
+        there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - absent
         there |= {f"contact_area_{getattr(each, 'type', '')}" for each in run.corrections}
         there |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         problems: list[Problem] = []
