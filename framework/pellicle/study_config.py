@@ -459,7 +459,8 @@ def _unit_of(run: Run, key: str) -> str | None:
     found = [*info.metadata, *_annotations(info.annotation)]
     quantities = (getattr(each, "quantity", each) for each in found)
     units = [quantity.unit for quantity in quantities if isinstance(quantity, Quantity)]
-    return units[0] if units else None
+    # As datasets write areas, not as units are multiplied.
+    return units[0].replace("m**2", "m2") if units else None
 
 
 def _annotations(annotation: Any) -> Iterator[Any]:
