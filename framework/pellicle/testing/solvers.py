@@ -214,9 +214,9 @@ RULES: list[Rule] = [
     pressure_is_nowhere_negative,
     done_means_solved,
     start_belongs_to_the_caller,
+    punch_is_flat,
     what_is_prescribed_is_solved,
     start_does_not_matter,
     pressure_is_proportional_to_the_stiffness,
     progress_is_told,
-    punch_is_flat,
 ]
