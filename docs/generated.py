@@ -125,6 +125,8 @@ def default(info: FieldInfo, quote: str = "") -> str:
     value = info.get_default(call_default_factory=True)
     if hasattr(value, "type"):
         return f"{quote}{value.type}{quote}"
+    if isinstance(value, bool):
+        return f"{quote}{str(value).lower() if quote else value}{quote}"
     if value is None or value in ((), ""):
         return "none" if quote else repr(value)
     return f"{quote}{list(value) if quote and isinstance(value, tuple) else value!r}{quote}"
@@ -179,7 +181,11 @@ def _kind(annotation: Any) -> str:
         return f"list of {' and '.join(sorted(kinds))}"
     if origin is dict or (isinstance(annotation, type) and issubclass(annotation, Model)):
         return "table"
-    names = {int: "whole number", float: "number", str: "text", Path: "file", Any: "array"}
+    names = {int: "whole number", float: "number", bool: "true or false"} | {
+        str: "text",
+        Path: "file",
+        Any: "array",
+    }
     return names[annotation]
 
 
