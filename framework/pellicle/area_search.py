@@ -83,7 +83,7 @@ def _first_force(problem: Problem, area: float, start: Array | None) -> float:
         before = float(np.count_nonzero(start > 0)) * cell
         return float(start.sum()) * cell * math.pow(area / before, 1.5)
     heights = np.sort(problem.profile[np.isfinite(problem.profile)])[::-1]
-    lowest = heights[min(round(area / cell), heights.size - 1)]
+    lowest = heights[min(math.ceil(area / cell + 0.5), heights.size - 1)]
     # Deeper than that by a little: at a cell's very height it is round-off whether it touches.
     overlap = np.maximum(problem.profile - 1.01 * lowest, 0.0)
     response = problem.operator(overlap)

@@ -14,7 +14,7 @@ from pellicle.components import Solver
 from pellicle.operators import make_operator
 from pellicle.problem import Problem
 
-GRID = pl.Grid(points=10, size=10.0, boundary="periodic")
+GRID = pl.Grid(points=11, size=11.0, boundary="periodic")
 
 
 class Staircase(Solver):
@@ -50,11 +50,12 @@ def test_whole_cells_are_met(power: float, start: float | None) -> None:
     def cells(force: float) -> int:
         return min(max(round(40 * force**power), 1), 100)
 
-    for area in (3.0, 40.4, 99.6):
+    for area in (0.5, 3.0, 40.4, 99.6):
         found = search(cells, area, start)
         assert found.how == "met"
-        assert cells(found.problem.value) == round(area)
-        assert found.missed == pytest.approx(abs(round(area) - area) / area)
+        count = cells(found.problem.value)
+        assert abs(count - area) <= 0.5
+        assert found.missed == pytest.approx(abs(count - area) / area)
         assert found.solution.iterations % 2 == 0
 
 
