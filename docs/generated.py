@@ -181,7 +181,10 @@ def _kind(annotation: Any) -> str:
         return f"list of {' and '.join(sorted(kinds))}"
     if origin is dict or (isinstance(annotation, type) and issubclass(annotation, Model)):
         return "table"
-    names = {int: "whole number", float: "number", bool: "true or false"} | {
+    names = {
+        bool: "true or false",
+        int: "whole number",
+        float: "number",
         str: "text",
         Path: "file",
         Any: "array",
