@@ -314,7 +314,9 @@ def rows(made: xr.Dataset) -> list[dict[str, str]]:
 def reasons(made: xr.Dataset) -> Iterator[str]:
     """Yield a line for each run of a table that is not as it should be: which, and why."""
     for row in _runs(made):
-        bad = [s for s in map(str, row["status"].values) if s not in ("", "converged")]
+        bad = [
+            s for s in map(str, row["status"].values) if table.verdict(s) not in ("", "converged")
+        ]
         if bad and bad[0] != table.NOT_RUN:
             names = (name for name in row.coords if name != "step")
             where = ", ".join(f"{name} = {_text(row[name].item())}" for name in names)

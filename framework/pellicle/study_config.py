@@ -20,6 +20,7 @@ from .dataset import DESCRIPTIONS
 from .errors import ConfigError, Problem, shown
 from .expression import evaluate
 from .fields import FromRegistry, json_schema
+from .loading import ON_DEMAND
 from .model import Model, paths_relative_to, replaced
 from .plugins import registry
 from .toml import toml_lines
@@ -331,7 +332,8 @@ class Study(Model):
     def _check_derived(self) -> None:
         """Refuse expressions that name what a table will not have, before anything is run."""
         run = self.points[0].run
-        there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - {"status"}
+        absent = {"status"} | (ON_DEMAND - run.loading.brings)
+        there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - absent
         there |= {f"contact_area_{getattr(each, 'type', '')}" for each in run.corrections}
         there |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         problems: list[Problem] = []
@@ -490,7 +492,8 @@ def _unit_of(run: Run, key: str) -> str | None:
     found = [*info.metadata, *_annotations(info.annotation)]
     quantities = (getattr(each, "quantity", each) for each in found)
     units = [quantity.unit for quantity in quantities if isinstance(quantity, Quantity)]
-    return units[0] if units else None
+    # As datasets write areas, not as units are multiplied.
+    return units[0].replace("m**2", "m2") if units else None
 
 
 def _annotations(annotation: Any) -> Iterator[Any]:
