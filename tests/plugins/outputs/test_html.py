@@ -372,7 +372,7 @@ def drawn(browser: Chrome) -> list[int]:
         const wait = () => {
           const canvases = [...document.querySelectorAll("canvas")];
           const counts = canvases.map(look);
-          if (Math.min(...counts) > 10 || Date.now() - begun > 15000) done(counts);
+          if (Math.min(...counts) > 2 || Date.now() - begun > 15000) done(counts);
           else setTimeout(wait, 20);
         };
         wait();
@@ -400,6 +400,7 @@ def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset], tmp_
     from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
     from selenium.webdriver.common.by import By
     from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.wait import WebDriverWait
 
     path, data = ran
     show(browser, path)
@@ -435,8 +436,7 @@ def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset], tmp_
     assert select.text.splitlines() == ["1: depth 5 µm", "2: depth 10 µm"]
     before = picture(browser)
     select.send_keys(Keys.ARROW_UP)
-    drawn(browser)
-    assert picture(browser) != before
+    WebDriverWait(browser, 20).until(lambda _: picture(browser) != before)
     browser.find_element(By.CSS_SELECTOR, "input").click()
     assert errors(browser) == []
     assert browser.save_screenshot(str(tmp_path / "run.png"))
@@ -445,15 +445,15 @@ def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset], tmp_
 def test_browser_shows_a_study(browser: Chrome, studied: tuple[Path, xr.Dataset]) -> None:
     """A click on a run shows its map, one on a head sorts the table."""
     from selenium.webdriver.common.by import By
+    from selenium.webdriver.support.wait import WebDriverWait
 
     path, table = studied
     show(browser, path)
     before = picture(browser)
     browser.find_element(By.CSS_SELECTOR, "a[data-frame='1']").click()
-    drawn(browser)
+    WebDriverWait(browser, 20).until(lambda _: picture(browser) != before)
     select = browser.find_element(By.CSS_SELECTOR, "select")
     assert select.get_attribute("value") == "1"
-    assert picture(browser) != before
     force = next(
         button
         for button in browser.find_elements(By.CSS_SELECTOR, "th button")
