@@ -38,7 +38,13 @@ def main() -> None:
     options = ChromeOptions()
     options.binary_location = shutil.which("chromium") or ""
     with TemporaryDirectory() as folder:
-        for switch in ("headless", "no-sandbox", "disable-gpu", "window-size=1180,1560"):
+        for switch in (
+            "headless",
+            "no-sandbox",
+            "disable-gpu",
+            "hide-scrollbars",
+            "window-size=1180,1560",
+        ):
             options.add_argument(f"--{switch}")
         options.add_argument(f"--user-data-dir={folder}/chromium")
         pl.run(RUN, directory=folder, progress=False)
@@ -50,7 +56,8 @@ def main() -> None:
             picture = Image.open(BytesIO(browser.get_screenshot_as_png()))
         finally:
             browser.quit()
-    picture.convert("RGB").quantize(128).save(HERE / "report.png", optimize=True)
+    few = picture.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    few.save(HERE / "report.png", optimize=True)
 
 
 if __name__ == "__main__":
