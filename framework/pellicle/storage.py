@@ -4,14 +4,16 @@ A file is never changed in place: each version is written aside, flushed to disk
 that whatever ends the process, every name holds a whole file. Rewriting a file for each step would
 take a time quadratic in the steps, so new ones wait in small files beside it, its tails, until they
 are as many as its own; then, and at the end, they are joined to it. Reading joins them too.
+
+HDF5 writes to memory, and what it made is copied to disk: on a full disk HDF5 ends the process.
 """
 
 from __future__ import annotations
 
 import glob
+import io
 import os
 import re
-import shutil
 import socket
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -39,6 +41,9 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     StorageError
         The file cannot be written.
     """
+    import h5netcdf
+    from xarray.backends import H5NetCDFStore
+
     # Fields compress two- to tenfold at the lowest level; higher ones only cost time.
     packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
     encoding: dict[Any, Any] = {
@@ -47,9 +52,13 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     # Only what may grow needs a dimension that can: h5netcdf is slow with these.
     grows = ["step"] if "x" in dataset.dims and path.suffix != ".tail" else []
     with aside(path) as part:
-        dataset.assign_attrs(schema_version=SCHEMA_VERSION).to_netcdf(
-            part, engine="h5netcdf", unlimited_dims=grows, encoding=encoding
-        )
+        image = io.BytesIO()
+        with h5netcdf.File(image, "w") as file:
+            # Dataset.to_netcdf would, on a worker of dask, ask its scheduler for a lock.
+            dataset.assign_attrs(schema_version=SCHEMA_VERSION).dump_to_store(
+                H5NetCDFStore(file, lock=False), unlimited_dims=grows, encoding=encoding
+            )
+        part.write_bytes(image.getbuffer())
         # While the old file still has the name: its tails must never continue the new one.
         for tail in _tails(path):
             tail.unlink()
@@ -265,14 +274,15 @@ def _join(path: Path, tails: Sequence[Path], *more: xr.Dataset) -> None:
     import h5py
 
     with aside(path) as part:
-        shutil.copyfile(path, part)
-        with h5py.File(part, "r+") as file:
+        image = io.BytesIO(path.read_bytes())
+        with h5py.File(image, "r+") as file:
             for tail in tails:
                 with _readable(tail), h5py.File(tail) as source:
                     _extend(file, {name: source[name][:] for name in file if _grows(file[name])})
             for dataset in more:
                 values = {str(name): each.values for name, each in dataset.variables.items()}
                 _extend(file, {name: values[name] for name in file if _grows(file[name])})
+        part.write_bytes(image.getbuffer())
     with reported(path):
         for tail in _tails(path):
             tail.unlink()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import tempfile
 import time
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
+_SHOWN = ("depth", "force", "contact_area", "contact_fraction")
+"""Numbers of the last step that the list of runs has, besides derived ones."""
 _TABLE_SHARE = 0.05
 
 
@@ -286,11 +289,12 @@ def is_table(path: Path) -> bool:
 def rows(made: xr.Dataset) -> list[dict[str, str]]:
     """Return a line for each run of a table: parameters, last step, and how it ended."""
     found = []
+    derived = json.loads(made.attrs["configuration"])["study"].get("derived", {})
     for row in each_run(made):
         done, wanted, verdict = standing(row)
         last = {
             name: f"{row[name].values[done - 1]:.6g}" if done and name in row else ""
-            for name in ("depth", "force", "contact_area", "contact_fraction")
+            for name in (*_SHOWN, *derived)
         }
         found.append(
             {
