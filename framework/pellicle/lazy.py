@@ -10,7 +10,7 @@ from xarray import Variable
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
-from . import storage
+from . import netcdf, storage
 from .errors import StorageError
 
 if TYPE_CHECKING:
@@ -35,16 +35,20 @@ def add_fields(table: xr.Dataset, runs: Path) -> xr.Dataset:
         raise StorageError(f"{runs} holds no step of this study; see the status of its runs")
     first = np.argwhere(there.any(axis=-1))[0]
     with storage.opened(runs / f"{table['run'].values[tuple(first)]}.h5") as one:
-        x, y = one["x"].load(), one["y"].load()
-        attributes = {name: one[name].attrs for name in _FIELDS}
+        cells = netcdf.dataset(one, without=["step"])
+        attributes = {name: _description(netcdf.attributes(one[name])) for name in _FIELDS}
     dimensions = [*table["status"].dims, "x", "y"]
-    shape = *there.shape, x.size, y.size
+    shape = *there.shape, cells.sizes["x"], cells.sizes["y"]
     fields = {}
     for name in _FIELDS:
         array = _Field(runs, table["run"].values, there, name, shape)
         lazy = indexing.LazilyIndexedArray(array)
         fields[name] = Variable(dimensions, lazy, attributes[name])
-    return table.assign_coords(x=x.drop_vars("x", errors="ignore"), y=y).assign(fields)
+    return table.assign_coords(x=cells["x"], y=cells["y"]).assign(fields)
+
+
+def _description(attributes: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in attributes.items() if name in ("long_name", "units")}
 
 
 class _Field(BackendArray):
@@ -77,5 +81,5 @@ class _Field(BackendArray):
         for at in np.argwhere(there):
             *run, step = places[(slice(None), *at)].tolist()
             path = self._runs / f"{self._names[tuple(run)]}.h5"
-            read[tuple(at)] = storage.field(path, self._name, step, (x, y))
+            read[tuple(at)] = storage.fields(path, [self._name], step)[1][0][x, y]
         return read

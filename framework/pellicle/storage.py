@@ -16,7 +16,7 @@ import os
 import re
 import socket
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -102,8 +102,8 @@ def scalars(path: Path) -> xr.Dataset:
     """
     parts = []
     for part in _parts(path):
-        with opened(part) as dataset:
-            parts.append(dataset.drop_dims(["x", "y"]).load().drop_encoding())
+        with opened(part) as file:
+            parts.append(_content(file, without=["x", "y"]))
     return joined(parts)
 
 
@@ -115,43 +115,23 @@ def attributes(path: Path) -> dict[str, Any]:
     StorageError
         As for `read`.
     """
-    with opened(path) as dataset:
-        return dict(dataset.attrs)
-
-
-def field(path: Path, name: str, step: int, cells: tuple[Any, Any]) -> Any:
-    """Return cells of one field of one step of a result file, without reading the others.
-
-    Raises
-    ------
-    StorageError
-        As for `read`.
-    """
-    for part in _parts(path):
-        with opened(part) as dataset:
-            if step < dataset.sizes["step"]:
-                return dataset[name][(step, *cells)].values
-            step -= dataset.sizes["step"]
-    raise StorageError(f"{path} does not hold that many steps; run it again")
+    with opened(path) as file:
+        return _attributes(file)
 
 
 def fields(path: Path, names: Sequence[str], step: int) -> tuple[dict[str, Any], list[Any]]:
-    """Return the attributes of a result file, and real fields of one of its steps.
-
-    It looks at nothing else, and so takes a hundredth of the time that `read` takes.
+    """Return the attributes of a result file and fields of one of its steps, and read nothing else.
 
     Raises
     ------
     StorageError
-        There is no such file, field or step, or it cannot be read.
+        As for `read`, or there is no such field or step.
     """
-    import h5py
-
     for part in _parts(path):
-        with _readable(part), h5py.File(part) as file:
+        with opened(part) as file:
             held = file["step"].size
             if step < held:
-                return dict(file.attrs), [file[name][step] for name in names]
+                return _attributes(file), [file[name][step] for name in names]
             step -= held
     raise StorageError(f"{path} does not hold that many steps; run it again")
 
@@ -174,42 +154,61 @@ def joined(steps: Sequence[xr.Dataset]) -> xr.Dataset:
     )
 
 
-@contextmanager
-def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[xr.Dataset]:
-    """Yield the dataset in a file of a result or of a study's table, its values not yet read.
+def table(path: Path) -> xr.Dataset:
+    """Return the table of a study.
 
     Raises
     ------
     StorageError
         As for `read`.
     """
-    import xarray as xr
+    with opened(path, "table") as file:
+        return _content(file)
+
+
+@contextmanager
+def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[h5py.File]:
+    """Yield the file of a result or of a study's table, to be read.
+
+    Raises
+    ------
+    StorageError
+        As for `read`.
+    """
+    import h5py
 
     if not path.is_file():
         raise StorageError(f"{path}: no such file; give a result file (.h5) that pellicle wrote")
-    # Phony dimensions only let a foreign file open far enough to be told apart.
-    with (
-        _readable(path),
-        xr.open_dataset(path, engine="h5netcdf", phony_dims="sort") as dataset,
-    ):
-        version = dataset.attrs.pop("schema_version", None)
-        if version is None or not {"configuration", "versions"} <= dataset.attrs.keys():
+    with _readable(path), h5py.File(path) as file:
+        known = netcdf.attributes(file)
+        version = known.get("schema_version")
+        if version is None or not {"configuration", "versions"} <= known.keys():
             raise StorageError(
                 f"{path}: not a result of pellicle; give an .h5 file that pellicle wrote"
             )
         if version != SCHEMA_VERSION:
             raise StorageError(
                 f"{path}: schema version {version}, and this pellicle reads {SCHEMA_VERSION}; "
-                f"read it with what wrote it ({dataset.attrs['versions']}), or run it again"
+                f"read it with what wrote it ({known['versions']}), or run it again"
             )
-        if kind == "result" and "axes" in dataset.attrs:
+        if kind == "result" and "axes" in known:
             raise StorageError(
                 f"{path}: the table of a study, not a result; open it with xarray, or give one "
                 "of the results in runs/"
             )
-        if kind == "table" and "axes" not in dataset.attrs:
+        if kind == "table" and "axes" not in known:
             raise StorageError(f"{path}: a result, not the table of a study")
-        yield dataset
+        yield file
+
+
+def _content(file: h5py.File, without: Collection[str] = ()) -> xr.Dataset:
+    found = netcdf.dataset(file, without=without)
+    found.attrs = _attributes(file)
+    return found
+
+
+def _attributes(file: h5py.File) -> dict[str, Any]:
+    return {n: value for n, value in netcdf.attributes(file).items() if n != "schema_version"}
 
 
 @contextmanager
@@ -226,8 +225,8 @@ def _readable(path: Path) -> Iterator[None]:
 
 
 def _read_one(path: Path) -> xr.Dataset:
-    with opened(path) as dataset:
-        return dataset.load().drop_encoding()
+    with opened(path) as file:
+        return _content(file)
 
 
 def _steps(path: Path) -> int:

@@ -277,8 +277,7 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
         There is none, or it cannot be read.
     """
     whole = path / "study.h5" if path.is_dir() else path
-    with storage.opened(whole, "table") as made:
-        return made.load().drop_encoding(), whole.parent
+    return storage.table(whole), whole.parent
 
 
 def is_table(path: Path) -> bool:

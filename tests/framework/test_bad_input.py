@@ -645,10 +645,15 @@ def test_output_folder_that_cannot_be_written(
 def test_disk_that_fills_up(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """A write that fails in a later step is no traceback and costs no earlier step."""
 
-    def fail(*arguments: object) -> None:
-        raise OSError(28, "No space left on device")
+    write, room = Path.write_bytes, [1]
 
-    monkeypatch.setattr("shutil.copyfile", fail)
+    def fail(path: Path, data: bytes) -> int:
+        if not room:
+            raise OSError(28, "No space left on device")
+        room.pop()
+        return write(path, data)
+
+    monkeypatch.setattr(Path, "write_bytes", fail)
     outcome = cli("run", "start.toml", "-o", "out")
     assert outcome.exit_code == 2
     says(outcome.message, "out/start.h5: cannot be written (No space left on device)")

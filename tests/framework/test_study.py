@@ -220,8 +220,8 @@ def test_fields_are_read_where_they_are_used(
     with pytest.warns(pl.ConvergenceWarning):
         table = carry_out(made, tmp_path, fields=True)
     read: list[int] = []
-    plain = storage.field
-    monkeypatch.setattr(storage, "field", lambda *where: (read.append(where[2]), plain(*where))[1])
+    plain = storage.fields
+    monkeypatch.setattr(storage, "fields", lambda *where: (read.append(where[2]), plain(*where))[1])
     assert table["pressure"].shape == (2, 2, 3, 16, 16)
     assert table["pressure"].attrs["units"] == "Pa"
     assert read == []
