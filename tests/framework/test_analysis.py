@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 import pellicle as pl
 from pellicle.analysis import (
@@ -331,7 +332,27 @@ def test_extrapolation_finds_a_power_law(exponent: float) -> None:
         assert found.exponent == pytest.approx(exponent, rel=1e-5)
         assert found.limit == pytest.approx(4e-8, rel=1e-6)
         np.testing.assert_allclose(found(h), values, rtol=1e-7)
-        assert found.residual < 1e-14
+        if len(points) > 3:
+            assert [found.lowest, found.highest] == pytest.approx([4e-8, 4e-8], rel=1e-5)
+        else:
+            assert np.isnan([found.lowest, found.highest]).all()
+
+
+def test_extrapolated_displacement_is_the_integral() -> None:
+    """u(0) = ∫ exp(−q²/4)/(1 + sq) dq, s = 2, under exp(−r²), from grids that miss it by more."""
+    kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=1.0)
+    spacings, found = [], []
+    for points in (21, 31, 45, 63):
+        grid = pl.Grid(points=points, size=8.0)
+        x, y = grid.coordinates()
+        u = pl.displacement(np.exp(-(x**2) - y**2), kernel=kernel, grid=grid)
+        spacings.append(grid.spacing[0])
+        found.append(u[points // 2, points // 2])
+    fit = extrapolate(spacings, found)
+    truth = quad(lambda q: np.exp(-(q**2) / 4) / (1 + 2 * q), 0, np.inf)[0]
+    assert 1.7 < fit.exponent < 2
+    assert abs(fit.limit / truth - 1) < 1e-4 < abs(found[-1] / truth - 1) / 5
+    assert fit.lowest < fit.limit < fit.highest
 
 
 def test_extrapolation_of_what_tends_nowhere() -> None:

@@ -21,8 +21,10 @@ class Extrapolation:
     """At h = 0."""
     coefficient: float
     exponent: float
-    residual: float
-    """Root mean square of what the fit misses; with three grids there is nothing to miss."""
+    lowest: float
+    """Lowest limit that comes out where one of the grids is left out."""
+    highest: float
+    """Highest such limit."""
 
     def __call__(self, spacing: ArrayLike) -> Array:
         """Return the value on cells of a size."""
@@ -45,7 +47,9 @@ def extrapolate(spacing: ArrayLike, values: ArrayLike) -> Extrapolation:
 
     Returns
     -------
-    All NaN where no exponent from 0.1 to 8 fits best: the values do not tend anywhere yet.
+    All NaN where no exponent from 0.1 to 8 fits best: the values do not tend anywhere yet. The
+    range of limits is NaN where that is so of the grids without one of them, or where these are
+    fewer than three.
 
     Raises
     ------
@@ -58,18 +62,26 @@ def extrapolate(spacing: ArrayLike, values: ArrayLike) -> Extrapolation:
             f"{np.unique(h).size} cell sizes do not fix a limit, a coefficient and an exponent; "
             "give at least three"
         )
+    limit, coefficient, exponent = _fit(h, v)
+    others = [_fit(h[h != each], v[h != each])[0] for each in np.unique(h)]
+    return Extrapolation(limit, coefficient, exponent, float(np.min(others)), float(np.max(others)))
+
+
+def _fit(h: Array, v: Array) -> tuple[float, float, float]:
+    """Return limit, coefficient and exponent."""
     h_max, middle, spread = h.max(), v.mean(), np.ptp(v)
+    if np.unique(h).size < 3:
+        return nan, nan, nan
     if spread == 0:
-        return Extrapolation(float(middle), 0.0, nan, 0.0)
+        return float(middle), 0.0, nan
     exponent = _best(h / h_max, (v - middle) / spread)
     if exponent is None:
-        return Extrapolation(nan, nan, nan, nan)
-    (limit, coefficient), missed = _line((h / h_max) ** exponent, (v - middle) / spread)
-    return Extrapolation(
-        limit=float(middle + spread * limit),
-        coefficient=float(spread * coefficient / h_max**exponent),
-        exponent=exponent,
-        residual=float(spread * np.sqrt(missed / v.size)),
+        return nan, nan, nan
+    (limit, coefficient), _ = _line((h / h_max) ** exponent, (v - middle) / spread)
+    return (
+        float(middle + spread * limit),
+        float(spread * coefficient / h_max**exponent),
+        exponent,
     )
 
 

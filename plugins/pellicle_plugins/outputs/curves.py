@@ -227,15 +227,26 @@ class _Limit:
         x = np.linspace(0, self.reach, 200)
         y = np.append(self.fit.limit, self.fit(x[1:]))
         axes.plot(x * factors[0], y * factors[1], color=style.colour, linewidth=0.8, zorder=1)
-        axes.plot(0, self.fit.limit * factors[1], "_", color=style.colour, markersize=12)
+        spread = [self.fit.limit - self.fit.lowest], [self.fit.highest - self.fit.limit]
+        axes.errorbar(
+            [0.0],
+            [self.fit.limit * factors[1]],
+            np.maximum(spread, 0.0) * factors[1],
+            fmt="_",
+            color=style.colour,
+            markersize=12,
+            linewidth=0.8,
+            capsize=3,
+        )
 
     def row(self) -> dict[str, object]:
         return {
             "x": 0.0,
             "y": self.fit.limit,
+            "y_lowest": self.fit.lowest,
+            "y_highest": self.fit.highest,
             "converged": self.good,
             "exponent": self.fit.exponent,
-            "residual": self.fit.residual,
         }
 
 

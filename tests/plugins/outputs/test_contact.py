@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle_plugins.analytic import hertz
 
 OUTPUTS = (
     {"type": "patches", "by": "step"},
@@ -117,7 +116,7 @@ def decoded(array: Xml.Element) -> np.ndarray:
 
 
 def test_vtk_holds_surface_and_fields(left: Left) -> None:
-    """Points are the cell centres at minus the displacement, x fastest; the list names the steps."""
+    """Points are the cell centres at minus the displacement, and the list names the steps."""
     folder, result = left
     listed = Xml.parse(folder / "rough.pvd").iter("DataSet")
     files = [(each.attrib["timestep"], each.attrib["file"]) for each in listed]
@@ -175,28 +174,28 @@ def test_odd_results(changes: dict[str, Any], tmp_path: Path) -> None:
 
 
 def grids(*points: int) -> dict[str, Any]:
-    """Return a study of a sphere on nested grids, its force extrapolated."""
+    """Return a study of nested grids, on which 2 + h^1.5 is extrapolated."""
+    cell = "grid.size.0 / grid.points"
     return {
         "grid": {"points": 16, "size": "0.4 mm"},
         "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
         "indenter": {"type": "paraboloid", "radius": "1 mm"},
         "loading": {"depth": "20 um"},
-        "outputs": [
-            {"type": "curves", "x": "grid.size.0 / grid.points", "y": "force", "extrapolate": True}
-        ],
+        "outputs": [{"type": "curves", "x": cell, "y": f"2 + ({cell})**1.5", "extrapolate": True}],
         "study": {"vary": {"grid.points": list(points)}},
     }
 
 
-def test_extrapolated_force_is_nearer_to_hertz(tmp_path: Path) -> None:
-    """What nested grids tend to is nearer to the closed form than the finest of them."""
-    pl.run_study(grids(16, 32, 64), tmp_path, progress=False, threads=1)
-    force = column(rows(tmp_path / "study-curves.csv", series="force"), "y")
-    (limit,) = rows(tmp_path / "study-curves.csv", series="force, extrapolated")
-    truth = hertz.sphere(1e-3, 1e4, depth=20e-6).force
+def test_curves_are_extrapolated(tmp_path: Path) -> None:
+    """The limit at cell size zero and the exponent are in the table of the figure."""
+    pl.run_study(grids(8, 10, 12, 16), tmp_path, progress=False, threads=1)
+    *points, limit = rows(tmp_path / "study-curves.csv")
+    assert [row["x"] for row in points] == [str(0.4e-3 / n) for n in (8, 10, 12, 16)]
+    assert limit["series"].endswith(", extrapolated")
     assert float(limit["x"]) == 0
-    assert abs(float(limit["y"]) / truth - 1) < abs(force[-1] / truth - 1) / 2
-    assert 0.5 < float(limit["exponent"]) < 3
+    assert float(limit["y"]) == pytest.approx(2, rel=1e-9)
+    assert float(limit["exponent"]) == pytest.approx(1.5, rel=1e-4)
+    assert limit["converged"] == "True"
 
 
 def test_two_grids_are_not_extrapolated(tmp_path: Path) -> None:
