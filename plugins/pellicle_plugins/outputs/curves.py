@@ -237,6 +237,7 @@ class _Limit:
             markersize=12,
             linewidth=0.8,
             capsize=3,
+            clip_on=False,
         )
 
     def row(self) -> dict[str, object]:
