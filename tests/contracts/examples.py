@@ -82,7 +82,7 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
     "output": {
         "hdf5": {},
         "csv": {},
-        "figures": {"formats": ["png", "svg"]},
+        "figures": {},
         "curves": {
             "x": "depth / indenter.radius",
             "y": ["contact_area", "contact_area_yastrebov"],
