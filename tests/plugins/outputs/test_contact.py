@@ -152,14 +152,13 @@ def test_vtk_of_more_than_a_block() -> None:
     "changes",
     [
         {"loading": {"depth": 0}},
-        {"indenter": PUNCH, "grid": {"points": 16, "size": "0.4 mm"}, "loading": {"depth": 1e-6}},
         {
             "indenter": PUNCH,
             "grid": {"points": [1, 8], "size": "0.4 mm"},
             "loading": {"depth": 1e-6},
         },
     ],
-    ids=["no contact", "punch with nothing beside it", "one cell across"],
+    ids=["no contact", "punch with nothing beside it, one cell across"],
 )
 def test_odd_results(changes: dict[str, Any], tmp_path: Path) -> None:
     """Results without contact, with infinite gaps or without width are drawn and written too."""
