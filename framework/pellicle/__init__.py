@@ -22,7 +22,7 @@ if TYPE_CHECKING:
         Place,
         Solver,
     )
-    from .config import Loading, Run
+    from .config import Run
     from .errors import (
         ConfigError,
         ConvergenceError,
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     )
     from .grid import Grid
     from .hookspecs import hookimpl
+    from .loading import Loading
     from .operators import displacement
     from .orchestrator import run
     from .plugins import registry
@@ -54,7 +55,7 @@ _HOME = {
     "Indenter": "components",
     "IterativeSolver": "components",
     "Kernel": "components",
-    "Loading": "config",
+    "Loading": "loading",
     "Output": "components",
     "PellicleError": "errors",
     "Place": "components",

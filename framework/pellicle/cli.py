@@ -334,7 +334,10 @@ def _write_starter(path: Path) -> None:
 def _print_steps(result: Result) -> None:
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    names = ["depth", "force", *areas, "iterations"]
+    asked = [name for name in ("mean_plane_depth", "stiffness") if name in data]
+    if "contact_radius" in result.configuration["loading"]:
+        asked.insert(0, "contact_radius")
+    names = ["depth", "force", *areas, *asked, "iterations"]
     rows = []
     for index in range(data.sizes["step"]):
         step = data.isel(step=index)
@@ -342,6 +345,11 @@ def _print_steps(result: Result) -> None:
         status = "converged" if step["converged"].item() else "NOT CONVERGED"
         rows.append({"step": str(index + 1), **row, "status": status})
     _print_table(["step", *names, "status"], rows, _heads(data, names))
+    for index, (converged, status) in enumerate(
+        zip(data["converged"], data["status"], strict=True)
+    ):
+        if converged and status != "converged":
+            typer.echo(f"step {index + 1}: {status.item()}", err=True)
 
 
 _OF_THE_CONTACT = (
@@ -443,8 +451,9 @@ def _exit_by_convergence(result: Result) -> None:
 
 
 def _steps_wanted(result: Result) -> int:
-    loading = result.configuration["loading"]
-    return max(len(values) for values in loading.values())
+    from .loading import Loading
+
+    return len(Loading(**result.configuration["loading"]).values)
 
 
 def _print_table(
