@@ -124,6 +124,8 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("pellicle")
+    if name == "analysis":
+        return import_module(".analysis", __name__)
     if name not in _HOME:
         raise AttributeError(f"module 'pellicle' has no attribute {name!r}")
     return getattr(import_module(f".{_HOME[name]}", __name__), name)

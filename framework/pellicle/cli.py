@@ -254,6 +254,7 @@ def show(
     _print_origin(result.dataset)
     wanted, done = _steps_wanted(result), result.dataset.sizes["step"]
     _print_steps(result)
+    _print_contact(result)
     _exit_by_convergence(result)
     if done < wanted:
         typer.echo(f"interrupted: {done} of {wanted} steps are there; run it again", err=True)
@@ -333,7 +334,9 @@ def _write_starter(path: Path) -> None:
 def _print_steps(result: Result) -> None:
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    asked = [name for name in ("mean_plane_depth", "contact_radius", "stiffness") if name in data]
+    asked = [name for name in ("mean_plane_depth", "stiffness") if name in data]
+    if "contact_radius" in result.configuration["loading"]:
+        asked.insert(0, "contact_radius")
     names = ["depth", "force", *areas, *asked, "iterations"]
     rows = []
     for index in range(data.sizes["step"]):
@@ -341,14 +344,44 @@ def _print_steps(result: Result) -> None:
         row = {name: f"{step[name].item():.6g}" for name in names}
         status = "converged" if step["converged"].item() else "NOT CONVERGED"
         rows.append({"step": str(index + 1), **row, "status": status})
-    units = {name: data[name].attrs["units"] for name in names}
-    heads = {name: f"{name} [{unit}]" if unit != "1" else name for name, unit in units.items()}
-    _print_table(["step", *names, "status"], rows, heads)
+    _print_table(["step", *names, "status"], rows, _heads(data, names))
     for index, (converged, status) in enumerate(
         zip(data["converged"], data["status"], strict=True)
     ):
         if converged and status != "converged":
             typer.echo(f"step {index + 1}: {status.item()}", err=True)
+
+
+_OF_THE_CONTACT = (
+    "mean_contact_pressure",
+    "contact_radius",
+    "semi_major_axis",
+    "semi_minor_axis",
+    "major_axis_angle",
+    "patches",
+    "perimeter",
+)
+
+
+def _print_contact(result: Result) -> None:
+    """Print a second table, of the shape of the contact."""
+    data = result.dataset
+    # Files of earlier versions do not say it.
+    names = [name for name in _OF_THE_CONTACT if name in data]
+    if not names:
+        return
+    typer.echo("contact:")
+    rows = [
+        {"step": str(index + 1), **{name: f"{data[name].values[index]:.6g}" for name in names}}
+        for index in range(data.sizes["step"])
+    ]
+    _print_table(["step", *names], rows, _heads(data, names))
+
+
+def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
+    from .dataset import header
+
+    return {name: header(name, data[name]) for name in names}
 
 
 def _print_origin(data: xr.Dataset) -> None:

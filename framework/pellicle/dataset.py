@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .analysis import ellipse, patches, perimeter
 from .grid import Grid
 from .problem import Equilibrium
 
@@ -23,11 +24,14 @@ DESCRIPTIONS = {
     "mean_pressure": ("Pa", "force over the area of the domain"),
     "contact_area": ("m2", "area of the cells in contact"),
     "contact_fraction": ("1", "contact area over the area of the domain"),
+    "mean_contact_pressure": ("Pa", "force over the contact area"),
+    "contact_radius": ("m", "radius of the circle that has the contact area"),
+    "semi_major_axis": ("m", "major semi-axis of the ellipse with the contact's second moments"),
+    "semi_minor_axis": ("m", "minor semi-axis of the ellipse with the contact's second moments"),
+    "major_axis_angle": ("rad", "angle from x to the major axis"),
+    "patches": ("1", "parts of the contact; cells that share an edge are of one part"),
+    "perimeter": ("m", "length of the border of the contact"),
     "mean_plane_depth": ("m", "depth of the indenter's mean plane, where that is prescribed"),
-    "contact_radius": (
-        "m",
-        "radius of the circle of the contact's area, where that is prescribed",
-    ),
     "stiffness": ("N/m", "contact stiffness dF/dδ, where loading.stiffness asks for it"),
     "iterations": ("1", "iterations of the solver"),
     "operator_applications": ("1", "applications of the operator on the finest grid"),
@@ -54,6 +58,7 @@ def step_dataset(
 
     contact = found.contact
     area = np.count_nonzero(contact) * grid.cell_area
+    shape = ellipse(contact, grid)
     fields = {
         "pressure": found.pressure,
         "displacement": found.displacement,
@@ -66,6 +71,13 @@ def step_dataset(
         "mean_pressure": found.force / grid.area,
         "contact_area": area,
         "contact_fraction": area / grid.area,
+        "mean_contact_pressure": found.force / area if area else np.nan,
+        "contact_radius": np.sqrt(area / np.pi),
+        "semi_major_axis": shape.semi_major_axis,
+        "semi_minor_axis": shape.semi_minor_axis,
+        "major_axis_angle": shape.angle,
+        "patches": patches(contact, grid).count,
+        "perimeter": perimeter(contact, grid),
         "residual_contact": found.residual_contact,
         "residual_penetration": found.residual_penetration,
         "residual_complementarity": found.residual_complementarity,

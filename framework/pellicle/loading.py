@@ -162,12 +162,10 @@ class Loading(Model):
     @property
     def brings(self) -> set[str]:
         """The variables of a result that are there for this loading and not for every one."""
-        by_area = {"contact_radius": {"contact_radius", "residual_area"}} | {
-            "contact_area": {"residual_area"}
-        }
-        brought = by_area.get(self.prescribed, {self.prescribed} & ON_DEMAND)
+        by_area = self.prescribed in ("contact_radius", "contact_area")
+        brought = {"residual_area"} if by_area else {self.prescribed} & ON_DEMAND
         return brought | ({"stiffness"} if self.stiffness else set())
 
 
-ON_DEMAND = {"mean_plane_depth", "contact_radius", "residual_area", "stiffness"}
+ON_DEMAND = {"mean_plane_depth", "residual_area", "stiffness"}
 """The variables of a result that only some loadings bring."""

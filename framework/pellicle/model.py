@@ -146,7 +146,8 @@ def _explain(model: type[BaseModel], detail: ErrorDetails, field: str) -> Iterat
         case "value_error":
             message = str(cause)
         case "literal_error":
-            allowed = re.findall(r"'([^']*)'", detail["ctx"]["expected"])
+            found = re.findall(r"'[^']*'|\d+", detail["ctx"]["expected"])
+            allowed = [each.strip("'") for each in found]
             message = (
                 f"{shown(detail['input'])} is not allowed; {nearest(detail['input'], allowed)}"
             )

@@ -361,10 +361,8 @@ def _asked(
     run: Run, problem: Problem, found: Equilibrium, step: Reached, stiffness: Stiffness | None
 ) -> dict[str, float]:
     """Return the numbers that are there because the run asks for them."""
-    area = np.count_nonzero(found.contact) * run.grid.cell_area
     loading = {
         "mean_plane_depth": found.depth + float(problem.profile.mean()),
-        "contact_radius": float(np.sqrt(area / np.pi)),
         "residual_area": step.missed,
         "stiffness": stiffness.value if stiffness else np.nan,
     }

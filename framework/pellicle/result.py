@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import storage
+from .grid import Grid
 
 if TYPE_CHECKING:
     import numpy as np
@@ -93,6 +94,11 @@ class Result:
     def configuration(self) -> dict[str, Any]:
         """The full configuration that was run, SI floats."""
         return json.loads(self.dataset.attrs["configuration"])  # type: ignore[no-any-return]
+
+    @property
+    def grid(self) -> Grid:
+        """The cells that the fields lie on."""
+        return Grid(**self.configuration["grid"])
 
     @property
     def converged(self) -> bool:

@@ -86,7 +86,7 @@ class Table:
         return derive(made, self._study.derived) if self._numbers else made
 
 
-_COUNTS = ("iterations", "operator_applications")
+_COUNTS = ("iterations", "operator_applications", "patches")
 
 
 def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any, np.dtype[Any]]:

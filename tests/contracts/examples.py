@@ -96,6 +96,10 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
         "maps": {"field": "displacement - depth - gap", "name": "indenter"},
         "html": {"points": 8, "frames": 1},
         "compliance": {"x": "q * indenter.radius"},
+        "patches": {"connectivity": 8, "by": "step"},
+        "distributions": {"bins": 10, "log": ["y"]},
+        "spectrum": {"by": "step", "label": "{depth * 1e6} µm"},
+        "vtk": {},
     },
     "executor": {"serial": {"threads": 1}, "processes": {"workers": 2}, "dask": {"workers": 2}},
 }

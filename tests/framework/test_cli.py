@@ -53,6 +53,7 @@ def test_from_starter_file_to_figures(cli: Cli) -> None:
     assert "force [N]" in shown
     assert "contact_area_yastrebov [m2]" in shown
     assert shown.count("converged") == 2
+    assert "contact:\nstep  mean_contact_pressure [Pa]  contact_radius [m]" in shown
     drawn = cli("plot", "indent/indent.h5", "-o", "drawn", "--format", "svg", "--format", "pdf")
     figures = _files_named(drawn.stdout)
     assert {figure.suffix for figure in figures} == {".svg", ".pdf"}

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable
+from os import SEEK_END
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pellicle import hookimpl, storage
 from pellicle.components import Output, Place
@@ -14,6 +15,8 @@ from pellicle.result import Result
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_TEXT: dict[str, Any] = {"newline": "", "encoding": "utf-8"}
 
 
 class Csv(Output):
@@ -34,9 +37,12 @@ class Csv(Output):
             if variable.dims == ("step",)
         }
         index = step["step"].item()
-        mode = "a" if index else "w"
-        with storage.reported(path), path.open(mode, newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, ["step", *row])
+        with storage.reported(path), path.open("a+" if index else "w+", **_TEXT) as file:
+            file.seek(0)
+            # Steps that an earlier version solved may have fewer columns.
+            heads = next(csv.reader(file), ["step", *row])
+            file.seek(0, SEEK_END)
+            writer = csv.DictWriter(file, heads, extrasaction="ignore")
             if index == 0:
                 writer.writeheader()
             writer.writerow({"step": index, **row})

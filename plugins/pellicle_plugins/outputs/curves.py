@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from pellicle import hookimpl
+from pellicle.analysis import Extrapolation, extrapolate
 from pellicle.columns import Runs
 from pellicle.components import Output
 from pellicle.errors import ConfigError
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 _MARKERS = "os^Dv<>P"
 _LINES = ("-", "--", ":", "-.")
+_GRIDS = 3
 
 
 class Published(Model):
@@ -81,6 +83,13 @@ class Curves(Drawing):
         Literal["axisymmetric"] | None,
         Field(description="draw the same expressions of the semi-analytic solution too"),
     ] = None
+    extrapolate: Annotated[
+        bool,
+        Field(
+            description="continue each curve to x = 0 by a power law of fitted exponent: x is the "
+            "cell size of nested grids, such as grid.size.0 / grid.points"
+        ),
+    ] = False
     published: Annotated[
         tuple[Published, ...], Field(description="numbers of others: label, x, y, style")
     ] = ()
@@ -132,6 +141,13 @@ class Curves(Drawing):
                 curve.draw(axes, said, style, factors)
                 head = {"curve": name, "series": series}
                 yield from ({**head, **row} for row in curve.rows())
+                if self.extrapolate:
+                    _enough(_at(x, at))
+                # An interrupted study may not have them all yet.
+                if self.extrapolate and np.unique(curve.x).size >= _GRIDS:
+                    limit = _Limit.of(curve)
+                    limit.draw(axes, style, factors)
+                    yield {**head, "series": f"{series}, extrapolated", **limit.row()}
                 if twin is not None:
                     line = self._curve(here, _at(twin[0], at), _at(twin[1], at)).ordered()
                     line.draw(axes, "", _Style(style.colour, None), factors)
@@ -190,6 +206,49 @@ class Curves(Drawing):
             )
         values = [column.values.ravel().astype(float) for column in columns]
         return _Curve(*finite(*values))
+
+
+@dataclass(frozen=True)
+class _Limit:
+    """Where a curve goes as x goes to 0."""
+
+    fit: Extrapolation
+    reach: float
+    """Largest x of the curve."""
+    good: bool
+    """Whether every run converged."""
+
+    @classmethod
+    def of(cls, curve: _Curve) -> _Limit:
+        fit = extrapolate(curve.x, curve.y)
+        return cls(fit, float(curve.x.max()), bool((curve.good == 1).all()))
+
+    def draw(self, axes: Axes, style: _Style, factors: tuple[float, float]) -> None:
+        x = np.linspace(0, self.reach, 200)
+        y = np.append(self.fit.limit, self.fit(x[1:]))
+        axes.plot(x * factors[0], y * factors[1], color=style.colour, linewidth=0.8, zorder=1)
+        spread = [self.fit.limit - self.fit.lowest], [self.fit.highest - self.fit.limit]
+        axes.errorbar(
+            [0.0],
+            [self.fit.limit * factors[1]],
+            np.maximum(spread, 0.0) * factors[1],
+            fmt="_",
+            color=style.colour,
+            markersize=12,
+            linewidth=0.8,
+            capsize=3,
+            clip_on=False,
+        )
+
+    def row(self) -> dict[str, object]:
+        return {
+            "x": 0.0,
+            "y": self.fit.limit,
+            "y_lowest": self.fit.lowest,
+            "y_highest": self.fit.highest,
+            "converged": self.good,
+            "exponent": self.fit.exponent,
+        }
 
 
 @dataclass(frozen=True)
@@ -254,6 +313,16 @@ class _Curve:
 
 _NOTHING = _Curve(*[np.empty(0)] * 6)
 """For the legend."""
+
+
+def _enough(x: xr.DataArray) -> None:
+    """Refuse a curve over too few grids to be extrapolated."""
+    if (count := np.unique(x).size) < _GRIDS:
+        raise ConfigError(
+            f"{count} values of x on a curve do not fix a limit, a coefficient and an exponent; "
+            f"vary the grid over at least {_GRIDS}",
+            "extrapolate",
+        )
 
 
 def _at(column: xr.DataArray, at: dict[str, int]) -> xr.DataArray:

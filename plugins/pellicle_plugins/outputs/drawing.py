@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from abc import abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -69,6 +69,33 @@ class Drawing(Output):
 
     def _stem(self, place: Place) -> Path:
         return place.file(f"-{self.name or self.type}")  # type: ignore[attr-defined]
+
+
+class FieldDrawing(Drawing):
+    """Draws the fields of one step for each value of an axis.
+
+    Of the other axes of a study the first value is drawn, and of the steps the last.
+    """
+
+    by: Annotated[
+        str | None,
+        Field(description="axis of the study, or step: each value has its own curve or panel"),
+    ] = None
+    label: Annotated[
+        str | None,
+        Field(
+            description="name of a curve or a panel; {expression} in it is replaced by its value"
+        ),
+    ] = None
+
+    def steps(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
+        """Yield the name of each curve or panel and the fields that it shows, if they are there."""
+        one_axis(runs.table.sizes, self.by, "by")
+        for at in along(runs.table, self.by):
+            picked = pick(runs.table, at)
+            step = step_of(runs, picked)
+            if step is not None:
+                yield label(self.label, picked, self.by), step
 
 
 def one_axis(dims: Iterable[object], chosen: str | None, field: str) -> None:
@@ -145,9 +172,9 @@ def set_scales(axes: Axes, log: Sequence[str]) -> None:
     axes.grid(alpha=0.3)
 
 
-def write_csv(path: Path, rows: Sequence[dict[str, object]]) -> Path:
-    """Write the numbers that were drawn."""
-    heads = list(dict.fromkeys(head for row in rows for head in row))
+def write_csv(path: Path, rows: Sequence[dict[str, object]], heads: Sequence[str] = ()) -> Path:
+    """Write the numbers that were drawn; ``heads`` are there even if no row is."""
+    heads = list(dict.fromkeys([*heads, *(head for row in rows for head in row)]))
     with storage.reported(path), path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, heads)
         writer.writeheader()

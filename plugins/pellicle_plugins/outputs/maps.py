@@ -16,7 +16,7 @@ from pellicle.components import Output
 from pellicle.expression import evaluate
 from pellicle.plotting import axis_unit, extent, save_figure
 
-from .drawing import Drawing, along, label, one_axis, pick, scaled, step_of
+from .drawing import FieldDrawing, scaled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +26,7 @@ _PANEL = 2.7
 _COLUMNS = 4
 
 
-class Maps(Drawing):
+class Maps(FieldDrawing):
     """A field over the domain, one panel for each value of an axis.
 
     Of the other axes of a study the first value is drawn, and of the steps the last. ``field`` is
@@ -36,27 +36,16 @@ class Maps(Drawing):
 
     type: Literal["maps"] = "maps"
     field: Annotated[str, Field(description="expression for what is drawn")] = "pressure"
-    by: Annotated[
-        str | None, Field(description="axis of the study, or step: each value has its own panel")
-    ] = None
-    label: Annotated[
-        str | None,
-        Field(description="title of a panel; {expression} in it is replaced by its value"),
-    ] = None
     field_label: Annotated[str | None, Field(description="label of the colours")] = None
 
     def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure."""
         import xarray as xr
 
-        one_axis(runs.table.sizes, self.by, "by")
         panels = []
-        for at in along(runs.table, self.by):
-            picked = pick(runs.table, at)
-            run = step_of(runs, picked)
-            if run is not None:
-                values, _ = xr.broadcast(evaluate(self.field, names(run)), run["contact"])
-                panels.append((label(self.label, picked, self.by), run, values))
+        for name, run in self.steps(runs):
+            values, _ = xr.broadcast(evaluate(self.field, names(run)), run["contact"])
+            panels.append((name, run, values))
         across = min(max(len(panels), 1), _COLUMNS)
         down = ceil(max(len(panels), 1) / across)
         size = (_PANEL * across + 1.2, _PANEL * down + 1.0) if len(panels) > 1 else (5.4, 4.2)

@@ -15,17 +15,7 @@ from pellicle.expression import evaluate
 from pellicle.plotting import save_figure
 from pellicle_plugins.analytic.twin import exact_line
 
-from .drawing import (
-    Drawing,
-    along,
-    label,
-    one_axis,
-    pick,
-    scaled,
-    set_scales,
-    step_of,
-    write_csv,
-)
+from .drawing import FieldDrawing, scaled, set_scales, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +25,7 @@ _ACROSS = {"x": "y", "y": "x"}
 _SYMBOLS = 90
 
 
-class Profiles(Drawing):
+class Profiles(FieldDrawing):
     """Fields along x or y through the centre, one curve for each value of an axis.
 
     Of the other axes of a study the first value is drawn, and of the steps the last. ``x`` and
@@ -49,13 +39,6 @@ class Profiles(Drawing):
         str | None, Field(description="expression for the horizontal axis; the position if absent")
     ] = None
     y: Annotated[str, Field(description="expression for the vertical axis")] = "pressure"
-    by: Annotated[
-        str | None, Field(description="axis of the study, or step: each value has its own curve")
-    ] = None
-    label: Annotated[
-        str | None,
-        Field(description="name of a curve; {expression} in it is replaced by its value"),
-    ] = None
     x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
     y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
     reference: Annotated[
@@ -74,14 +57,8 @@ class Profiles(Drawing):
         return (*files, write_csv(stem.with_name(f"{stem.name}.csv"), rows))
 
     def _fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
-        one_axis(runs.table.sizes, self.by, "by")
         factors: tuple[float, float] | None = None
-        for number, at in enumerate(along(runs.table, self.by)):
-            picked = pick(runs.table, at)
-            run = step_of(runs, picked)
-            if run is None:
-                continue
-            name = label(self.label, picked, self.by)
+        for number, (name, run) in enumerate(self.steps(runs)):
             line = run.isel({_ACROSS[self.along]: run.sizes[_ACROSS[self.along]] // 2})
             x, y = self._columns(line)
             if factors is None:

@@ -56,6 +56,17 @@ def test_csv_starts_afresh(tmp_path: Path) -> None:
     assert len(_read_csv(tmp_path / "two-steps.csv")) == 2
 
 
+def test_csv_goes_on_below_the_header_that_is_there(tmp_path: Path) -> None:
+    """Steps of an earlier version, which had fewer columns, do not move those of the later ones."""
+    result = pl.run(_run([]), progress=False)
+    output, place = _run([{"type": "csv"}]).outputs[0], pl.Place(tmp_path, "steps", "{}")  # type: ignore[index]
+    output.step(place, result.dataset.isel(step=[0]).drop_vars(["patches", "perimeter"]))
+    output.step(place, result.dataset.isel(step=[1]))
+    rows = _read_csv(tmp_path / "steps.csv")
+    assert [float(row["force [N]"]) for row in rows] == list(result.dataset["force"].values)
+    assert [row["status"] for row in rows] == ["converged", "converged"]
+
+
 def test_csv_holds_every_finished_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run that is interrupted leaves the rows of the steps before."""
     from pellicle import orchestrator

@@ -1,0 +1,54 @@
+"""How often a field has which value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pellicle.operators import Array
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """Probability density over bins: Σ density · width = 1, Σ density · width · mean = the mean."""
+
+    edges: Array
+    """Ends of the bins, shape (bins + 1,)."""
+    density: Array
+    """Share of the samples over the width of the bin."""
+    mean: Array
+    """Mean of the samples in each bin; its middle where there is none."""
+
+    @property
+    def width(self) -> Array:
+        """Width of each bin."""
+        return np.diff(self.edges)
+
+
+def distribution(values: ArrayLike, bins: int = 50) -> Distribution:
+    """Return the distribution of samples over equal bins from 0 to the highest.
+
+    Parameters
+    ----------
+    values
+        Samples of any shape, such as the pressure of the cells in contact. Infinite ones, as the
+        gap has where there is no indenter, are left out. The lowest bin goes down to any below 0.
+    bins
+        Number of bins.
+
+    Returns
+    -------
+    No bins, if there are no samples or all of them are 0.
+    """
+    given = np.asarray(values, dtype=np.float64).ravel()
+    samples = given[np.isfinite(given)]
+    low, high = samples.min(initial=0.0), samples.max(initial=0.0)
+    if low == high:
+        return Distribution(np.zeros(1), np.zeros(0), np.zeros(0))
+    count, edges = np.histogram(samples, bins, (low, high))
+    total, _ = np.histogram(samples, bins, (low, high), weights=samples)
+    middle = (edges[1:] + edges[:-1]) / 2
+    mean = np.where(count > 0, total / np.maximum(count, 1), middle)
+    return Distribution(edges, count / (samples.size * np.diff(edges)), mean)

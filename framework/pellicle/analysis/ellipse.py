@@ -1,0 +1,90 @@
+"""The ellipse that stands for a contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, nan, pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pellicle.grid import Grid
+from pellicle.operators import Array
+
+_NO_CENTRE = 1e-6
+
+
+@dataclass(frozen=True)
+class Ellipse:
+    """An ellipse in the plane of the surface."""
+
+    x: float
+    """Centre along x [m]."""
+    y: float
+    """Centre along y [m]."""
+    semi_major_axis: float
+    """[m]."""
+    semi_minor_axis: float
+    """[m]."""
+    angle: float
+    """From x to the major axis [rad], over −π/2 to π/2; of a circle it is arbitrary."""
+
+
+def ellipse(contact: ArrayLike, grid: Grid) -> Ellipse:
+    """Return the ellipse with the centroid and the second moments of a contact.
+
+    A full ellipse with semi-axes a₁ ≥ a₂ has the principal second moments a₁²/4 and a₂²/4 per
+    area. The cells count as rectangles, so that a single one has an extension.
+
+    Parameters
+    ----------
+    contact
+        Bool, shape (nx, ny).
+    grid
+        The cells.
+
+    Returns
+    -------
+    Of no contact: semi-axes 0, centre and angle NaN. On a periodic grid positions are seen from
+    the circular mean of the contact along each axis; a contact that has none, such as full contact,
+    has no ellipse: all NaN.
+    """
+    inside = np.asarray(contact, dtype=bool)
+    if not inside.any():
+        return Ellipse(nan, nan, 0.0, 0.0, nan)
+    x, y = (each.ravel() for each in grid.coordinates())
+    along = inside.sum(axis=1, dtype=np.float64), inside.sum(axis=0, dtype=np.float64)
+    centre = [0.0, 0.0]
+    if grid.boundary == "periodic":
+        centre = [_circular_mean(*each) for each in zip((x, y), along, grid.size, strict=True)]
+        if np.isnan(centre).any():
+            return Ellipse(nan, nan, nan, nan, nan)
+    x, y = (
+        _wrapped(points - middle, length) if grid.boundary == "periodic" else points
+        for points, middle, length in zip((x, y), centre, grid.size, strict=True)
+    )
+    mean_x, mean_y = np.average(x, weights=along[0]), np.average(y, weights=along[1])
+    x, y = x - mean_x, y - mean_y
+    dx, dy = grid.spacing
+    xx = float(np.average(x**2, weights=along[0])) + dx**2 / 12
+    yy = float(np.average(y**2, weights=along[1])) + dy**2 / 12
+    xy = float(x @ (inside @ y)) / along[0].sum()
+    minor, major = np.linalg.eigvalsh([[xx, xy], [xy, yy]])
+    return Ellipse(
+        x=float(_wrapped(np.asarray(centre[0] + mean_x), grid.size[0])),
+        y=float(_wrapped(np.asarray(centre[1] + mean_y), grid.size[1])),
+        semi_major_axis=2 * float(np.sqrt(major)),
+        semi_minor_axis=2 * float(np.sqrt(max(minor, 0.0))),
+        angle=atan2(2 * xy, xx - yy) / 2,
+    )
+
+
+def _circular_mean(points: Array, weights: Array, length: float) -> float:
+    """Return the mean of positions on a circle of a length; NaN if there is none."""
+    resultant = np.average(np.exp(2j * pi / length * points), weights=weights)
+    return nan if abs(resultant) < _NO_CENTRE else float(np.angle(resultant)) * length / (2 * pi)
+
+
+def _wrapped(points: Array, length: float) -> Array:
+    """Return the images of points that lie within half a period of 0."""
+    return points - length * np.round(points / length)

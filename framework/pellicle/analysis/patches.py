@@ -1,0 +1,121 @@
+"""The patches that a contact falls into."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pellicle.grid import Boundary, Grid
+
+Labels = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Patches:
+    """The connected parts of a contact, the largest first."""
+
+    labels: Labels
+    """Number of the patch of each cell, of the grid's shape; 0 where there is no contact."""
+    area: NDArray[np.float64]
+    """[m²], one for each patch."""
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return self.area.size
+
+
+def patches(contact: ArrayLike, grid: Grid, connectivity: Literal[4, 8] = 4) -> Patches:
+    """Return the patches of a contact.
+
+    On a periodic grid, patches that touch across the edge of the domain are one.
+
+    Parameters
+    ----------
+    contact
+        Bool, shape (nx, ny).
+    grid
+        The cells.
+    connectivity
+        4: cells that share an edge are of one patch; 8: those that share a corner are too.
+    """
+    labels, count = _label(np.asarray(contact, dtype=bool), grid.boundary, connectivity)
+    cells = np.bincount(labels.ravel(), minlength=count + 1)[1:]
+    order = np.argsort(-cells, kind="stable")
+    rank = np.zeros(count + 1, dtype=np.int64)
+    rank[1:][order] = np.arange(1, count + 1)
+    return Patches(rank[labels], np.asarray(cells[order] * grid.cell_area))
+
+
+def coordination(labels: Labels, grid: Grid) -> NDArray[np.int64]:
+    """Return the number of neighbours of each patch, shape (patches,).
+
+    The surface is shared out among the patches, each cell to the nearest; those whose shares have
+    a cell edge in common are neighbours. On a periodic grid the shares meet across the edge of the
+    domain too; on a free one they end there, so that patches near it have fewer neighbours. A
+    patch is not counted as a neighbour of its own images. Where many patches fill a plane the mean
+    is close to 6 (Euler).
+
+    Parameters
+    ----------
+    labels
+        As `Patches.labels` has them.
+    grid
+        The cells.
+    """
+    from scipy import ndimage
+
+    count = int(labels.max(initial=0))
+    if count == 0:
+        return np.zeros(0, dtype=np.int64)
+    nx, ny = grid.shape
+    periodic = grid.boundary == "periodic"
+    # Within half a period each way lies the nearest image of every patch.
+    margin = ((nx // 2,) * 2, (ny // 2,) * 2) if periodic else ((0, 0), (0, 0))
+    around = np.pad(labels, margin, mode="wrap" if periodic else "constant")
+    nearest = ndimage.distance_transform_edt(
+        around == 0, sampling=grid.spacing, return_distances=False, return_indices=True
+    )
+    shares = around[tuple(nearest)][margin[0][0] :, margin[1][0] :][:nx, :ny]
+    pairs = np.concatenate([_pairs(shares, axis, periodic) for axis in (0, 1)], axis=1)
+    pairs = np.unique(np.sort(pairs[:, pairs[0] != pairs[1]], axis=0), axis=1)
+    return np.bincount(pairs.ravel(), minlength=count + 1)[1:]
+
+
+def _pairs(labels: Labels, axis: int, periodic: bool) -> Labels:
+    """Return the labels on both sides of every cell edge across an axis, shape (2, edges)."""
+    here, there = labels, np.roll(labels, -1, axis)
+    if not periodic:
+        here, there = (np.delete(each, -1, axis) for each in (here, there))
+    return np.stack([here.ravel(), there.ravel()])
+
+
+def _label(
+    contact: NDArray[np.bool_], boundary: Boundary, connectivity: Literal[4, 8]
+) -> tuple[Labels, int]:
+    from scipy import ndimage
+
+    structure = ndimage.generate_binary_structure(2, 1 if connectivity == 4 else 2)
+    labels, count = ndimage.label(contact, structure)
+    labels = labels.astype(np.int64)
+    return _joined(labels, count, connectivity) if boundary == "periodic" else (labels, count)
+
+
+def _joined(labels: Labels, count: int, connectivity: Literal[4, 8]) -> tuple[Labels, int]:
+    """Return labels of which those that meet across the edges of the domain are one."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    shifts = (0,) if connectivity == 4 else (-1, 0, 1)
+    edges: list[Any] = []
+    for each in (labels, labels.T):
+        edges += [np.stack([each[0], np.roll(each[-1], shift)]) for shift in shifts]
+    pairs = np.concatenate(edges, axis=1)
+    pairs = pairs[:, (pairs > 0).all(axis=0)]
+    graph = coo_array((np.ones(pairs.shape[1], dtype=bool), tuple(pairs)), (count + 1, count + 1))
+    # Label 0 is on its own, and the first node, so it stays 0.
+    joined, merged = connected_components(graph, directed=False)
+    return merged.astype(np.int64)[labels], int(joined) - 1

@@ -1,0 +1,88 @@
+"""The power spectrum of a surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pellicle.grid import Grid
+from pellicle.operators import Array
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Power spectral density over rings of wave vectors."""
+
+    wavenumber: Array
+    """Mean |q| of each ring [rad/m], increasing."""
+    density: Array
+    """Mean C(q) over each ring [m⁴]."""
+    count: NDArray[np.int64]
+    """Wave vectors in each ring."""
+    area: float
+    """Area of the domain [m²]."""
+
+    @property
+    def mean_square(self) -> float:
+        """Mean square of the heights [m²], Σ count · density / area (Parseval)."""
+        return float(np.sum(self.count * self.density)) / self.area
+
+
+def spectrum(heights: ArrayLike, grid: Grid) -> Spectrum:
+    """Return the radially averaged power spectral density of heights.
+
+    C(q) = |ĥ(q)|² / A with ĥ(q) = Σ h e^{−iq·x} dx dy over the domain of area A, as C^2D in Jacobs,
+    Junge & Pastewka (2017). Rings are one 2π/L wide, L the longer edge of the domain; q = 0 is left
+    out, and the corners of the Fourier plane are not.
+
+    On a periodic grid the heights are taken as they are. On a free one they do not go on across the
+    edge: they are multiplied by the window sin²(πx/L_x) sin²(πy/L_y) (Hann), after the mean under
+    it has been taken off, and C is divided by the mean square of the window, so that
+    `Spectrum.mean_square` is the mean square of the heights weighted by the window's square.
+
+    Parameters
+    ----------
+    heights
+        [m], shape (nx, ny); finite.
+    grid
+        The cells.
+
+    Raises
+    ------
+    ValueError
+        A height is NaN or infinite.
+    """
+    import scipy.fft
+
+    h = np.asarray(heights, dtype=np.float64)
+    if not np.isfinite(h).all():
+        raise ValueError("the heights are not finite everywhere, so they have no spectrum")
+    if grid.boundary == "free":
+        window = _hann(grid.shape[0])[:, None] * _hann(grid.shape[1])
+        h = (h - np.average(h, weights=window)) * window
+        h /= np.sqrt(np.mean(window**2))
+    density = np.abs(scipy.fft.rfft2(h) * grid.cell_area) ** 2 / grid.area
+    q = np.hypot(*grid.wavenumbers())
+    # Of each pair ±q, rfft2 gives one; but where q_y = 0, or at the end of an even number of cells,
+    # it gives both.
+    times = np.full(q.shape, 2)
+    times[:, 0] = 1
+    if grid.shape[1] % 2 == 0:
+        times[:, -1] = 1
+    ring = np.rint(q * max(grid.size) / (2 * pi)).astype(np.int64).ravel()
+    count = np.bincount(ring, times.ravel())
+    count[0] = 0
+    there = count > 0
+
+    def mean(values: Array) -> Array:
+        return np.asarray(np.bincount(ring, (times * values).ravel())[there] / count[there])
+
+    return Spectrum(mean(q), mean(density), count[there].astype(np.int64), grid.area)
+
+
+def _hann(points: int) -> Array:
+    """Return sin² over the centres of as many cells."""
+    return np.asarray(np.sin(pi * (np.arange(points) + 0.5) / points) ** 2)

@@ -1,0 +1,216 @@
+"""What the outputs that look at contact leave behind."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import struct
+import zlib
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as Xml
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+
+OUTPUTS = (
+    {"type": "patches", "by": "step"},
+    {"type": "distributions", "by": "step", "bins": 20},
+    {"type": "spectrum", "by": "step"},
+    {"type": "vtk"},
+)
+ROUGH: dict[str, Any] = {
+    "title": "rough",
+    "grid": {"points": [32, 24], "size": ["1 mm", "0.75 mm"], "boundary": "periodic"},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "10 mN/m"},
+    "indenter": {
+        "type": "self_affine",
+        "rms_height": "10 um",
+        "hurst": 0.5,
+        "cutoff_wavelength": "0.15 mm",
+        "seed": 2,
+    },
+    "loading": {"mean_pressure": ["50 Pa", "100 Pa"]},
+    "outputs": list(OUTPUTS),
+}
+PUNCH = {"type": "flat_punch", "radius": "0.1 mm"}
+
+Left = tuple[Path, pl.Result]
+
+
+@pytest.fixture(scope="module")
+def left(tmp_path_factory: pytest.TempPathFactory) -> Left:
+    """Return the folder of a rough contact of two steps, and its result."""
+    folder = tmp_path_factory.mktemp("rough")
+    return folder, pl.run(ROUGH, directory=folder, progress=False, threads=1)
+
+
+def rows(path: Path, **which: str) -> list[dict[str, str]]:
+    """Return the rows of a table that have these texts."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return [row for row in csv.DictReader(file) if which.items() <= row.items()]
+
+
+def column(found: list[dict[str, str]], name: str) -> np.ndarray:
+    """Return a column of numbers."""
+    return np.array([float(row[name]) for row in found])
+
+
+def test_patches_carry_the_force(left: Left) -> None:
+    """Areas and forces of the patches of each step sum to its own; the largest comes first."""
+    folder, result = left
+    for step in range(2):
+        data = result.dataset.isel(step=step)
+        found = rows(folder / "rough-patches.csv", step=str(step))
+        assert len(found) == data["patches"].item() > 1
+        area = column(found, "area [m2]")
+        assert area.sum() == pytest.approx(data["contact_area"].item(), rel=1e-12)
+        assert (np.diff(area) <= 0).all()
+        force = column(found, "force [N]")
+        assert force.sum() == pytest.approx(data["force"].item(), rel=1e-12)
+        assert (force > 0).all()
+
+
+def test_pressure_distribution_integrates_to_the_force(left: Left) -> None:
+    """So it does, for each step, and the shares of all bins are 1."""
+    folder, result = left
+    for step in range(2):
+        data = result.dataset.isel(step=step)
+        found = rows(folder / "rough-distributions.csv", curve=f"step = {step}", series="pressure")
+        share = column(found, "density") * (column(found, "upper") - column(found, "lower"))
+        assert share.sum() == pytest.approx(1, rel=1e-12)
+        force = data["contact_area"].item() * (share @ column(found, "mean"))
+        assert force == pytest.approx(data["force"].item(), rel=1e-12)
+
+
+def test_spectrum_holds_the_roughness(left: Left) -> None:
+    """The indenter's sums to its mean square, the same at each step; the surface's to its own."""
+    folder, result = left
+    for step in range(2):
+        for series, expected in (
+            ("indenter", 10e-6**2),
+            ("displacement", result.dataset["displacement"][step].values.var()),
+        ):
+            found = rows(folder / "rough-spectrum.csv", curve=f"step = {step}", series=series)
+            power = column(found, "density [m4]") @ column(found, "wave_vectors")
+            assert power / result.grid.area == pytest.approx(expected, rel=1e-9)
+
+
+def decoded(array: Xml.Element) -> np.ndarray:
+    """Return the values of a DataArray: base64 of a head of sizes, then of compressed blocks."""
+    text = (array.text or "").encode()
+    (count,) = struct.unpack("<Q", base64.b64decode(text[:12])[:8])
+    length = 4 * -(-8 * (3 + count) // 3)
+    _, size, last, *packed = struct.unpack(f"<{3 + count}Q", base64.b64decode(text[:length]))
+    data, blocks, at = base64.b64decode(text[length:]), [], 0
+    for each in packed:
+        blocks.append(zlib.decompress(data[at : at + each]))
+        at += each
+    assert at == len(data)
+    assert all(len(block) == size for block in blocks[:-1])
+    assert len(blocks[-1]) == (last or size)
+    kinds = {"Float64": "<f8", "Int64": "<i8", "UInt8": "u1"}
+    return np.frombuffer(b"".join(blocks), kinds[array.attrib["type"]])
+
+
+def test_vtk_holds_surface_and_fields(left: Left) -> None:
+    """Points are the cell centres at minus the displacement, and the list names the steps."""
+    folder, result = left
+    listed = Xml.parse(folder / "rough.pvd").iter("DataSet")
+    files = [(each.attrib["timestep"], each.attrib["file"]) for each in listed]
+    assert files == [("0", "rough-0000.vts"), ("1", "rough-0001.vts")]
+    for step, (_, name) in enumerate(files):
+        data = result.dataset.isel(step=step)
+        root = Xml.parse(folder / name).getroot()
+        assert root.attrib["byte_order"] == "LittleEndian"
+        piece = next(root.iter("Piece"))
+        assert piece.attrib["Extent"] == "0 31 0 23 0 0"
+        arrays = {each.attrib["Name"]: decoded(each) for each in root.iter("DataArray")}
+        x, y, z = arrays["Points"].reshape(24, 32, 3).transpose(2, 1, 0)
+        assert np.array_equal(x[:, 5], data["x"])
+        assert np.array_equal(y[5], data["y"])
+        assert np.array_equal(z, -data["displacement"])
+        for field in ("pressure", "displacement", "gap", "contact"):
+            assert np.array_equal(arrays[field].reshape(24, 32).T, data[field])
+        assert arrays["force"] == data["force"].item()
+
+
+def test_vtk_of_more_than_a_block() -> None:
+    """What is larger than a block of the file is cut, whether or not it comes out even."""
+    from pellicle_plugins.outputs import vtk
+
+    for cells in (vtk._BLOCK // 8, vtk._BLOCK // 8 + 5, vtk._BLOCK // 4):
+        values = np.arange(cells, dtype=float)
+        array = Xml.Element("DataArray", type="Float64")
+        array.text = vtk._encoded(values.tobytes())
+        assert np.array_equal(decoded(array), values)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"loading": {"depth": 0}},
+        {
+            "indenter": PUNCH,
+            "grid": {"points": [1, 8], "size": "0.4 mm"},
+            "loading": {"depth": 1e-6},
+        },
+    ],
+    ids=["no contact", "punch with nothing beside it, one cell across"],
+)
+def test_odd_results(changes: dict[str, Any], tmp_path: Path) -> None:
+    """Results without contact, with infinite gaps or without width are drawn and written too."""
+    outputs = [{key: each[key] for key in each if key != "by"} for each in OUTPUTS]
+    pl.run({**ROUGH, **changes, "outputs": outputs}, directory=tmp_path, progress=False)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        *(f"rough-{name}.{end}" for name in ("patches", "spectrum") for end in ("png", "csv")),
+        *("rough-distributions.png", "rough-distributions.csv", "rough-0000.vts", "rough.pvd"),
+    }
+    has_indenter = bool(rows(tmp_path / "rough-spectrum.csv", series="indenter"))
+    assert has_indenter == (changes.get("indenter") is not PUNCH)
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"type": "patches", "connectivity": 5}, r"outputs.0.connectivity: 5.*Known: 4, 8"),
+        ({"type": "distributions", "bins": 0}, r"outputs.0.bins: 0.*≥ 1"),
+    ],
+)
+def test_wrong_fields_are_named(fields: dict[str, Any], message: str) -> None:
+    """A field that is wrong is refused with what is allowed."""
+    with pytest.raises(pl.ConfigError, match=message):
+        pl.Run(**{**ROUGH, "outputs": [fields]})
+
+
+def grids(*points: int) -> dict[str, Any]:
+    """Return a study of nested grids, on which 2 + h^1.5 is extrapolated."""
+    cell = "grid.size.0 / grid.points"
+    return {
+        "grid": {"points": 16, "size": "0.4 mm"},
+        "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
+        "indenter": {"type": "paraboloid", "radius": "1 mm"},
+        "loading": {"depth": "20 um"},
+        "outputs": [{"type": "curves", "x": cell, "y": f"2 + ({cell})**1.5", "extrapolate": True}],
+        "study": {"vary": {"grid.points": list(points)}},
+    }
+
+
+def test_curves_are_extrapolated(tmp_path: Path) -> None:
+    """The limit at cell size zero and the exponent are in the table of the figure."""
+    pl.run_study(grids(8, 10, 12, 16), tmp_path, progress=False, threads=1)
+    *points, limit = rows(tmp_path / "study-curves.csv")
+    assert [row["x"] for row in points] == [str(0.4e-3 / n) for n in (8, 10, 12, 16)]
+    assert limit["series"].endswith(", extrapolated")
+    assert float(limit["x"]) == 0
+    assert float(limit["y"]) == pytest.approx(2, rel=1e-9)
+    assert float(limit["exponent"]) == pytest.approx(1.5, rel=1e-4)
+    assert limit["converged"] == "True"
+
+
+def test_two_grids_are_not_extrapolated(tmp_path: Path) -> None:
+    """The message says how many are needed."""
+    with pytest.raises(pl.ConfigError, match=r"extrapolate: 2 values of x.*at least 3"):
+        pl.run_study(grids(8, 16), tmp_path, progress=False, threads=1)
