@@ -644,7 +644,6 @@ def test_output_folder_that_cannot_be_written(
 
 def test_disk_that_fills_up(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """A write that fails in a later step is no traceback and costs no earlier step."""
-
     write, room = Path.write_bytes, [1]
 
     def fail(path: Path, data: bytes) -> int:
