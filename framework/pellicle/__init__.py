@@ -2,7 +2,7 @@
 
 Give an indenter, a soft material and the tension in its surface; get the contact pressure, area,
 force and depth. `run` solves a `Run`; `kernel`, `indenter` and `solver` make components by name;
-`displacement` applies one operator.
+`displacement` applies one operator; `fit` finds modulus and tension of a measured curve.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
         AreaCorrection,
         Case,
         Executor,
+        ForceCurve,
+        HasForceCurve,
         Indenter,
         IterativeSolver,
         Kernel,
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
         PluginError,
         StorageError,
     )
+    from .fitting.fit import Estimate, Fit, fit
     from .grid import Grid
     from .hookspecs import hookimpl
     from .operators import displacement
@@ -47,8 +50,12 @@ _HOME = {
     "ConfigError": "errors",
     "ConvergenceError": "errors",
     "ConvergenceWarning": "errors",
+    "Estimate": "fitting.fit",
     "Executor": "components",
+    "Fit": "fitting.fit",
+    "ForceCurve": "components",
     "Grid": "grid",
+    "HasForceCurve": "components",
     "Indenter": "components",
     "IterativeSolver": "components",
     "Kernel": "components",
@@ -66,6 +73,7 @@ _HOME = {
     "Stop": "result",
     "StorageError": "errors",
     "displacement": "operators",
+    "fit": "fitting.fit",
     "hookimpl": "hookspecs",
     "load": "result",
     "registry": "plugins",
@@ -80,8 +88,12 @@ __all__ = [
     "ConfigError",
     "ConvergenceError",
     "ConvergenceWarning",
+    "Estimate",
     "Executor",
+    "Fit",
+    "ForceCurve",
     "Grid",
+    "HasForceCurve",
     "Indenter",
     "IterativeSolver",
     "Kernel",
@@ -100,6 +112,7 @@ __all__ = [
     "StorageError",
     "__version__",
     "displacement",
+    "fit",
     "hookimpl",
     "indenter",
     "kernel",

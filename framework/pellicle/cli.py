@@ -15,9 +15,10 @@ from rich.console import Console
 from rich.table import Table
 from typer.core import TyperGroup
 
-from .errors import PellicleError, PluginError
+from .errors import ConfigError, PellicleError, PluginError
 
 if TYPE_CHECKING:
+    from .fitting.fit import Fit
     from .result import Result
 
 NOT_CONVERGED, BAD_INPUT, INTERRUPTED = 1, 2, 130
@@ -90,6 +91,54 @@ def run(
         for path in files:
             typer.echo(f"wrote {path}")
     _exit_by_convergence(result)
+
+
+@app.command()
+def fit(
+    curve: Annotated[
+        Path,
+        typer.Argument(help="CSV or TSV with a header such as position [um],force [nN]; HDF5."),
+    ],
+    indenter: Annotated[
+        str, typer.Option("--indenter", "-i", help="paraboloid, sphere, cone, flat_punch.")
+    ],
+    radius: Annotated[str | None, typer.Option(help='Radius with its unit: "5 um".')] = None,
+    half_angle: Annotated[
+        str | None, typer.Option(help='Angle between axis and side of a cone: "70 degree".')
+    ] = None,
+    poissons_ratio: Annotated[
+        float | None, typer.Option(help="Poisson's ratio, to get Young's modulus as well.")
+    ] = None,
+    fix: Annotated[
+        list[str] | None,
+        typer.Option(help='Hold a parameter: --fix tension=0, --fix reduced_modulus="10 kPa".'),
+    ] = None,
+    baseline: Annotated[
+        str, typer.Option(help="Fitted of the force before contact: none, offset, slope.")
+    ] = "none",
+    segment: Annotated[str, typer.Option(help="Pass to fit: approach, retract.")] = "approach",
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Fit reduced modulus, tension and contact point to a measured curve, with intervals."""
+    from .fitting.fit import fit as fit_curve
+    from .fitting.read import read
+
+    measured = read(curve)
+    fields = {"radius": radius, "half_angle": half_angle}
+    made = fit_curve(
+        measured.position,
+        measured.force,
+        depth=measured.depth,
+        indenter={"type": indenter} | {k: v for k, v in fields.items() if v is not None},
+        poissons_ratio=poissons_ratio,
+        fix=dict(map(_assignment, fix or ())),
+        baseline=baseline,  # type: ignore[arg-type]
+        segment=segment,  # type: ignore[arg-type]
+    )
+    if json:
+        _print_json(made.to_dict())
+    else:
+        _print_fit(made)
 
 
 @app.command()
@@ -229,6 +278,35 @@ def validate() -> None:
     if not rows:
         raise PluginError("no cases are registered; see what is broken with `pellicle plugins`")
     raise typer.Exit(0 if passed else 1)
+
+
+def _assignment(text: str) -> tuple[str, str | float]:
+    """Return name and value of ``name=value``; a bare number is in SI."""
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise ConfigError(f"{text!r} is not of the form name=value, e.g. tension=0", "fix")
+    try:
+        return name.strip(), float(value)
+    except ValueError:
+        return name.strip(), value.strip()
+
+
+def _print_fit(fit: Fit) -> None:
+    rows = []
+    for name, estimate in fit.estimates().items():
+        low, high = (
+            "open" if end is None else f"{end:.4g}" for end in (estimate.low, estimate.high)
+        )
+        interval = "held" if estimate.held else f"{low} to {high}"
+        value = f"{estimate.value:.4g}"
+        rows.append({"": name, "value": value, "95 % interval": interval, "unit": estimate.unit})
+    _print_table(["", "value", "95 % interval", "unit"], rows)
+    typer.echo(f"noise: {fit.noise:.3g} N, from {fit.noise_from}; {fit.points} points")
+    for line in (fit.comparison, fit.advice):
+        if line:
+            typer.echo(line)
+    for message in fit.messages:
+        typer.echo(f"note: {message}", err=True)
 
 
 def _print_steps(result: Result) -> None:

@@ -43,7 +43,7 @@ def _table() -> dict[str, Any]:
 
 
 def one_variable(nodes: Mapping[str, Sequence[float]]) -> Correction:
-    """Return the interpolant of nodes ``x`` and ``log_ratio``; beyond the last it is a power law."""
+    """Return the interpolant of ``x`` and ``log_ratio``; beyond the last x it is a power law."""
     t = np.log1p(np.asarray(nodes["x"]) / SCALE)
     spline = make_interp_spline(t, nodes["log_ratio"], 5)
     slope = spline.derivative()

@@ -11,8 +11,7 @@ from pellicle import hookimpl
 from pellicle.components import ForceCurve, Indenter
 from pellicle.operators import Array
 from pellicle.units import Length
-
-from ..analytic import master_curves
+from pellicle_plugins.analytic import master_curves
 
 
 class Paraboloid(Indenter):
