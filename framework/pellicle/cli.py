@@ -117,6 +117,9 @@ def fit(
         str, typer.Option(help="Fitted of the force before contact: none, offset, slope.")
     ] = "none",
     segment: Annotated[str, typer.Option(help="Pass to fit: approach, retract.")] = "approach",
+    directory: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for JSON and a figure.")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Fit reduced modulus, tension and contact point to a measured curve, with intervals."""
@@ -139,6 +142,13 @@ def fit(
         _print_json(made.to_dict())
     else:
         _print_fit(made)
+    if directory is not None:
+        from .fitting.drawing import save_figure
+
+        name = f"{curve.stem}-fit"
+        files = made.save(directory / f"{name}.json"), save_figure(made, directory / f"{name}.png")
+        for path in files:
+            typer.echo(f"wrote {path}", err=json)
 
 
 @app.command()

@@ -14,6 +14,8 @@ from .likelihood import MODULUS, POINT, TENSION, Likelihood
 _FACTORS = (1 / 10, 1 / 3, 3.0, 10.0)
 _DEEPEST = 0.5
 """Depth over radius that no advice goes beyond: linear elasticity ends about there."""
+_USELESS = 10.0
+"""A relative standard deviation that says nothing."""
 _GAIN = 1.3
 """An experiment is worth naming if it tightens by this factor."""
 
@@ -55,6 +57,11 @@ def designs(likelihood: Likelihood, parameters: Array) -> tuple[Design, list[Des
     return now, sorted(others, key=lambda design: design.worse)
 
 
+def decidable(now: Design, others: list[Design]) -> bool:
+    """Return whether this experiment or one of the others says anything of both parameters."""
+    return any(design.worse < _USELESS for design in [now, *others])
+
+
 def advice(likelihood: Likelihood, parameters: Array) -> str:
     """Return in words which experiment would tighten modulus and tension."""
     now, others = designs(likelihood, parameters)
@@ -62,6 +69,11 @@ def advice(likelihood: Likelihood, parameters: Array) -> str:
         f"no unbiased fit of this curve could beat ± {_percent(now.modulus)} of the modulus and "
         f"± {_percent(now.tension)} of the tension (Cramér–Rao bound, one standard deviation)"
     )
+    if not decidable(now, others):
+        return (
+            f"{reached}; with this indenter no other radius or range would tell them apart: hold "
+            "one of them, or press with another shape"
+        )
     if not others or not others[0].worse * _GAIN < now.worse:
         return f"{reached}; more points or less noise would help, another radius or range hardly"
     best = others[0]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -15,10 +17,11 @@ from pellicle.errors import ConfigError
 from pellicle.model import nearest
 from pellicle.operators import Array
 from pellicle.plugins import registry
+from pellicle.storage import reported
 from pellicle.units import Quantity
 
 from .curve import Curve, Segment, clean
-from .design import advice
+from .design import advice, decidable, designs
 from .interval import Better, Minimum, interval
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood
 from .start import starts
@@ -124,6 +127,21 @@ class Fit:
             if isinstance(value, Estimate) and not (value.held and name in ("offset", "slope"))
         }
 
+    def save(self, path: str | Path) -> Path:
+        """Write what `to_dict` returns to a JSON file, and return its name.
+
+        Raises
+        ------
+        StorageError
+            The file cannot be written.
+        """
+        path = Path(path)
+        with reported(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            text = json.dumps(self.to_dict(), indent=2, ensure_ascii=False)
+            path.write_text(f"{text}\n", encoding="utf-8")
+        return path
+
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold."""
         gain = self.chi_squared_without_tension - self.chi_squared
@@ -219,7 +237,8 @@ def _indenter(given: str | Mapping[str, Any] | Indenter, fields: Mapping[str, An
             if hasattr(registered.component, "force_curve")
         )
         raise ConfigError(
-            f"{made!r} has no force curve, which a fit needs; give one of: {', '.join(sorted(able))}",
+            f"{made!r} has no force curve, which a fit needs; "
+            f"give one of: {', '.join(sorted(able))}",
             "indenter",
         )
     return made
@@ -407,17 +426,22 @@ def _comparison(tension: Estimate, gain: float) -> str:
 
 
 def _advice(likelihood: Likelihood, parameters: Array, tension: Estimate) -> str:
-    """Return advice; where no tension is seen, for one that this curve could just miss."""
+    """Return advice, if both modulus and tension were asked for."""
     if not {MODULUS, TENSION} <= set(likelihood.free):
         return ""
-    shown_at = parameters.copy()
-    shown_at[TENSION] = max(tension.value, (tension.high or 0.0) / 2)
-    if not shown_at[TENSION]:
-        shown_at[TENSION] = likelihood.scale[TENSION]
-    text = advice(likelihood, shown_at)
-    if tension.value:
+    supposed = _with_tension(likelihood, parameters, tension)
+    text = advice(likelihood, supposed)
+    if tension.value == supposed[TENSION]:
         return text
-    return f"for a tension of {shown_at[TENSION]:.2g} N/m: {text}"
+    return f"for a tension of {supposed[TENSION]:.2g} N/m: {text}"
+
+
+def _with_tension(likelihood: Likelihood, parameters: Array, tension: Estimate) -> Array:
+    """Return the parameters, with a tension that the curve could just miss if it shows none."""
+    supposed = parameters.copy()
+    if tension.low is None:
+        supposed[TENSION] = (tension.high or likelihood.scale[TENSION]) / 2
+    return supposed
 
 
 def _open(
@@ -434,11 +458,13 @@ def _open(
         which = "modulus" if modulus.low is None or modulus.high is None else "tension"
         depth = float(likelihood.position[-1] - parameters[POINT])
         length = 2 * tension.value / modulus.value
-        kind = "shallow" if length > depth else "deep"
-        messages.append(
+        text = (
             f"the curve cannot tell modulus and tension apart: the interval of the {which} is "
-            f"open, its value is one of many; the curve is too {kind}"
+            "open, its value is one of many"
         )
+        if decidable(*designs(likelihood, _with_tension(likelihood, parameters, tension))):
+            text += f"; the curve is too {'shallow' if length > depth else 'deep'}"
+        messages.append(text)
 
 
 def _plausible(

@@ -58,6 +58,10 @@ class Likelihood:
         )
         return force, jacobian
 
+    def jacobian(self, parameters: Array) -> Array:
+        """Return the derivatives of the force, shape (n, 5)."""
+        return self._model(parameters)[1]
+
     def residuals(self, parameters: Array) -> Array:
         """Return (model − force) / noise."""
         return (self.model(parameters) - self.force) / self.noise
@@ -69,7 +73,7 @@ class Likelihood:
 
     def information(self, parameters: Array, free: Sequence[int]) -> Array:
         """Return the Fisher information of some parameters, in units of `scale`."""
-        jacobian = self._model(parameters)[1][:, free] * self.scale[list(free)] / self.noise
+        jacobian = self.jacobian(parameters)[:, free] * self.scale[list(free)] / self.noise
         return jacobian.T @ jacobian
 
     def deviations(self, parameters: Array) -> Array:
@@ -103,7 +107,7 @@ class Likelihood:
             return parameters
 
         def jacobian(u: Array) -> Array:
-            return self._model(full(u))[1][:, free] * scale / self.noise
+            return self.jacobian(full(u))[:, free] * scale / self.noise
 
         found = least_squares(
             lambda u: self.residuals(full(u)),
