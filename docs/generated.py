@@ -11,8 +11,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 import pellicle as pl
-from pellicle.components import FAMILIES
 from pellicle.dataset import DESCRIPTIONS
+from pellicle.model import Model
 from pellicle.units import Quantity
 
 _HEADINGS = {
@@ -47,13 +47,14 @@ def _components() -> Iterator[str]:
 
 
 def tables() -> str:
-    """Return the fields of a run and of the two of its tables that are no components."""
+    """Return the fields of a run or study file's tables that are no components."""
     parts = [
         f"### `{name}`\n\n{_paragraphs(model.__doc__)}\n\n{fields(model)}"
         for name, model in (
             ("top level", pl.Run),
             ("[grid]", pl.Grid),
             ("[loading]", pl.Loading),
+            ("[study]", pl.Study),
         )
     ]
     return "\n".join(parts)
@@ -69,7 +70,7 @@ def fields(model: Any) -> str:
             _cell(info.description or ""),
         )
         for name, info in model.model_fields.items()
-        if name != "type"
+        if name != "type" and (model, name) != (pl.Study, "run")
     ]
     return _table(("field", "takes", "default", "meaning"), rows) if rows else "No fields.\n"
 
@@ -176,7 +177,7 @@ def _kind(annotation: Any) -> str:
     if origin is tuple:
         kinds = {_kind(kind) for kind in inner if kind is not Ellipsis}
         return f"list of {' and '.join(sorted(kinds))}"
-    if annotation in (pl.Grid, pl.Loading) or annotation in FAMILIES.values():
+    if origin is dict or (isinstance(annotation, type) and issubclass(annotation, Model)):
         return "table"
     names = {int: "whole number", float: "number", str: "text", Path: "file", Any: "array"}
     return names[annotation]

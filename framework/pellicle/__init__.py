@@ -1,8 +1,9 @@
 """Contact mechanics of soft solids under a tensed skin.
 
 Give an indenter, a soft material and the tension in its surface; get the contact pressure, area,
-force and depth. `run` solves a `Run`; `kernel`, `indenter` and `solver` make components by name;
-`displacement` applies one operator; `fit` finds modulus and tension of a measured curve.
+force and depth. `run` solves a `Run`, `run_study` all runs of a `Study`; `kernel`, `indenter` and
+`solver` make components by name; `displacement` applies one operator; `fit` finds modulus and
+tension of a measured curve.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
         Place,
         Solver,
     )
-    from .config import Loading, Run, schema
+    from .config import Loading, Run
     from .errors import (
         ConfigError,
         ConvergenceError,
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
     from .plugins import registry
     from .problem import Problem
     from .result import Result, Solution, Status, Stop, load
+    from .study import run_study
+    from .study_config import Study, schema
     from .validation import validate
 
 # Numpy, scipy and pydantic take a second to import; a name pays for its own module only.
@@ -72,13 +75,15 @@ _HOME = {
     "Status": "result",
     "Stop": "result",
     "StorageError": "errors",
+    "Study": "study_config",
     "displacement": "operators",
     "fit": "fitting.fit",
     "hookimpl": "hookspecs",
     "load": "result",
     "registry": "plugins",
     "run": "orchestrator",
-    "schema": "config",
+    "run_study": "study",
+    "schema": "study_config",
     "validate": "validation",
 }
 
@@ -110,6 +115,7 @@ __all__ = [
     "Status",
     "Stop",
     "StorageError",
+    "Study",
     "__version__",
     "displacement",
     "fit",
@@ -119,6 +125,7 @@ __all__ = [
     "load",
     "registry",
     "run",
+    "run_study",
     "schema",
     "solver",
     "validate",

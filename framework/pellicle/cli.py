@@ -18,8 +18,12 @@ from typer.core import TyperGroup
 from .errors import ConfigError, PellicleError, PluginError
 
 if TYPE_CHECKING:
+    import xarray as xr
+
+    from .config import Run
     from .fitting.fit import Fit
     from .result import Result
+    from .study_config import Study
 
 NOT_CONVERGED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
@@ -71,26 +75,72 @@ def run(
         int | None, typer.Option(min=1, help="Threads of the Fourier transforms; all cores.")
     ] = None,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace the result of another configuration.")
+        bool, typer.Option("--overwrite", help="Begin anew, in place of whatever result is there.")
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Print what would be run, and run nothing.")
     ] = False,
 ) -> None:
-    """Solve a run and leave its results. Exit code 0 only if every step converged."""
-    from .components import Place
-    from .config import Run
-    from .orchestrator import execute
+    """Solve a run, or all runs of a study, and leave the results; go on where it was interrupted.
 
-    made = Run.from_toml(file, set_ or ())
-    place = Place(directory or Path(file.stem), file.stem, made.to_json(), overwrite)
+    Exit code 0 only if every step converged.
+    """
+    from .study_config import Study, from_toml
+
+    made = from_toml(file, set_ or ())
+    folder = directory or Path(file.stem)
+    if dry_run:
+        _print_plan(made, folder, file.stem, overwrite)
+    elif isinstance(made, Study):
+        _run_study(made, folder, quiet=quiet, threads=threads, overwrite=overwrite)
+    else:
+        _run_one(made, folder, file.stem, quiet=quiet, threads=threads, overwrite=overwrite)
+
+
+def _run_one(
+    made: Run, folder: Path, name: str, *, quiet: bool, threads: int | None, overwrite: bool
+) -> None:
+    from .components import Place
+    from .orchestrator import execute, standard_outputs
+    from .progress import Progress
+
+    place = Place(folder, name, made.to_json(), made.identity, overwrite)
+    bar = Progress(len(made.loading.values), not quiet)
     try:
-        result, files = execute(made, place, progress=not quiet, threads=threads)
+        done = execute(made, place, standard_outputs(made.outputs), bar, threads=threads)
     except KeyboardInterrupt:
-        typer.echo(f"interrupted; what steps were finished are in {place.directory}", err=True)
+        typer.echo(f"interrupted; what steps were finished are in {folder}", err=True)
         raise typer.Exit(INTERRUPTED) from None
     if not quiet:
-        _print_steps(result)
-        for path in files:
+        _print_steps(done.result)
+        if done.taken:
+            all_ = len(made.loading.values)
+            typer.echo(f"{done.taken} of {all_} steps were done before (--overwrite begins anew)")
+        for path in done.files:
             typer.echo(f"wrote {path}")
-    _exit_by_convergence(result)
+    _exit_by_convergence(done.result)
+
+
+def _run_study(
+    made: Study, folder: Path, *, quiet: bool, threads: int | None, overwrite: bool
+) -> None:
+    from .study import carry_out
+
+    try:
+        done = carry_out(made, folder, progress=not quiet, overwrite=overwrite, threads=threads)
+    except KeyboardInterrupt:
+        typer.echo(
+            f"interrupted; what was finished is in {folder}, and the same command goes on", err=True
+        )
+        raise typer.Exit(INTERRUPTED) from None
+    if not quiet:
+        _print_runs(done.table)
+        if done.taken:
+            all_ = len(made.points)
+            typer.echo(f"{done.taken} of {all_} runs were done before (--overwrite begins anew)")
+        for path in done.files:
+            typer.echo(f"wrote {path}")
+    _exit_by_status(done.table)
 
 
 @app.command()
@@ -201,42 +251,57 @@ def plugins(
 
 @app.command()
 def schema() -> None:
-    """Print the JSON schema of a run file, with all installed components, for editors."""
-    from .config import schema as make_schema
+    """Print the JSON schema of a run or study file, with all installed components, for editors."""
+    from .study_config import schema as make_schema
 
     _print_json(make_schema())
 
 
 @app.command()
 def new(
-    path: Annotated[Path, typer.Argument(help="File to write.")] = Path("indent.toml"),
+    path: Annotated[
+        Path | None,
+        typer.Argument(help="File to write, indent.toml; with --plugin, the component's name."),
+    ] = None,
+    plugin: Annotated[
+        str | None,
+        typer.Option(
+            "--plugin",
+            metavar="FAMILY",
+            help="Write the package of a kernel, indenter, solver, correction, output or executor.",
+        ),
+    ] = None,
 ) -> None:
-    """Write a commented starter file."""
-    from importlib.resources import files
+    """Write a commented starter file, or the package of a plugin."""
+    if plugin is None:
+        _write_starter(path or Path("indent.toml"))
+        return
+    from .scaffold import write_plugin
 
-    from .errors import StorageError
-    from .storage import reported
-
-    text = files("pellicle").joinpath("starter.toml").read_text(encoding="utf-8")
-    with reported(path):
-        try:
-            with path.open("x", encoding="utf-8") as file:
-                file.write(text)
-        except FileExistsError:
-            raise StorageError(f"{path} exists already; give another name") from None
-    typer.echo(f"wrote {path}; next: pellicle run {path}")
+    if path is None:
+        raise ConfigError(f"is missing; for example: pellicle new --plugin {plugin} mine", "NAME")
+    folder = write_plugin(plugin, str(path), Path())
+    typer.echo(f"wrote {folder}; next: cd {folder}, pip install -e ., python -m pytest")
 
 
 @app.command()
 def show(
-    results: Annotated[Path, typer.Argument(help="Result file (.h5).")],
+    results: Annotated[
+        Path, typer.Argument(help="Result file (.h5), or the folder or study.h5 of a study.")
+    ],
 ) -> None:
-    """Print the steps of a result and where it comes from."""
+    """Print the steps of a result, or the runs of a study, and where it comes from."""
     from .result import load
+    from .study import is_table, read
 
+    if is_table(results):
+        table, _ = read(results)
+        _print_origin(table)
+        _print_runs(table)
+        _exit_by_status(table)
+        return
     result = load(results)
-    for name in ("title", "date", "versions"):
-        typer.echo(f"{name + ':':10}{result.dataset.attrs.get(name, '')}")
+    _print_origin(result.dataset)
     wanted, done = _steps_wanted(result), result.dataset.sizes["step"]
     _print_steps(result)
     _exit_by_convergence(result)
@@ -247,7 +312,9 @@ def show(
 
 @app.command()
 def plot(
-    results: Annotated[Path, typer.Argument(help="Result file (.h5).")],
+    results: Annotated[
+        Path, typer.Argument(help="Result file (.h5), or the folder or study.h5 of a study.")
+    ],
     directory: Annotated[
         Path | None, typer.Option("-o", "--output", help="Folder; that of the result.")
     ] = None,
@@ -255,12 +322,19 @@ def plot(
         list[Format] | None, typer.Option("--format", help="png, svg or pdf; repeat for several.")
     ] = None,
 ) -> None:
-    """Draw the figures of a result."""
-    from .plotting import save_figures
+    """Draw the figures of a result or of a study."""
+    from .plotting import save_figures, save_study_figures
     from .result import load
+    from .study import is_table, read
 
     chosen = [str(format_) for format_ in formats or [Format.PNG]]
-    for path in save_figures(load(results), directory or results.parent, results.stem, chosen):
+    if is_table(results):
+        table, folder = read(results)
+        files = save_study_figures(table, directory or folder, "study", chosen)
+    else:
+        folder = directory or results.parent
+        files = save_figures(load(results), folder, results.stem, chosen)
+    for path in files:
         typer.echo(f"wrote {path}")
 
 
@@ -319,6 +393,22 @@ def _print_fit(fit: Fit) -> None:
         typer.echo(f"note: {message}", err=True)
 
 
+def _write_starter(path: Path) -> None:
+    from importlib.resources import files
+
+    from .errors import StorageError
+    from .storage import reported
+
+    text = files("pellicle").joinpath("starter.toml").read_text(encoding="utf-8")
+    with reported(path):
+        try:
+            with path.open("x", encoding="utf-8") as file:
+                file.write(text)
+        except FileExistsError:
+            raise StorageError(f"{path} exists already; give another name") from None
+    typer.echo(f"wrote {path}; next: pellicle run {path}")
+
+
 def _print_steps(result: Result) -> None:
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
@@ -332,6 +422,65 @@ def _print_steps(result: Result) -> None:
     units = {name: data[name].attrs["units"] for name in names}
     heads = {name: f"{name} [{unit}]" if unit != "1" else name for name, unit in units.items()}
     _print_table(["step", *names, "status"], rows, heads)
+
+
+def _print_origin(data: xr.Dataset) -> None:
+    for name in ("title", "date", "versions"):
+        typer.echo(f"{name + ':':10}{data.attrs.get(name, '')}")
+
+
+def _print_runs(table: xr.Dataset) -> None:
+    """Print a row for each run of a study: its parameters, its last step and how it ended."""
+    from .study import rows
+
+    found = rows(table)
+    names = list(found[0])
+    units = {name: table[name].attrs.get("units", "1") for name in names if name in table}
+    heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
+    _print_table(names, found, heads)
+
+
+def _print_plan(made: Run | Study, folder: Path, name: str, overwrite: bool) -> None:
+    from .components import Place
+    from .study import RunTask, plan, tasks
+    from .study_config import Study
+
+    if isinstance(made, Study):
+        planned = list(plan(tasks(made, folder, overwrite=overwrite)))
+    else:
+        place = Place(folder, name, made.to_json(), made.identity, overwrite)
+        planned = list(plan([RunTask(made.title or name, made, place)]))
+    rows = []
+    for task, done, problem in planned:
+        nx, ny = task.run.grid.points
+        state = f"{done} of {task.steps} steps done" if done < task.steps else "done"
+        rows.append(
+            {
+                "run": task.name,
+                "file": str(task.place.file(".h5")),
+                "points": f"{nx} × {ny}",
+                "steps": str(task.steps),
+                "memory": f"{task.memory / 1e6:.3g} MB",
+                "state": problem or (state if done else "to do"),
+            }
+        )
+    _print_table(["run", "file", "points", "steps", "memory", "state"], rows)
+    finished = sum(done >= task.steps for task, done, _ in planned)
+    most = max(task.memory for task, *_ in planned) / 1e6
+    typer.echo(
+        f"{len(planned)} run{'s' * (len(planned) > 1)}, {finished} done, "
+        f"{len(planned) - finished} to do; at most {most:.3g} MB each"
+    )
+
+
+def _exit_by_status(table: xr.Dataset) -> None:
+    from .study import failures, reasons
+
+    if message := failures(table):
+        for reason in reasons(table):
+            typer.echo(reason, err=True)
+        typer.echo(message, err=True)
+        raise typer.Exit(NOT_CONVERGED)
 
 
 def _exit_by_convergence(result: Result) -> None:

@@ -51,8 +51,10 @@ class Component(Model):
 class Kernel(Component):
     """How the surface yields to pressure: û(q) = G(q) p̂(q).
 
-    A kernel that also has ``greens_function(r)`` [m/N] and ``radial_primitive(r)`` [m²/N], as
-    `pellicle.operators.HasClosedForm` says, works on free boundaries too.
+    That is all it needs to give. On free boundaries its closed form, ``greens_function(r)`` [m/N]
+    and ``radial_primitive(r)`` [m²/N] as in `pellicle.operators.HasClosedForm`, is used if it has
+    one, and is otherwise tabulated from G(q) by `pellicle.hankel`. On periodic ones a uniform
+    pressure has no displacement unless it also has `pellicle.operators.HasMeanCompliance`.
     """
 
     family: ClassVar[str] = "kernel"
@@ -207,16 +209,18 @@ class AreaCorrection(Component):
 
 @dataclass(frozen=True)
 class Place:
-    """Where the outputs of a run go."""
+    """Where the outputs of a run or of a study go."""
 
     directory: Path
     """Folder; made when something is written."""
     name: str
     """Stem of the file names."""
     configuration: str
-    """The run, as `Run.to_json` says it."""
+    """The run or the study, as its `to_json` says it."""
+    identity: str = ""
+    """The run's `Run.identity`: what is there of another run is not to be touched."""
     overwrite: bool = False
-    """Whether a result of another configuration may be replaced."""
+    """Whether to begin anew, in place of whatever is there."""
 
     def file(self, ending: str) -> Path:
         """Return ``directory/name<ending>``."""
@@ -224,10 +228,14 @@ class Place:
 
 
 class Output(Component):
-    """Leaves the result of a run somewhere.
+    """Leaves the result of a run or of a study somewhere.
 
     A run calls `open` once, `step` after each load step, and `close` once, also after an
-    interruption, with the steps done so far.
+    interruption, with the steps done so far. Steps that an output has from an earlier process, as
+    `resume` says, are not solved again; `step` of the other outputs gets them all the same.
+
+    In a study, an output that has a `study` of its own is called by the study alone; any other is
+    called by each run.
     """
 
     family: ClassVar[str] = "output"
@@ -235,11 +243,24 @@ class Output(Component):
     def open(self, place: Place) -> None:
         """Prepare; raise StorageError if it is plain that nothing can be written."""
 
+    def resume(self, place: Place) -> xr.Dataset | None:
+        """Return the steps that an earlier process finished of the same run, if there are any."""
+        return None
+
     def step(self, place: Place, step: xr.Dataset) -> None:
         """Take one finished step: a dataset with dimension step of length 1."""
 
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Finish and return the files left behind."""
+        return ()
+
+    def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
+        """Leave what a study shows, made of its table, and return the files.
+
+        ``table`` is what `pellicle.run_study` returns: numbers over the varied axes and ``step``;
+        NaN, and a message in ``status``, where a run has not been done. It is called at the end,
+        also of a study that was interrupted.
+        """
         return ()
 
 

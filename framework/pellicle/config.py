@@ -6,9 +6,11 @@ same `Run`.
 
 from __future__ import annotations
 
+import hashlib
 import json
-from collections.abc import Iterable, Mapping, Sized
+from collections.abc import Collection, Iterable, Mapping, Sized
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar, cast
 
@@ -19,10 +21,11 @@ from .components import AreaCorrection, Component, Indenter, Kernel, Output, Sol
 from .errors import ConfigError, Problem, shown
 from .fields import FromRegistry
 from .grid import Grid
-from .model import Model, paths_relative_to
+from .model import Model, paths_relative_to, replaced
 from .plugins import registry
-from .toml import override, read_toml, toml_lines
-from .units import Quantity
+from .storage import SCHEMA_VERSION
+from .toml import parse_override, read_toml, toml_lines
+from .units import Quantity, ramp
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -62,9 +65,7 @@ class _Steps:
                 "num",
             )
         start, stop = self._all({end: given[end] for end in ("start", "stop")})
-        steps = ((start * (num - 1 - i) + stop * i) / (num - 1) for i in range(num))
-        # Fifteen digits are what a user can have meant: 3e-05, not 3.0000000000000004e-05.
-        return tuple(float(f"{step:.15g}") for step in steps)
+        return tuple(ramp(start, stop, num))
 
     def _all(self, given: Mapping[str, object]) -> tuple[float, ...]:
         """Return every value in SI, or raise with all that are not allowed."""
@@ -104,7 +105,8 @@ class Loading(Model):
         _Steps(Quantity("m", at_least=0)),
         Field(
             description="depth of the indenter's lowest point [m] below the undeformed surface, "
-            "or below the mean plane on a periodic grid: a value, a list or {start, stop, num}"
+            "or below the mean plane on a periodic grid, unless the kernel is a layer or springs: "
+            "a value, a list or {start, stop, num}"
         ),
     ] = None
     force: Annotated[
@@ -207,11 +209,14 @@ class Run(Model):
         PluginError
             A component that it asks for is broken.
         """
-        path = Path(path)
-        data = read_toml(path)
-        for text in overrides:
-            override(data, text)
-        with paths_relative_to(path.parent):
+        data = read(path, overrides)
+        if "study" in data:
+            raise ConfigError(
+                "makes this file a study: use run_study, or Study.from_toml, in place of run, or "
+                "leave the table out",
+                "study",
+            )
+        with paths_relative_to(Path(path).parent):
             return cls(**data)
 
     @classmethod
@@ -231,6 +236,17 @@ class Run(Model):
             raise ConfigError("a run is a JSON object with the keys grid, kernel, …")
         return cls(**data)
 
+    @property
+    def identity(self) -> str:
+        """Hash of all that decides the numbers: equal for runs whose results are equal.
+
+        Of the configuration, defaults included, `title` and `outputs` are left out; a file that it
+        names counts by its content; the version of the layout of results is in it too.
+        """
+        said = _identifying(self, without=("title", "outputs")) | {"schema": SCHEMA_VERSION}
+        text = json.dumps(said, sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()
+
     def to_json(self) -> str:
         """Return the whole configuration as JSON, defaults included, SI floats."""
         return self.model_dump_json(exclude_none=True)
@@ -240,9 +256,49 @@ class Run(Model):
         return "".join(toml_lines(json.loads(self.to_json())))
 
 
-def schema() -> dict[str, Any]:
-    """Return the JSON schema of a run file, with every component that is installed."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | Run.model_json_schema()
+def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
+    """Return the content of a run or study file, with what ``--set`` replaces.
+
+    Raises
+    ------
+    ConfigError
+        It cannot be read, or an override cannot be applied.
+    """
+    data = read_toml(Path(path))
+    for text in overrides:
+        key, value = parse_override(text)
+        try:
+            data = replaced(data, key, value)
+        except ConfigError as error:
+            raise ConfigError(f"--set {text!r}: {error}") from None
+    return data
+
+
+def _identifying(model: Model, without: Collection[str] = ()) -> dict[str, Any]:
+    """Return what tells ``model`` from others: its JSON, with a hash in place of each file."""
+    said = model.model_dump(mode="json", exclude_none=True)
+    return {
+        name: _identified(getattr(model, name), value)
+        for name, value in said.items()
+        if name not in without
+    }
+
+
+def _identified(value: object, said: Any) -> Any:
+    if isinstance(value, Model):
+        return _identifying(value)
+    if isinstance(value, Path) and value.is_file():
+        stat = value.stat()
+        return _digest(value.absolute(), stat.st_mtime_ns, stat.st_size)
+    if isinstance(value, tuple):
+        return [_identified(*pair) for pair in zip(value, said, strict=True)]
+    return said
+
+
+@cache
+def _digest(path: Path, changed: int, size: int) -> str:
+    """Return the hash of a file; the runs of a study may all name the same large one."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def component(base: type[AnyComponent], type_: str, fields: Mapping[str, Any]) -> AnyComponent:

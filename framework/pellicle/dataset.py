@@ -84,6 +84,12 @@ def step_dataset(
     return xr.Dataset(variables, coordinates)
 
 
+def header(name: str, variable: xr.DataArray) -> str:
+    """Return the head of a variable's column in a table: its name and unit."""
+    unit = variable.attrs.get("units", "1")
+    return name if unit == "1" else f"{name} [{unit}]"
+
+
 def _attributes(name: str) -> dict[str, str]:
     corrected = ("m2", f"contact area, {name.removeprefix('contact_area_')} correction")
     unit, meaning = DESCRIPTIONS.get(name, corrected)

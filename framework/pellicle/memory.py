@@ -52,7 +52,11 @@ def require(grid: Grid, steps: int) -> None:
         nx, ny = grid.points
         raise ConfigError(
             f"{shown(nx)} × {shown(ny)} with {steps} step{'s' * (steps > 1)} needs about "
-            f"{needed / 1e9:.3g} GB, and {there / 1e9:.3g} GB are available; use fewer points or "
-            "fewer steps",
+            f"{shortage(needed, there)}; use fewer points or fewer steps",
             "grid.points",
         )
+
+
+def shortage(needed: float, there: float) -> str:
+    """Return what a message says of memory [bytes] that is not there."""
+    return f"{needed / 1e9:.3g} GB, and {there / 1e9:.3g} GB are available"

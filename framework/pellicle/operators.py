@@ -5,6 +5,7 @@ Convention: û(q) = G(q) p̂(q), displacement u positive into the solid, transfo
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
@@ -14,14 +15,18 @@ from numpy.typing import NDArray
 
 from .errors import ConfigError
 from .grid import Grid
+from .hankel import Tabulated
 from .influence import cell_coefficients
 
 Array = NDArray[np.float64]
 Float = TypeVar("Float", np.float32, np.float64)
 
+# A cell's displacement under its own pressure over that of the finest wave, at least.
+_LEAST_OWN = 0.25
+
 
 class HasCompliance(Protocol):
-    """What an operator needs of a kernel on a periodic boundary."""
+    """What an operator needs of a kernel."""
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] for wavenumbers q > 0 [rad/m]."""
@@ -30,7 +35,7 @@ class HasCompliance(Protocol):
 
 @runtime_checkable
 class HasClosedForm(HasCompliance, Protocol):
-    """What an operator needs of a kernel on a free boundary."""
+    """What an operator on a free boundary uses, and tabulates for a kernel that lacks it."""
 
     def greens_function(self, r: Array) -> Array:
         """Return the displacement at distances r > 0 [m] from a unit force [m/N]."""
@@ -39,6 +44,24 @@ class HasClosedForm(HasCompliance, Protocol):
     def radial_primitive(self, r: Array) -> Array:
         """Return ∫₀^r G(r') r' dr' [m²/N] for r ≥ 0 [m]."""
         ...
+
+
+@runtime_checkable
+class HasMeanCompliance(HasCompliance, Protocol):
+    """What a kernel has whose surface does not sink without bound under a uniform pressure."""
+
+    def mean_compliance(self) -> float:
+        """Return G(0) [m/Pa]: the displacement by a uniform pressure over a periodic domain.
+
+        ∞ if there is no finite one: then the mean displacement is set to 0, and depths are
+        measured from the mean plane.
+        """
+        ...
+
+
+def mean_compliance(kernel: HasCompliance) -> float:
+    """Return G(0) [m/Pa] of a kernel, ∞ if it says nothing, as a half-space does."""
+    return kernel.mean_compliance() if isinstance(kernel, HasMeanCompliance) else math.inf
 
 
 class Operator(ABC):
@@ -81,18 +104,23 @@ class _Symbol:
 
 
 class PeriodicOperator(Operator):
-    """G(q) sampled on the wavenumbers of the FFT; the mean displacement is zero."""
+    """G(q) sampled on the wavenumbers of the FFT.
 
-    fixes_mean = False
+    The mean displacement is zero if a uniform pressure has no finite one.
+    """
 
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
         super().__init__(kernel, grid)
         qx, qy = grid.wavenumbers()
         q = np.hypot(qx, qy)
-        symbol = np.zeros(q.shape)
-        # The first wavenumber is 0, at which the mean displacement is chosen to be 0.
-        symbol.ravel()[1:] = _checked(kernel.compliance(q.ravel()[1:]))
-        self._symbol = _Symbol(symbol)
+        mean = mean_compliance(kernel)
+        # An incompressible layer has no mean displacement either.
+        self.fixes_mean = 0 < mean < math.inf
+        symbol = np.empty(q.shape)
+        # The first wavenumber is 0.
+        symbol.ravel()[0] = 0.0 if mean == math.inf else mean
+        symbol.ravel()[1:] = kernel.compliance(q.ravel()[1:])
+        self._symbol = _Symbol(_checked(symbol))
 
     def _apply(self, pressure: NDArray[Any]) -> object:
         transform = scipy.fft.rfft2(pressure)
@@ -110,11 +138,23 @@ class FreeOperator(Operator):
 
     def __init__(self, kernel: HasClosedForm, grid: Grid) -> None:
         super().__init__(kernel, grid)
-        cells = _checked(
-            cell_coefficients(
-                kernel.greens_function, kernel.radial_primitive, grid.shape, grid.spacing
-            )
+        cells = cell_coefficients(
+            kernel.greens_function, kernel.radial_primitive, grid.shape, grid.spacing
         )
+        if not np.isfinite(cells).all():
+            raise ConfigError(
+                "displacements are NaN or infinite; check the parameters, or the formula if the "
+                "kernel is yours",
+                "kernel",
+            )
+        finest = float(kernel.compliance(np.array([np.pi / min(grid.spacing)]))[0])
+        if not cells[0, 0] > _LEAST_OWN * finest:
+            raise ConfigError(
+                f"a pressed cell sinks by {cells[0, 0]:.2g} m/Pa at its centre, the finest wave by "
+                f"{finest:.2g}: the cells are much wider than an incompressible layer is thick, or "
+                "the formulas of the kernel contradict each other; use more points",
+                "grid.points",
+            )
         self._padded = tuple(scipy.fft.next_fast_len(2 * n - 1, real=True) for n in grid.shape)
         # Even in both directions, so the transform of the wrapped coefficients is real.
         self._symbol = _Symbol(scipy.fft.rfft2(_wrap(cells, self._padded)).real.copy())
@@ -149,20 +189,22 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
     """
     if grid.boundary == "periodic":
         return PeriodicOperator(kernel, grid)
-    if not isinstance(kernel, HasClosedForm):
-        raise ConfigError(
-            f"'free' needs a closed form, and {type(kernel).__name__} gives only compliance(q); "
-            "use boundary = 'periodic', or give the kernel greens_function(r) and "
-            "radial_primitive(r)",
-            "grid.boundary",
-        )
-    return FreeOperator(kernel, grid)
+    return FreeOperator(_in_real_space(kernel, grid), grid)
+
+
+def _in_real_space(kernel: HasCompliance, grid: Grid) -> HasClosedForm:
+    # Wide enough for all coarser grids of the same domain, which are given the table made here.
+    radii = 0.2 * min(grid.spacing), 3 * math.hypot(*grid.size)
+    if isinstance(kernel, Tabulated):
+        return kernel if kernel.covers(*radii) else Tabulated(kernel.compliance, *radii)
+    return kernel if isinstance(kernel, HasClosedForm) else Tabulated(kernel.compliance, *radii)
 
 
 def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array:
     """Return the surface displacement [m] of shape (nx, ny) under a pressure [Pa] of that shape.
 
-    One application of the operator; on a periodic grid the mean displacement is zero.
+    One application of the operator; on a periodic grid the mean displacement is zero, unless the
+    kernel says what a uniform pressure does (`HasMeanCompliance`).
 
     Raises
     ------

@@ -6,12 +6,12 @@ import os
 import re
 import time
 import warnings
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -20,16 +20,17 @@ from .components import Component, Monitor, Output, Place
 from .config import Run
 from .dataset import step_dataset
 from .errors import ConfigError, ConvergenceWarning
+from .model import Model
 from .operators import Array, Operator, make_operator
 from .plugins import registry
 from .problem import Equilibrium, Problem, measure
-from .progress import Progress
+from .progress import Bar, Progress
 from .result import Result, Solution, Status, Stop
 
 if TYPE_CHECKING:
     import xarray as xr
 
-DEFAULT_OUTPUTS = ("hdf5", "csv", "figures")
+STANDARD_OUTPUTS = ("hdf5", "csv", "figures")
 
 
 def run(
@@ -54,7 +55,8 @@ def run(
     threads
         Threads of the Fourier transforms; all cores if None.
     overwrite
-        Whether a result of another configuration may be replaced.
+        Begin anew, in place of whatever result is there. Otherwise the steps that the folder holds
+        of the same run are taken from there, and what is of another run is refused.
 
     Raises
     ------
@@ -67,42 +69,56 @@ def run(
         A step is in the result but marked as not converged.
     """
     made, name = _as_run(configuration)
-    place = None
-    if directory is not None or made.outputs:
-        place = Place(Path(directory or "."), name, made.to_json(), overwrite)
-    result, _ = execute(made, place, progress=progress, threads=threads)
+    outputs = standard_outputs(made.outputs) if directory is not None else made.outputs or ()
+    place = Place(Path(directory or "."), name, made.to_json(), made.identity, overwrite)
+    bar = Progress(len(made.loading.values), progress)
+    result = execute(made, place, outputs, bar, threads=threads).result
     for index, message in result.failures():
         warnings.warn(f"step {index + 1}: {message}", ConvergenceWarning, stacklevel=2)
     return result
 
 
+def solve(run: Run) -> Result:
+    """Return the result of ``run``, of which nothing is written or shown."""
+    nowhere = Place(Path(), "run", run.to_json())
+    return execute(run, nowhere, (), Progress(len(run.loading.values), enabled=False)).result
+
+
+class Executed(NamedTuple):
+    """What came of a run."""
+
+    result: Result
+    files: tuple[Path, ...]
+    """What its outputs left."""
+    taken: int
+    """How many of its steps an earlier process had done."""
+
+
 def execute(
-    run: Run, place: Place | None, *, progress: bool = False, threads: int | None = None
-) -> tuple[Result, tuple[Path, ...]]:
-    """Return the result of ``run`` and the files that its outputs left at ``place``.
+    run: Run, place: Place, outputs: Sequence[Output], bar: Bar, *, threads: int | None = None
+) -> Executed:
+    """Solve the load steps of ``run`` that ``outputs`` do not have yet at ``place``.
 
     On an interruption the outputs still get the steps that are finished.
     """
     import scipy.fft
 
-    sinks = [(output, place) for output in _outputs(run)] if place is not None else []
     memory.require(run.grid, len(run.loading.values))
     steps: list[xr.Dataset] = []
     files: list[Path] = []
-    with (
-        scipy.fft.set_workers(threads or _cores()),
-        Progress(len(run.loading.values), progress) as bar,
-    ):
+    with scipy.fft.set_workers(threads or _cores()), bar:
         try:
             problems = _problems(run)
-            for output, there in sinks:
-                output.open(there)
+            for output in outputs:
+                output.open(place)
+            steps = _resume(outputs, place)
+            taken = len(steps)
             # closing: the generator's arrays go before the outputs draw.
-            with closing(_solve_steps(run, problems, bar)) as solved:
+            with closing(_solve_steps(run, problems, steps[-1:], bar)) as solved:
                 for step in solved:
                     steps.append(step)
-                    for output, there in sinks:
-                        output.step(there, step)
+                    for output in outputs:
+                        output.step(place, step)
         except MemoryError:
             raise ConfigError(
                 f"{run.grid.points} cells do not fit in memory; use fewer points", "grid.points"
@@ -110,9 +126,23 @@ def execute(
         finally:
             if steps:
                 result = Result.join(steps)
-                for output, there in sinks:
-                    files.extend(output.close(there, result))
-    return result, tuple(files)
+                for output in outputs:
+                    files.extend(output.close(place, result))
+    return Executed(result, tuple(files), taken)
+
+
+def _resume(outputs: Sequence[Output], place: Place) -> list[xr.Dataset]:
+    """Return the steps that the first output which has any has, each on its own."""
+    for source in outputs:
+        held = source.resume(place)
+        if held is None:
+            continue
+        steps = [held.isel(step=[index]) for index in range(held.sizes["step"])]
+        for output in outputs:
+            for step in steps if output is not source else ():
+                output.step(place, step)
+        return steps
+    return []
 
 
 def _as_run(configuration: Run | Mapping[str, Any] | str | Path) -> tuple[Run, str]:
@@ -129,10 +159,11 @@ def _file_stem(title: str) -> str:
     return re.sub(r"\W+", "-", title).strip("-").lower() or "run"
 
 
-def _outputs(run: Run) -> Sequence[Output]:
-    if run.outputs is not None:
-        return run.outputs
-    return [registry().make(Output, {"type": type_}) for type_ in DEFAULT_OUTPUTS]
+def standard_outputs(named: Sequence[Output] | None) -> Sequence[Output]:
+    """Return the outputs that are named, or the standard ones if it is not said which."""
+    if named is not None:
+        return named
+    return [registry().make(Output, {"type": type_}) for type_ in STANDARD_OUTPUTS]
 
 
 def _cores() -> int:
@@ -196,16 +227,19 @@ def _check_depths(depths: Sequence[float], profile: Array, operator: Operator) -
 
 
 def _solve_steps(
-    run: Run, problems: Sequence[Problem], bar: Progress
+    run: Run, problems: Sequence[Problem], last: Sequence[xr.Dataset], bar: Bar
 ) -> Generator[xr.Dataset, None, None]:
-    """Yield each load step as soon as it is solved, started from the one before."""
+    """Yield each load step after the ``last`` as soon as it is solved, started from that before."""
     origin = _provenance(run)
-    pressure: Array | None = None
-    for index, problem in enumerate(problems):
+    first, pressure = 0, None
+    for before in last:
+        first = before["step"].item() + 1
+        pressure = before["pressure"].values[0]
+    for index, problem in enumerate(problems[first:], first):
         started = time.perf_counter()
-        before = problem.operator.applications
+        applied = problem.operator.applications
         solution = _solve(run, problem, pressure, bar.step(index))
-        used = problem.operator.applications - before
+        used = problem.operator.applications - applied
         pressure = solution.pressure
         found = measure(problem, pressure)
         status, message = _judge(run, found, solution.stop, index)
@@ -269,20 +303,37 @@ def _touches_edge(contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> b
 
 def _provenance(run: Run) -> dict[str, str]:
     """Return the attributes that say where a result comes from."""
-    used: list[Component] = [run.kernel, run.indenter, run.solver, *run.corrections]
+    return {
+        "title": run.title,
+        "configuration": run.to_json(),
+        "identity": run.identity,
+        **now_with([run]),
+    }
+
+
+def now_with(runs: Iterable[Run]) -> dict[str, str]:
+    """Return the date, and the versions of what solves ``runs``, as attributes of a result."""
+    used = {type(component) for run in runs for component in _components(run)}
     owners = {
         registered.origin.distribution: registered.origin.version
         for family in registry().components.values()
         for registered in family.values()
-        if any(type(component) is registered.component for component in used)
+        if registered.component in used
     }
     versions = {"pellicle": version("pellicle"), "numpy": version("numpy")} | {
         "scipy": version("scipy"),
         **owners,
     }
     return {
-        "title": run.title,
-        "configuration": run.to_json(),
         "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
     }
+
+
+def _components(model: Model) -> Iterator[Component]:
+    """Yield the components in the fields of a model, and those in theirs."""
+    for _, value in model:
+        for each in value if isinstance(value, tuple) else (value,):
+            if isinstance(each, Component):
+                yield each
+                yield from _components(each)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,9 @@ from .result import Result
 from .storage import reported
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f"}
 
@@ -38,11 +41,10 @@ def pressure_map(result: Result, axes: Axes, step: int = -1) -> None:
     pressure = data["pressure"].values
     length, length_name = axis_unit(np.append(data["x"].values, data["y"].values), "m")
     scale, name = axis_unit(pressure, "Pa")
-    edges = [[edge * length for edge in _edges(data[axis].values)] for axis in ("x", "y")]
     image = axes.imshow(
         np.ma.masked_equal(pressure.T * scale, 0.0),
         origin="lower",
-        extent=(edges[0][0], edges[0][1], edges[1][0], edges[1][1]),
+        extent=extent(data["x"].values * length, data["y"].values * length),
         cmap="viridis",
         vmin=0.0,
         interpolation="nearest",
@@ -113,21 +115,135 @@ def save_figures(
     StorageError
         A file cannot be written.
     """
+    drawings = {ending: partial(draw, result) for ending, draw in FIGURES.items()}
+    return _save(drawings, directory, name, formats)
+
+
+def save_study_figures(
+    table: xr.Dataset, directory: Path, name: str, formats: Iterable[str]
+) -> tuple[Path, ...]:
+    """Write force and contact fraction of a study as ``directory/name-figure.format``.
+
+    Parameters are as for `save_figures`; ``table`` is that of `pellicle.run_study`.
+
+    Raises
+    ------
+    StorageError
+        A file cannot be written.
+    """
+    if "force" not in table:
+        return ()
+    drawings = {
+        what: partial(study_curves, table, variable=what) for what in ("force", "contact_fraction")
+    }
+    return _save(drawings, directory, name, formats)
+
+
+def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
+    """Draw a variable of a study against the depth, one colour for each value of its first axis.
+
+    Where each run has one step only, it is drawn against the first axis of numbers instead.
+    """
+    dimensions = [str(d) for d in table["status"].dims if d != "step"]
+    numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
+    against = "depth" if table.sizes["step"] > 1 or not numbers else numbers[0]
+    along = "step" if against == "depth" else against
+    # Seeds are repetitions, not what is compared.
+    rest = [d for d in dimensions if d != along]
+    compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
+    scale, name = _unit_near_one(table[variable])
+    x_scale, x_name = _unit_near_one(table[against])
+    stacked = [d for d in table["status"].dims if d not in (along, *compared)]
+    for number, part in enumerate(_each(table, compared)):
+        colour = _colour(number, table.sizes[compared[0]] if compared else 1)
+        label = _label(part, compared[0]) if compared else ""
+        for line in _each(part, stacked):
+            x, y = line[against].values * x_scale, line[variable].values * scale
+            axes.plot(x, y, "o-", color=colour, label=label, markersize=4, mfc="white")
+            good = line["converged"].values
+            axes.plot(x[~good], y[~good], "x", color="red", markersize=9)
+            label = ""
+    axes.set(
+        xlabel=f"{against} [{x_name}]" if x_name else against,
+        ylabel=f"{variable.replace('_', ' ')} [{name}]" if name else variable.replace("_", " "),
+        title=table.attrs.get("title", ""),
+    )
+    axes.set_ylim(bottom=0.0)
+    axes.grid(alpha=0.3)
+    if compared:
+        axes.legend(fontsize="small")
+
+
+def _save(
+    drawings: Mapping[str, Callable[[Axes], None]],
+    directory: Path,
+    name: str,
+    formats: Iterable[str],
+) -> tuple[Path, ...]:
+    files: list[Path] = []
+    for ending, draw in drawings.items():
+
+        def fill(figure: Figure, draw: Callable[[Axes], None] = draw) -> None:
+            draw(figure.add_subplot())
+
+        files += save_figure(fill, directory / f"{name}-{ending}", formats)
+    return tuple(files)
+
+
+def save_figure(
+    draw: Callable[[Figure], None],
+    stem: Path,
+    formats: Iterable[str],
+    size: tuple[float, float] = (5.4, 4.2),
+) -> tuple[Path, ...]:
+    """Let ``draw`` fill a figure of ``size`` [inch], and write it as ``stem.format``.
+
+    Raises
+    ------
+    StorageError
+        A file cannot be written.
+    """
     import matplotlib.style
     from matplotlib.figure import Figure
 
     files = []
-    for ending, draw in FIGURES.items():
-        with matplotlib.style.context("default"):
-            figure = Figure(figsize=(5.4, 4.2), dpi=150, layout="constrained")
-            draw(result, figure.add_subplot())
-            for format_ in formats:
-                path = directory / f"{name}-{ending}.{format_}"
-                with reported(path):
-                    directory.mkdir(parents=True, exist_ok=True)
-                    figure.savefig(path)
-                files.append(path)
+    with matplotlib.style.context("default"):
+        figure = Figure(figsize=size, dpi=150, layout="constrained")
+        draw(figure)
+        for format_ in formats:
+            path = stem.with_name(f"{stem.name}.{format_}")
+            with reported(path):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                figure.savefig(path)
+            files.append(path)
     return tuple(files)
+
+
+def _each(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Dataset]:
+    """Yield the parts of a table at each combination of places along dimensions."""
+    for index in np.ndindex(*(table.sizes[d] for d in dimensions)):
+        yield table.isel(dict(zip(dimensions, index, strict=True)))
+
+
+def _unit_near_one(values: xr.DataArray) -> tuple[float, str]:
+    unit = values.attrs.get("units", "1")
+    return axis_unit(values.values, unit) if unit != "1" else (1.0, "")
+
+
+def _label(part: xr.Dataset, name: str) -> str:
+    value = part[name]
+    if value.dtype.kind not in "if":
+        return f"{name} = {value.item()}"
+    scale, unit = _unit_near_one(value)
+    return f"{name} = {value.item() * scale:.4g} {unit}".rstrip()
+
+
+def _colour(number: int, count: int) -> str | tuple[float, float, float, float]:
+    if count <= 10:
+        return f"C{number}"
+    import matplotlib
+
+    return matplotlib.colormaps["viridis"](0.9 * number / (count - 1))
 
 
 def _curve(
@@ -165,6 +281,11 @@ def _caption(result: Result, step: int) -> str:
     if not bool(data["converged"]):
         caption += ", NOT CONVERGED"
     return f"{title}\n{caption}" if title else caption
+
+
+def extent(x: Array, y: Array) -> tuple[float, float, float, float]:
+    """Return the outer edges of cells by their centres, as ``Axes.imshow`` takes them."""
+    return (*_edges(x), *_edges(y))
 
 
 def _edges(centres: Array) -> tuple[float, float]:

@@ -218,14 +218,14 @@ def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[
     for family, hook in _HOOK_OF_FAMILY.items():
 
         def register(component: type[Component], family: str = family) -> None:
-            components.append(Registered(component, _check(component, family), origin))
+            components.append(Registered(component, checked_type(component, family), origin))
 
         getattr(manager.hook, hook)(register=register)
     manager.hook.register_validations(register=suites.append)
     return components, suites
 
 
-def _check(component: Any, family: str) -> str:
+def checked_type(component: Any, family: str) -> str:
     """Return the type of a component class that keeps its contract, or raise PluginError."""
     base = FAMILIES[family]
     if not (isinstance(component, type) and issubclass(component, base)):

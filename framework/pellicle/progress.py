@@ -1,4 +1,4 @@
-"""What a run shows and hears while it iterates: a progress bar, and Ctrl-C."""
+"""What a run or a study shows and hears while it works: progress bars, and Ctrl-C."""
 
 from __future__ import annotations
 
@@ -6,15 +6,65 @@ import math
 import signal
 import threading
 import time
+from collections.abc import Callable
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, NamedTuple, Protocol, Self
 
-from .components import Monitor
+from .components import Monitor, Say, Task
 
 if TYPE_CHECKING:
+    import rich.console
     import rich.progress
 
 _BETWEEN_UPDATES = 0.1
+
+
+class Said(NamedTuple):
+    """Where a run is."""
+
+    step: int
+    """Load step that it works on, counted from 0."""
+    steps: int
+    iteration: int
+    excess: float
+    """Residual over the tolerance."""
+    done: float
+    """Steps finished, the one at work by its share."""
+
+
+class Bar(Protocol):
+    """What a run tells how far it is; a context in which the run is solved."""
+
+    def __enter__(self) -> object:
+        """Begin to listen."""
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Cease to listen."""
+
+    def step(self, index: int) -> Monitor:
+        """Return the monitor of a load step, counted from 0."""
+
+
+class Saying:
+    """Says where a run is, by a function, every now and then."""
+
+    def __init__(self, steps: int, say: Say) -> None:
+        self._steps, self._say = steps, say
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def step(self, index: int) -> Monitor:
+        """Return the monitor of a load step, counted from 0."""
+        return _monitor(index, self._steps, self._say)
 
 
 class Progress:
@@ -26,15 +76,15 @@ class Progress:
 
     def __init__(self, steps: int, enabled: bool) -> None:
         self._steps = steps
-        self._bar = _make_bar() if enabled else None
-        self._updated = 0.0
+        console = _terminal() if enabled else None
+        self._bar = None if console is None else _make_bar(console)
         self._interrupt = _Interrupt()
 
     def __enter__(self) -> Self:
         self._interrupt.hold()
         if self._bar is not None:
             self._bar.start()
-            self._task = self._bar.add_task("", total=float(self._steps), iteration=0, excess=0.0)
+            self._task = self._bar.add_task("", total=float(self._steps), said="")
         return self
 
     def __exit__(
@@ -51,30 +101,109 @@ class Progress:
 
     def step(self, index: int) -> Monitor:
         """Return the monitor of a load step, counted from 0."""
-        highest = 1.0
+        show = _monitor(index, self._steps, self._show)
 
         def monitor(iteration: int, excess: float) -> None:
             """Show an iteration; ``excess`` is the residual over the tolerance."""
-            nonlocal highest
             self._interrupt.check()
-            now = time.monotonic()
-            if self._bar is None or now - self._updated < _BETWEEN_UPDATES:
-                return
-            if not math.isfinite(excess):
-                return
-            self._updated = now
-            highest = max(highest, excess)
-            # Residuals fall exponentially, so the logarithm is what advances evenly.
-            done = 1 - math.log(max(excess, 1.0)) / math.log(highest) if highest > 1 else 0.0
-            self._bar.update(
-                self._task,
-                completed=index + done,
-                description=f"step {index + 1}/{self._steps}",
-                iteration=iteration,
-                excess=excess,
-            )
+            if self._bar is not None:
+                show(iteration, excess)
 
         return monitor
+
+    def _show(self, said: Said) -> None:
+        if self._bar is not None:
+            _update(self._bar, self._task, "", said)
+
+
+class StudyProgress:
+    """Shows a bar for a study and one for each run at work; without a terminal, a line a run.
+
+    Ctrl-C takes effect when a run next says something. Nothing is shown when not ``enabled``.
+    """
+
+    def __init__(self, total: int, done: int, enabled: bool) -> None:
+        self._total, self._done, self._failed = total, done, 0
+        self._console = _stderr() if enabled else None
+        is_terminal = self._console is not None and self._console.is_terminal
+        self._bar = _make_bar(self._console) if self._console and is_terminal else None
+        self._running: dict[str, tuple[rich.progress.TaskID, float]] = {}
+        self._interrupt = _Interrupt()
+
+    def __enter__(self) -> Self:
+        self._interrupt.hold()
+        if self._bar is not None:
+            self._bar.start()
+            self._all = self._bar.add_task(
+                "study", total=float(self._total), completed=self._done, said=self._count()
+            )
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+        self._interrupt.release()
+        if kind is None:
+            self._interrupt.check()
+
+    def report(self, task: Task, said: Said) -> None:
+        """Show where a run is."""
+        self._interrupt.check()
+        if self._bar is None:
+            return
+        if task.name not in self._running:
+            shown = self._bar.add_task("", total=float(said.steps), said="")
+            self._running[task.name] = shown, 0.0
+        shown, _ = self._running[task.name]
+        self._running[task.name] = shown, said.done / said.steps
+        _update(self._bar, shown, f"  {task.name}: ", said)
+        self._advance()
+
+    def finished(self, task: Task, verdict: str, failed: bool) -> None:
+        """Show that a run is done, and how it ended."""
+        self._done += 1
+        self._failed += failed
+        if self._bar is not None:
+            shown, _ = self._running.pop(task.name, (None, 0.0))
+            if shown is not None:
+                self._bar.remove_task(shown)
+            self._advance()
+        elif self._console is not None:
+            line = f"[{self._done}/{self._total}] {task.name}: {verdict}"
+            self._console.print(line, markup=False, highlight=False, soft_wrap=True)
+        self._interrupt.check()
+
+    def _advance(self) -> None:
+        if self._bar is not None:
+            at_work = sum(share for _, share in self._running.values())
+            self._bar.update(self._all, completed=self._done + at_work, said=self._count())
+
+    def _count(self) -> str:
+        left = self._total - self._done
+        return f"{self._done - self._failed} runs done, {self._failed} failed, {left} left"
+
+
+def _monitor(index: int, steps: int, tell: Callable[[Said], None]) -> Monitor:
+    """Return a monitor of a load step that tells where it is, but not at every iteration."""
+    highest, told = 1.0, 0.0
+
+    def monitor(iteration: int, excess: float) -> None:
+        nonlocal highest, told
+        now = time.monotonic()
+        if now - told < _BETWEEN_UPDATES or not math.isfinite(excess):
+            return
+        told = now
+        highest = max(highest, excess)
+        # Residuals fall exponentially, so the logarithm is what advances evenly.
+        share = 1 - math.log(max(excess, 1.0)) / math.log(highest) if highest > 1 else 0.0
+        tell(Said(index, steps, iteration, excess, index + share))
+
+    return monitor
 
 
 class _Interrupt:
@@ -108,8 +237,27 @@ class _Interrupt:
             raise KeyboardInterrupt
 
 
-def _make_bar() -> rich.progress.Progress | None:
+def _update(bar: rich.progress.Progress, task: rich.progress.TaskID, name: str, said: Said) -> None:
+    bar.update(
+        task,
+        completed=said.done,
+        description=f"{name}step {said.step + 1}/{said.steps}",
+        said=f"iteration {said.iteration} residual {said.excess:.1e} × tolerance",
+    )
+
+
+def _stderr() -> rich.console.Console:
     import rich.console
+
+    return rich.console.Console(stderr=True)
+
+
+def _terminal() -> rich.console.Console | None:
+    console = _stderr()
+    return console if console.is_terminal else None
+
+
+def _make_bar(console: rich.console.Console) -> rich.progress.Progress:
     from rich.progress import (
         BarColumn,
         Progress,
@@ -118,17 +266,15 @@ def _make_bar() -> rich.progress.Progress | None:
         TimeRemainingColumn,
     )
 
-    console = rich.console.Console(stderr=True)
-    if not console.is_terminal:
-        return None
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
-        TextColumn("iteration {task.fields[iteration]}"),
-        TextColumn("residual {task.fields[excess]:.1e} × tolerance"),
+        TextColumn("{task.fields[said]}"),
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),
         console=console,
         transient=True,
+        # A study's runs take minutes each: a speed of the last half minute means nothing.
+        speed_estimate_period=3600,
     )

@@ -76,22 +76,7 @@ class Result:
     @classmethod
     def join(cls, steps: Sequence[xr.Dataset]) -> Result:
         """Return the result made of datasets of one step each."""
-        import xarray as xr
-
-        if len(steps) == 1:
-            return cls(steps[0])
-        # Coordinates are the same objects in all steps, so nothing needs comparing.
-        return cls(
-            xr.concat(
-                steps,
-                "step",
-                data_vars="all",
-                coords="minimal",
-                compat="override",
-                join="override",
-                combine_attrs="override",
-            )
-        )
+        return cls(storage.joined(steps))
 
     @property
     def configuration(self) -> dict[str, Any]:

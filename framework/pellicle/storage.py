@@ -1,30 +1,38 @@
 """The one HDF5 layout: NetCDF-4 through h5netcdf, one slab along ``step`` per load step.
 
 A file is never changed in place: each version is written aside, flushed to disk and renamed, so
-that whatever ends the process, the name holds a whole file with every step finished before.
+that whatever ends the process, every name holds a whole file. Rewriting a file for each step would
+take a time quadratic in the steps, so new ones wait in small files beside it, its tails, until they
+are as many as its own; then, and at the end, they are joined to it. Reading joins them too.
 """
 
 from __future__ import annotations
 
+import glob
 import os
+import re
 import shutil
+import socket
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from .errors import StorageError
 
 if TYPE_CHECKING:
+    import h5py
     import xarray as xr
 
 SCHEMA_VERSION = 1
 """Version of the layout, in the attribute ``schema_version`` of every file."""
+_SMALL = 4_000_000
+"""Files that are copied for each step [bytes]: it takes no longer than beginning another one."""
 
 
 def write(dataset: xr.Dataset, path: Path) -> None:
-    """Write ``dataset`` (with a dimension ``step``) as a new file, in place of an old one.
+    """Write ``dataset``, steps of a result or the table of a study, in place of an old file.
 
     Raises
     ------
@@ -34,35 +42,46 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     # Fields compress two- to tenfold at the lowest level; higher ones only cost time.
     packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
     encoding: dict[Any, Any] = {
-        name: packed for name, variable in dataset.data_vars.items() if variable.ndim > 1
+        name: packed for name, variable in dataset.data_vars.items() if "x" in variable.dims
     }
-    with _aside(path) as aside:
+    # Only what may grow needs a dimension that can: h5netcdf is slow with these.
+    grows = ["step"] if "x" in dataset.dims and path.suffix != ".tail" else []
+    with aside(path) as part:
         dataset.assign_attrs(schema_version=SCHEMA_VERSION).to_netcdf(
-            aside, engine="h5netcdf", unlimited_dims=["step"], encoding=encoding
+            part, engine="h5netcdf", unlimited_dims=grows, encoding=encoding
         )
+        # While the old file still has the name: its tails must never continue the new one.
+        for tail in _tails(path):
+            tail.unlink()
 
 
 def append(dataset: xr.Dataset, path: Path) -> None:
-    """Add the steps of ``dataset`` to the file that `write` made.
+    """Add the steps of ``dataset`` to the result that `write` began.
 
     Raises
     ------
     StorageError
         The file cannot be read or written.
     """
-    import h5netcdf
+    first, *tails = _parts(path)
+    own, waiting = _steps(first), sum(map(_steps, tails))
+    if waiting + dataset.sizes["step"] >= own or path.stat().st_size < _SMALL:
+        _join(path, tails, dataset)
+    else:
+        write(dataset, path.with_name(f".{path.name}.{own + waiting:08d}.tail"))
 
-    with _aside(path) as aside:
-        shutil.copyfile(path, aside)
-        with h5netcdf.File(aside, "a") as file:
-            done = file.dimensions["step"].size
-            total = done + dataset.sizes["step"]
-            file.resize_dimension("step", total)
-            for name, variable in dataset.variables.items():
-                if "step" in variable.dims:
-                    values = variable.values
-                    stored = file.variables[name]
-                    stored[done:total] = values.astype("i1") if values.dtype == bool else values
+
+def close(path: Path) -> None:
+    """Make the result that `write` began and its tails one file.
+
+    Raises
+    ------
+    StorageError
+        The file cannot be read or written.
+    """
+    _, *tails = _parts(path)
+    if tails:
+        _join(path, tails)
 
 
 def read(path: Path) -> xr.Dataset:
@@ -73,43 +92,113 @@ def read(path: Path) -> xr.Dataset:
     StorageError
         No such file, not a result of pellicle, damaged, or of another schema version.
     """
-    with _opened(path) as dataset:
-        return dataset.load()
+    return joined([_read_one(part) for part in _parts(path)])
 
 
-def configuration(path: Path) -> str:
-    """Return the configuration whose result a file holds, without reading its fields.
+def scalars(path: Path) -> xr.Dataset:
+    """Return what a result file says of each step, without its fields.
 
     Raises
     ------
     StorageError
         As for `read`.
     """
-    with _opened(path) as dataset:
-        return str(dataset.attrs["configuration"])
+    parts = []
+    for part in _parts(path):
+        with opened(part) as dataset:
+            parts.append(dataset.drop_dims(["x", "y"]).load().drop_encoding())
+    return joined(parts)
+
+
+def attributes(path: Path) -> dict[str, Any]:
+    """Return where a result comes from, without reading its steps.
+
+    Raises
+    ------
+    StorageError
+        As for `read`.
+    """
+    with opened(path) as dataset:
+        return dict(dataset.attrs)
+
+
+def field(path: Path, name: str, step: int, cells: tuple[Any, Any]) -> Any:
+    """Return cells of one field of one step of a result file, without reading the others.
+
+    Raises
+    ------
+    StorageError
+        As for `read`.
+    """
+    for part in _parts(path):
+        with opened(part) as dataset:
+            if step < dataset.sizes["step"]:
+                return dataset[name][(step, *cells)].values
+            step -= dataset.sizes["step"]
+    raise StorageError(f"{path} does not hold that many steps; run it again")
+
+
+def joined(steps: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Return datasets of consecutive steps as one."""
+    import xarray as xr
+
+    if len(steps) == 1:
+        return steps[0]
+    # Coordinates are the same in all steps, so nothing needs comparing.
+    return xr.concat(
+        steps,
+        "step",
+        data_vars="all",
+        coords="minimal",
+        compat="override",
+        join="override",
+        combine_attrs="override",
+    )
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[xr.Dataset]:
-    """Yield the dataset in a file, its values not yet read."""
+def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[xr.Dataset]:
+    """Yield the dataset in a file of a result or of a study's table, its values not yet read.
+
+    Raises
+    ------
+    StorageError
+        As for `read`.
+    """
     import xarray as xr
 
     if not path.is_file():
         raise StorageError(f"{path}: no such file; give a result file (.h5) that pellicle wrote")
+    # Phony dimensions only let a foreign file open far enough to be told apart.
+    with (
+        _readable(path),
+        xr.open_dataset(path, engine="h5netcdf", phony_dims="sort") as dataset,
+    ):
+        version = dataset.attrs.pop("schema_version", None)
+        if version is None or not {"configuration", "versions"} <= dataset.attrs.keys():
+            raise StorageError(
+                f"{path}: not a result of pellicle; give an .h5 file that pellicle wrote"
+            )
+        if version != SCHEMA_VERSION:
+            raise StorageError(
+                f"{path}: schema version {version}, and this pellicle reads {SCHEMA_VERSION}; "
+                f"read it with what wrote it ({dataset.attrs['versions']}), or run it again"
+            )
+        if kind == "result" and "axes" in dataset.attrs:
+            raise StorageError(
+                f"{path}: the table of a study, not a result; open it with xarray, or give one "
+                "of the results in runs/"
+            )
+        if kind == "table" and "axes" not in dataset.attrs:
+            raise StorageError(f"{path}: a result, not the table of a study")
+        yield dataset
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    """Turn whatever a damaged file raises into a StorageError that says what to do."""
     try:
-        # Phony dimensions only let a foreign file open far enough to be told apart.
-        with xr.open_dataset(path, engine="h5netcdf", phony_dims="sort") as dataset:
-            version = dataset.attrs.pop("schema_version", None)
-            if version is None or not {"configuration", "versions"} <= dataset.attrs.keys():
-                raise StorageError(
-                    f"{path}: not a result of pellicle; give an .h5 file that pellicle wrote"
-                )
-            if version != SCHEMA_VERSION:
-                raise StorageError(
-                    f"{path}: schema version {version}, and this pellicle reads {SCHEMA_VERSION}; "
-                    f"read it with what wrote it ({dataset.attrs['versions']}), or run it again"
-                )
-            yield dataset
+        yield
     # The layers below raise nearly anything for a file that is damaged or no HDF5.
     except (OSError, ValueError, LookupError, RuntimeError, AttributeError, TypeError) as error:
         reason = str(error).partition("\n")[0]
@@ -118,8 +207,71 @@ def _opened(path: Path) -> Iterator[xr.Dataset]:
         ) from None
 
 
+def _read_one(path: Path) -> xr.Dataset:
+    with opened(path) as dataset:
+        return dataset.load().drop_encoding()
+
+
+def _steps(path: Path) -> int:
+    """Return how many steps a file of its own holds."""
+    import h5py
+
+    with _readable(path), h5py.File(path) as file:
+        return int(file["step"].size)
+
+
+def _tails(path: Path) -> list[Path]:
+    return sorted(path.parent.glob(f".{glob.escape(path.name)}.*.tail"))
+
+
+def _parts(path: Path) -> list[Path]:
+    """Return the files that together are a result: itself, and the tails that continue it.
+
+    A tail that does not was joined by a process that ended before it could remove it.
+    """
+    parts = [path]
+    if tails := _tails(path):
+        held = _steps(path)
+        for tail in tails:
+            if int(tail.name.split(".")[-2]) == held:
+                parts.append(tail)
+                held += _steps(tail)
+    return parts
+
+
+def _join(path: Path, tails: Sequence[Path], *more: xr.Dataset) -> None:
+    """Replace a file by itself, its tails and more steps."""
+    import h5py
+
+    with aside(path) as part:
+        shutil.copyfile(path, part)
+        with h5py.File(part, "r+") as file:
+            for tail in tails:
+                with _readable(tail), h5py.File(tail) as source:
+                    _extend(file, {name: source[name][:] for name in file if _grows(file[name])})
+            for dataset in more:
+                values = {str(name): each.values for name, each in dataset.variables.items()}
+                _extend(file, {name: values[name] for name in file if _grows(file[name])})
+    with reported(path):
+        for tail in _tails(path):
+            tail.unlink()
+
+
+def _grows(stored: h5py.Dataset) -> bool:
+    return bool(stored.maxshape[:1] == (None,))
+
+
+def _extend(file: h5py.File, values: Mapping[str, Any]) -> None:
+    done = file["step"].size
+    for name, added in values.items():
+        file[name].resize(done + len(added), axis=0)
+        file[name][done:] = added
+
+
 def check_writable(path: Path) -> None:
     """Find out before computing whether a file can be written at ``path``.
+
+    What processes that have died left half-written in its folder is removed.
 
     Raises
     ------
@@ -130,6 +282,10 @@ def check_writable(path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path.parent):
             pass
+        for part in path.parent.glob(".*.part"):
+            made_by = re.search(r"\.([^.]+)\.(\d+)\.part$", part.name)
+            if made_by and made_by[1] == _host() and not _alive(int(made_by[2])):
+                part.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -144,15 +300,32 @@ def reported(path: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _aside(path: Path) -> Iterator[Path]:
+def aside(path: Path) -> Iterator[Path]:
     """Yield a name to write to; rename it to ``path`` when whole, leave nothing when not."""
-    aside = path.with_name(f".{path.name}.{os.getpid()}.part")
+    part = path.with_name(f".{path.name}.{_host()}.{os.getpid()}.part")
     with reported(path):
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            yield aside
-            with aside.open("rb+") as file:
+            yield part
+            with part.open("rb+") as file:
                 os.fsync(file.fileno())
-            aside.replace(path)
+            part.replace(path)
         finally:
-            aside.unlink(missing_ok=True)
+            part.unlink(missing_ok=True)
+
+
+def _host() -> str:
+    return socket.gethostname().replace(".", "-")
+
+
+def _alive(pid: int) -> bool:
+    """Whether a process of this machine lives; on Windows, where asking would end it, yes."""
+    if os.name == "nt":
+        return True
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass
+    return True

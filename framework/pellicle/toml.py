@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
-from .errors import ConfigError, shown
+from .errors import ConfigError
 
 
 def read_toml(path: Path) -> dict[str, Any]:
@@ -36,41 +37,18 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise ConfigError(f"{path}: not valid TOML: {reason}; correct it there") from None
 
 
-def override(data: dict[str, Any], text: str) -> None:
-    """Apply ``a.b=value`` to ``data``; the value is TOML, or a plain text where it is not.
+def parse_override(text: str) -> tuple[str, Any]:
+    """Return key and value of ``a.b=value``; the value is TOML, or a plain text where it is not.
 
     Raises
     ------
     ConfigError
-        The text is not of that form, or leads where there is no table.
+        The text is not of that form.
     """
     key, equals, value = text.partition("=")
-    names = key.strip().split(".")
-    if not equals or not all(names):
+    if not equals or not all(key.strip().split(".")):
         raise ConfigError(f"--set {text!r} is not of the form a.b=value, e.g. grid.points=128")
-    at: Any = data
-    for depth, name in enumerate(names):
-        where = ".".join(names[:depth])
-        if isinstance(at, list):
-            if not name.isdigit() or int(name) >= len(at):
-                raise ConfigError(
-                    f"--set {text!r}: {where} has no entry {name}; give one of its {len(at)}, "
-                    "counted from 0"
-                )
-            at_key: Any = int(name)
-        elif isinstance(at, dict):
-            at_key = name
-        else:
-            raise ConfigError(
-                f"--set {text!r}: {where} = {shown(at)} is not a table; replace it as a whole, "
-                f"--set {where}=…"
-            )
-        if depth == len(names) - 1:
-            at[at_key] = _value(value)
-        elif isinstance(at, dict):
-            at = at.setdefault(at_key, {})
-        else:
-            at = at[at_key]
+    return key.strip(), _value(value)
 
 
 def _value(text: str) -> Any:
@@ -85,16 +63,29 @@ def toml_lines(table: Mapping[str, Any], path: str = "") -> Iterable[str]:
     tables = {k: v for k, v in table.items() if _is_table(v)}
     for key, value in table.items():
         if key not in tables:
-            # JSON's text is TOML's, but for this one character.
-            said = json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-            yield f"{key} = {said}\n"
+            yield f"{_key(key)} = {_inline(value)}\n"
     for key, value in tables.items():
-        inner = f"{path}{key}"
+        inner = f"{path}{_key(key)}"
         for entry in value if isinstance(value, list) else [value]:
             yield f"\n[[{inner}]]\n" if isinstance(value, list) else f"\n[{inner}]\n"
             yield from toml_lines(entry, f"{inner}.")
 
 
 def _is_table(value: object) -> bool:
-    is_list_of_tables = isinstance(value, list) and value and isinstance(value[0], dict)
-    return isinstance(value, dict) or bool(is_list_of_tables)
+    is_list = isinstance(value, list) and value
+    return isinstance(value, dict) or (
+        bool(is_list) and all(isinstance(entry, dict) for entry in cast("list[Any]", value))
+    )
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[\w-]+", name, re.ASCII) else _inline(name)
+
+
+def _inline(value: Any) -> str:
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{_key(k)} = {_inline(v)}' for k, v in value.items())}}}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_inline, value))}]"
+    # JSON's text is TOML's, but for this one character.
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -26,6 +26,8 @@ _EXAMPLES = {
     "m": "10 um",
     "Pa": "10 kPa",
     "N/m": "50 mN/m",
+    "N*m": "1 pN*m",
+    "Pa/m": "1 kPa/mm",
     "N": "2 uN",
     "rad": "70 degree",
 }
@@ -42,6 +44,24 @@ def _registry() -> pint.UnitRegistry[Any]:
 
     registry: pint.UnitRegistry[Any] = pint.application_registry.get()  # type: ignore[no-untyped-call]
     return registry
+
+
+def ramp(start: float, stop: float, num: int, *, log: bool = False) -> list[float]:
+    """Return ``num`` values from ``start`` to ``stop``, evenly spaced, or their logarithms so."""
+    shares = [i / (num - 1) for i in range(num)]
+    values = (
+        [start * (stop / start) ** share for share in shares]
+        if log
+        else [(start * (num - 1 - i) + stop * i) / (num - 1) for i in range(num)]
+    )
+    # Fifteen digits are what a user can have meant: 3e-05, not 3.0000000000000004e-05.
+    return [float(f"{value:.15g}") for value in values]
+
+
+def split(text: str) -> tuple[float, str] | None:
+    """Return number and unit of a text like ``"10 kPa"``; None if it is none."""
+    match = _NUMBER_AND_UNIT.fullmatch(text)
+    return (float(match[1]), match[2]) if match else None
 
 
 @dataclass(frozen=True)
@@ -181,6 +201,10 @@ Pressure = Annotated[float, Quantity("Pa", at_least=0)]
 """A pressure ≥ 0 [Pa]."""
 Tension = Annotated[float, Quantity("N/m", at_least=0)]
 """A surface tension ≥ 0 [N/m]."""
+BendingStiffness = Annotated[float, Quantity("N*m", at_least=0)]
+"""The bending stiffness of a plate ≥ 0 [N*m]."""
+FoundationStiffness = Annotated[float, Quantity("Pa/m", above=0)]
+"""A stiffness per area > 0 [Pa/m]."""
 Force = Annotated[float, Quantity("N", at_least=0)]
 """A force ≥ 0 [N]."""
 PoissonsRatio = Annotated[float, Quantity("1", above=-1, at_most=0.5)]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from .components import Case
 from .config import Run
-from .orchestrator import execute
+from .orchestrator import solve
 from .plugins import registry
 from .result import Result
 
@@ -47,8 +47,7 @@ def validate(cases: Iterable[Case] | None = None) -> Iterator[Verdict]:
         key = json.dumps(case.configuration, sort_keys=True)
         if key not in solved:
             # Only the latest run is kept: cases that share one are registered in a row.
-            result, _ = execute(Run(**case.configuration), None)
-            solved = {key: result}
+            solved = {key: solve(Run(**case.configuration))}
         result = solved[key]
         yield Verdict(case, case.computed(result), result.converged)
 

@@ -4,7 +4,8 @@ Prints for each case: applications of the operator on the finest grid, seconds, 
 whole solve to the bare scipy.fft pairs in double precision of all its applications of operator and
 preconditioner on all its grids, the same to pairs in the precision that each application has, the
 set-up in operator applications, and the peak memory in arrays of the transform's real size. Each
-row is a process of its own. Ratios are what is comparable: the machine is not.
+row is a process of its own; one thread is timed by its processor time. Ratios are what is
+comparable: the machine is not.
 
     python tests/benchmarks/cost.py                                  # active_set, N = 256 … 1024
     python tests/benchmarks/cost.py --solvers active_set conjugate_gradient --points 256 512
@@ -52,9 +53,9 @@ def problem(case: str, points: int, tension: float, cutoff: float | None = None)
         "smooth": lambda: pl.indenter("paraboloid", radius=2.236),
     }[case]()
     profile = indenter.profile(*grid.coordinates())
-    started = time.perf_counter()
+    started = time.process_time()
     operator = make_operator(kernel, grid)
-    setup = time.perf_counter() - started
+    setup = time.process_time() - started
     if case == "rough":
         slope = np.hypot(*np.gradient(profile, 1 / points))
         force = 0.1 * float(np.sqrt(np.mean(slope**2)))
@@ -79,19 +80,20 @@ def measure(
         given, tolerance, setup = problem(case, points, tension, cutoff)
         operator = given.operator
         operator(np.ones(given.grid.shape))
-        one = _median(lambda: operator(np.ones(given.grid.shape)))
+        one = _median(lambda: operator(np.ones(given.grid.shape)), threads)
         transforms: Counter[tuple[tuple[int, ...], str]] = Counter()
         _count(type(operator), "_apply", transforms, _plane_of_operator)
         _count(Preconditioner, "_stiffen", transforms, lambda it: it._plane)
         used = operator.applications
-        started = time.perf_counter()
+        clock = time.process_time if threads == 1 else time.perf_counter
+        started = clock()
         solution = pl.solver(solver, tolerance=tolerance).solve(given, None, lambda *_: None)
-        seconds = time.perf_counter() - started
+        seconds = clock() - started
         used = operator.applications - used
         peak = _peak() - before
         double, own = (
             sum(
-                number * _median(_bare_pair(shape, dtype if in_own else "float64"))
+                number * _median(_bare_pair(shape, dtype if in_own else "float64"), threads)
                 for (shape, dtype), number in list(transforms.items())
             )
             for in_own in (False, True)
@@ -137,12 +139,13 @@ def _bare_pair(shape: tuple[int, ...], dtype: str) -> Callable[[], object]:
     return lambda: scipy.fft.irfft2(scipy.fft.rfft2(field), s=shape)
 
 
-def _median(work: Callable[[], object], repeats: int = 5) -> float:
+def _median(work: Callable[[], object], threads: int, repeats: int = 5) -> float:
+    clock = time.process_time if threads == 1 else time.perf_counter
     times = []
     for _ in range(repeats):
-        started = time.perf_counter()
+        started = clock()
         work()
-        times.append(time.perf_counter() - started)
+        times.append(clock() - started)
     return sorted(times)[len(times) // 2]
 
 

@@ -11,6 +11,33 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
     "kernel": {
         "half_space": {"reduced_modulus": "10 kPa"},
         "tensed_membrane": {"youngs_modulus": 7500.0, "poissons_ratio": 0.5, "tension": "1 N/m"},
+        "bending_skin": {"reduced_modulus": 1e4, "tension": "0.1 N/m", "bending": "100 pN*m"},
+        "gurtin_murdoch": {
+            "youngs_modulus": "9 kPa",
+            "poissons_ratio": 0.3,
+            "surface_stiffness": "2 N/m",
+            "tension": "0.5 N/m",
+        },
+        "bonded_layer": {
+            "reduced_modulus": "10 kPa",
+            "poissons_ratio": 0.5,
+            "thickness": "0.2 mm",
+        },
+        "frictionless_layer": {
+            "youngs_modulus": "9 kPa",
+            "poissons_ratio": 0.3,
+            "thickness": "0.1 mm",
+        },
+        "winkler": {"foundation": "100 Pa/um"},
+        "coated": {
+            "tension": "0.2 N/m",
+            "substrate": {
+                "type": "bonded_layer",
+                "youngs_modulus": "10 kPa",
+                "poissons_ratio": 0.4,
+                "thickness": "0.1 mm",
+            },
+        },
     },
     "indenter": {
         "paraboloid": {"radius": "1 mm"},
@@ -28,6 +55,22 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
     },
     "solver": {"active_set": {"tolerance": 1e-9}, "conjugate_gradient": {"tolerance": 1e-9}},
     "correction": {"yastrebov": {}},
-    "output": {"hdf5": {}, "csv": {}, "figures": {"formats": ["png", "svg"]}},
-    "executor": {},
+    "output": {
+        "hdf5": {},
+        "csv": {},
+        "figures": {"formats": ["png", "svg"]},
+        "curves": {
+            "x": "depth / indenter.radius",
+            "y": ["contact_area", "contact_area_yastrebov"],
+            "series": ["counted", "corrected"],
+            "log": ["x"],
+            "reference": "axisymmetric",
+            "published": [{"label": "by hand", "x": [0.005], "y": [2e-8]}],
+            "formats": ["png", "svg"],
+        },
+        "profiles": {"by": "step", "label": "{depth * 1e6} µm", "reference": "axisymmetric"},
+        "maps": {"field": "displacement - depth - gap", "name": "indenter"},
+        "compliance": {"x": "q * indenter.radius"},
+    },
+    "executor": {"serial": {"threads": 1}, "processes": {"workers": 2}, "dask": {"workers": 2}},
 }

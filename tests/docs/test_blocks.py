@@ -20,8 +20,9 @@ from blocks import PAGES, ROOT, Block, blocks
 from typer.testing import CliRunner
 
 import pellicle as pl
+from pellicle import axes
 from pellicle.cli import app
-from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
+from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
 
 LANGUAGES = {"python", "pycon", "toml", "console", "sh"}
 DIRECTIVES = {"{eval-rst}", "{toctree}"}
@@ -38,6 +39,7 @@ _TABLES: dict[str, Any] = {
     "solver": Solver,
     "corrections": AreaCorrection,
     "outputs": Output,
+    "executor": Executor,
 }
 _OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 _ONE_THREAD = 1
@@ -72,7 +74,9 @@ class Reader:
 
     def python(self, block: Block) -> None:
         """Execute a block in the namespace of its page."""
-        exec(compile(block.text, str(block), "exec", dont_inherit=True), self.names)
+        code = compile(block.text, str(block), "exec", dont_inherit=True)
+        if "untested" not in block.comments:
+            exec(code, self.names)
 
     def pycon(self, block: Block) -> None:
         """Execute an interactive session and compare what it shows."""
@@ -84,10 +88,13 @@ class Reader:
         assert not runner.summarize(verbose=False).failed, "".join(said)
 
     def toml(self, block: Block) -> None:
-        """Solve a complete run; check the tables of a part of one."""
+        """Solve a complete run or study; check the tables of a part of one."""
         data = tomllib.loads(block.text)
         if "project" in data:
             assert block.comments["file"] == "pyproject.toml"
+        elif {"grid", "study"} <= data.keys():
+            table = pl.run_study(data, progress=False, threads=_ONE_THREAD)
+            assert table["converged"].all(), block
         elif "grid" in data:
             run = pl.Run(**data)
             result = pl.run(
@@ -177,6 +184,9 @@ def check_part(data: dict[str, Any]) -> None:
             pl.Grid(**table)
         elif name == "loading":
             pl.Loading(**table)
+        elif name == "study":
+            check_part({key: part for key, part in table.items() if key == "executor"})
+            assert all(axes.expand(table.get("vary", {})).values())
         else:
             for entry in table if isinstance(table, list) else [table]:
                 pl.registry().make(_TABLES[name], entry)
@@ -225,11 +235,3 @@ def test_study_of_the_readme_is_the_starter_file() -> None:
     """What the README runs is what ``pellicle new`` writes."""
     starter = Path(pl.__file__).with_name("starter.toml")
     assert (ROOT / "docs/studies/indent.toml").read_bytes() == starter.read_bytes()
-
-
-@pytest.mark.parametrize(
-    "path", sorted((ROOT / "docs/studies").glob("*.toml")), ids=lambda p: p.name
-)
-def test_study_is_valid(path: Path) -> None:
-    """Every file in docs/studies makes a run."""
-    pl.Run.from_toml(path)

@@ -377,7 +377,7 @@ def test_all_problems_at_once(refuse: Callable[..., str]) -> None:
         ("points", ["--set 'points' is not of the form a.b=value", "grid.points=128"]),
         ("=1", ["--set '=1' is not of the form a.b=value"]),
         ("grid..points=1", ["--set 'grid..points=1' is not of the form"]),
-        ("title.text=1", ["title = 'bad input' is not a table", "--set title=…"]),
+        ("title.text=1", ["title = 'bad input' is not a table", "replace it as a whole: title"]),
         ("grid.points.0=1", ["grid.points = 16 is not a table"]),
         ("corrections.1.type=1", ["corrections has no entry 1", "its 1, counted from 0"]),
         ("corrections.first.type=1", ["corrections has no entry first"]),

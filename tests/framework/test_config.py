@@ -235,11 +235,21 @@ def test_schema_is_one() -> None:
     Draft202012Validator(pl.schema()).validate(_starter())
 
 
+def test_schema_allows_components_within_components() -> None:
+    """A kernel that holds a kernel, itself one that holds a kernel, is as in a file."""
+    inner: dict[str, Any] = {"type": "half_space", "reduced_modulus": "1 kPa"}
+    for _ in range(2):
+        inner = {"type": "coated", "tension": "1 mN/m", "substrate": inner}
+    Draft202012Validator(pl.schema()).validate(_starter() | {"kernel": inner})
+
+
 @pytest.mark.parametrize(
     "change",
     [
         {"kernel": {"type": "nope"}},
         {"kernel": {"type": "half_space", "reduced_modulus": -1}},
+        {"kernel": {"type": "coated", "substrate": {"type": "nope"}}},
+        {"kernel": {"type": "coated", "substrate": {"type": "half_space", "reduced_modulus": -1}}},
         {"indenter": {"type": "paraboloid"}},
         {"indenter": {"type": "paraboloid", "radius": "1"}},
         {"grid": {"points": 16, "size": 1, "boundary": "open"}},

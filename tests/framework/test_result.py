@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
+from pellicle.plugins import Origin, registry
 
 CONFIGURATION: dict[str, Any] = {
     "title": "τ₀",
@@ -48,6 +50,20 @@ def test_provenance(result: pl.Result) -> None:
     assert attributes["title"] == "τ₀"
     assert f"pellicle {pl.__version__}" in attributes["versions"]
     assert attributes["date"].startswith("20")
+
+
+def test_provenance_of_components_within_components(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The versions name the package of a kernel that another kernel holds."""
+    own = registry()
+    inner = own.components["kernel"]["half_space"]
+    foreign = replace(inner, origin=Origin("kernel.half_space", "other-package", "9.9"))
+    kernels = {**own.components["kernel"], "half_space": foreign}
+    theirs = replace(own, components={**own.components, "kernel": kernels})
+    monkeypatch.setattr("pellicle.orchestrator.registry", lambda: theirs)
+    substrate = {"type": "half_space", "reduced_modulus": "10 kPa"}
+    coated = CONFIGURATION | {"kernel": {"type": "coated", "substrate": substrate}, "outputs": []}
+    versions = pl.run(coated, progress=False).dataset.attrs["versions"]
+    assert "other-package 9.9" in versions.split(", ")
 
 
 def test_converged(result: pl.Result) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import h5netcdf
 import h5py
 import numpy as np
 import pytest
@@ -71,6 +70,7 @@ def test_readable_by_others(path: Path) -> None:
     """The file opens with h5py and with xarray's own NetCDF reader."""
     storage.write(steps(0, 1), path)
     storage.append(steps(2), path)
+    storage.close(path)
     with h5py.File(path) as file:
         assert file["pressure"].shape == (3, 5, 4)
         assert file["pressure"].attrs["units"] == "Pa"
@@ -80,7 +80,7 @@ def test_readable_by_others(path: Path) -> None:
         assert dict(opened.sizes) == {"step": 3, "x": 5, "y": 4}
 
 
-def _fail_to_append(self: object, name: str, size: int) -> None:
+def _fail_to_append(self: object, size: int, axis: int) -> None:
     raise OSError(28, "No space left on device")
 
 
@@ -88,7 +88,7 @@ def test_failed_append_leaves_the_file_whole(path: Path, monkeypatch: pytest.Mon
     """A failure while appending leaves the file of before, and nothing beside it."""
     storage.write(steps(0, 1), path)
     before = path.read_bytes()
-    monkeypatch.setattr(h5netcdf.File, "resize_dimension", _fail_to_append)
+    monkeypatch.setattr(h5py.Dataset, "resize", _fail_to_append)
     with pytest.raises(StorageError, match=r"cannot be written \(No space left on device\)"):
         storage.append(steps(2), path)
     assert path.read_bytes() == before
@@ -128,13 +128,13 @@ def test_check_writable(tmp_path: Path) -> None:
         storage.check_writable(tmp_path / "file" / "c.h5")
 
 
-def test_configuration(path: Path) -> None:
-    """The configuration is read without the fields, and only from a result."""
+def test_attributes(path: Path) -> None:
+    """The attributes are read without the fields, and only from a result."""
     storage.write(steps(0), path)
-    assert storage.configuration(path) == ATTRIBUTES["configuration"]
+    assert storage.attributes(path) == ATTRIBUTES
     path.write_bytes(b"junk")
     with pytest.raises(StorageError, match="not a readable result file"):
-        storage.configuration(path)
+        storage.attributes(path)
 
 
 def test_other_schema_version(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -144,3 +144,41 @@ def test_other_schema_version(path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.undo()
     with pytest.raises(StorageError, match=r"version 99, and this pellicle reads 1.*pellicle 0"):
         storage.read(path)
+
+
+def test_tails(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a large result each step is written about twice, and every one is there after each."""
+    monkeypatch.setattr(storage, "_SMALL", 0)
+    joins: list[int] = []
+    plain = storage._join
+    monkeypatch.setattr(
+        storage, "_join", lambda path, *more: (joins.append(len(more[0])), plain(path, *more))
+    )
+    storage.write(steps(0), path)
+    for index in range(1, 20):
+        storage.append(steps(index), path)
+        assert storage.read(path)["step"].values.tolist() == list(range(index + 1))
+        assert storage.scalars(path).sizes == {"step": index + 1}
+    assert joins == [0, 1, 3, 7]
+    assert storage.field(path, "pressure", 18, (2, 3)) == steps(18)["pressure"].values[0, 2, 3]
+    whole = xr.concat([steps(index) for index in range(20)], "step", data_vars="all")
+    xr.testing.assert_identical(storage.read(path), whole)
+    storage.close(path)
+    assert list(path.parent.iterdir()) == [path]
+    xr.testing.assert_identical(storage.read(path), whole)
+
+
+def test_tails_that_were_joined_already(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process that dies before it removes what it joined leaves no step twice."""
+    monkeypatch.setattr(storage, "_SMALL", 0)
+    storage.write(steps(0, 1, 2), path)
+    storage.append(steps(3), path)
+    (tail,) = (other for other in path.parent.iterdir() if other != path)
+    content = tail.read_bytes()
+    storage.close(path)
+    tail.write_bytes(content)
+    assert storage.read(path)["step"].values.tolist() == [0, 1, 2, 3]
+    storage.append(steps(4), path)
+    assert storage.read(path)["step"].values.tolist() == [0, 1, 2, 3, 4]
+    storage.write(steps(0), path)
+    assert list(path.parent.iterdir()) == [path]

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -12,23 +13,27 @@ import pytest
 import pellicle as pl
 
 SOURCE = Path(__file__).with_name("third_party")
-Pellicle = Callable[..., subprocess.CompletedProcess[str]]
+SYMBOL_ONLY = Path(__file__).with_name("symbol_only")
+CELLS = Path(__file__).parents[1] / "data" / "kernel_cells.csv"
+Command = Callable[..., subprocess.CompletedProcess[str]]
 
 
 @pytest.fixture(scope="module")
-def pellicle(tmp_path_factory: pytest.TempPathFactory) -> Pellicle:
-    """Return the command ``pellicle`` of an environment in which the package is installed."""
+def python(tmp_path_factory: pytest.TempPathFactory) -> Command:
+    """Return the interpreter of an environment in which the packages are installed."""
     wheels, site = tmp_path_factory.mktemp("wheels"), tmp_path_factory.mktemp("site")
     build = [sys.executable, "-m", "build", "--wheel", "--no-isolation", f"--outdir={wheels}"]
-    subprocess.run([*build, SOURCE], check=True, capture_output=True)
-    (wheel,) = wheels.iterdir()
+    for source in (SOURCE, SYMBOL_ONLY):
+        subprocess.run([*build, source], check=True, capture_output=True)
     install = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index"]
-    subprocess.run([*install, f"--target={site}", wheel], check=True, capture_output=True)
+    subprocess.run(
+        [*install, f"--target={site}", *wheels.iterdir()], check=True, capture_output=True
+    )
     environment = {k: v for k, v in os.environ.items() if not k.startswith("PELLICLE_")}
 
     def run(*arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [sys.executable, "-m", "pellicle", *arguments],
+            [sys.executable, *arguments],
             env=environment | {"PYTHONPATH": str(site), "PYTHONUTF8": "1"} | more,
             cwd=tmp_path_factory.mktemp("empty"),
             capture_output=True,
@@ -39,7 +44,13 @@ def pellicle(tmp_path_factory: pytest.TempPathFactory) -> Pellicle:
     return run
 
 
-def test_is_listed_with_its_origin(pellicle: Pellicle) -> None:
+@pytest.fixture(scope="module")
+def pellicle(python: Command) -> Command:
+    """Return the command ``pellicle`` of that environment."""
+    return partial(python, "-m", "pellicle")
+
+
+def test_is_listed_with_its_origin(pellicle: Command) -> None:
     """The list of plugins holds the kernel, its distribution, its version and its first line."""
     found = json.loads(pellicle("plugins", "--json").stdout)
     assert {
@@ -53,14 +64,14 @@ def test_is_listed_with_its_origin(pellicle: Pellicle) -> None:
     assert found["broken"] == []
 
 
-def test_is_in_the_schema(pellicle: Pellicle) -> None:
+def test_is_in_the_schema(pellicle: Command) -> None:
     """An editor completes the kernel's type and fields."""
     kernels = json.loads(pellicle("schema").stdout)["properties"]["kernel"]["oneOf"]
     (mine,) = (k for k in kernels if k["properties"]["type"]["const"] == "power_law")
     assert {"reduced_modulus", "length", "exponent"} <= mine["properties"].keys()
 
 
-def test_runs_and_is_on_record(pellicle: Pellicle, tmp_path: Path) -> None:
+def test_runs_and_is_on_record(pellicle: Command, tmp_path: Path) -> None:
     """Its file of nine lines runs to convergence, and the result names the distribution."""
     done = pellicle("run", str(SOURCE / "graded.toml"), "-o", str(tmp_path))
     assert done.returncode == 0, done.stderr
@@ -70,7 +81,26 @@ def test_runs_and_is_on_record(pellicle: Pellicle, tmp_path: Path) -> None:
     assert result.configuration["kernel"]["type"] == "power_law"
 
 
-def test_bad_values_are_refused_like_our_own(pellicle: Pellicle) -> None:
+def test_runs_on_a_free_boundary_too(pellicle: Command, tmp_path: Path) -> None:
+    """The same file with an isolated contact converges, compliance(q) being all there is."""
+    free = ["--set", "grid.boundary=free", "--set", "loading={ depth = '20 um' }"]
+    done = pellicle("run", str(SOURCE / "graded.toml"), *free, "-o", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert pl.load(tmp_path / "graded.h5").converged
+
+
+def test_a_membrane_known_by_its_symbol_has_the_reference_coefficients(python: Command) -> None:
+    """Installed and asked through the library, each of 27 coefficients is met to 1e-7."""
+    done = python(str(SYMBOL_ONLY / "cells.py"), str(CELLS))
+    assert done.returncode == 0, done.stderr
+    errors = json.loads(done.stdout)
+    assert {float(s) for s in errors} >= {0.0, 0.1, 10.0}
+    for of_length in errors.values():
+        assert len(of_length) == 9
+        assert max(map(abs, of_length)) < 1e-7
+
+
+def test_bad_values_are_refused_like_our_own(pellicle: Command) -> None:
     """A field of the stranger is checked, and the message names it, without a traceback."""
     done = pellicle("run", str(SOURCE / "graded.toml"), "--set", "kernel.exponent=3")
     assert done.returncode == 2
@@ -78,7 +108,7 @@ def test_bad_values_are_refused_like_our_own(pellicle: Pellicle) -> None:
     assert "Traceback" not in done.stderr
 
 
-def test_can_be_switched_off(pellicle: Pellicle) -> None:
+def test_can_be_switched_off(pellicle: Command) -> None:
     """With strangers off, its file says what is switched off and by what."""
     file = str(SOURCE / "graded.toml")
     done = pellicle("run", file, PELLICLE_DISABLE_PLUGINS="1")

@@ -11,7 +11,11 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("framework/pellicle", "plugins/pellicle_plugins")
-DATA = {"pellicle/py.typed", "pellicle/starter.toml", "pellicle_plugins/py.typed"}
+DATA = {"pellicle/py.typed", "pellicle/starter.toml", "pellicle_plugins/py.typed"} | {
+    path.relative_to(ROOT / "framework").as_posix()
+    for path in (ROOT / "framework/pellicle/templates").rglob("*")
+    if path.is_file()
+}
 
 pytestmark = pytest.mark.skipif(
     not (ROOT / "pyproject.toml").is_file(), reason="the tests do not run from a checkout"
@@ -58,7 +62,8 @@ def test_wheel_holds_every_module(wheel: set[str]) -> None:
 
 
 def test_wheel_holds_its_data(wheel: set[str]) -> None:
-    """The starter file and the markers of typed packages are installed."""
+    """The starter file, the templates and the markers of typed packages are installed."""
+    assert len(DATA) == 3 + 2 + 6 * 3
     assert wheel >= DATA
 
 
@@ -93,6 +98,7 @@ def test_every_component_has_an_entry_point() -> None:
 
 def test_sdist_can_be_tested(sdist: set[str]) -> None:
     """A packager gets the sources, the tests with their data, and the licence."""
+    assert {f"framework/{name}" for name in DATA if name.startswith("pellicle/")} <= sdist
     assert {f"framework/{name}" for name in modules() if name.startswith("pellicle/")} <= sdist
     tests = {
         path.relative_to(ROOT).as_posix()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from pellicle import hookimpl, storage
 from pellicle.components import Output, Place
+from pellicle.dataset import header
 from pellicle.result import Result
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ class Csv(Output):
         """Write the row of the step, the first with a header."""
         path = place.file(".csv")
         row = {
-            _header(str(name), variable): variable.item()
+            header(str(name), variable): variable.item()
             for name, variable in step.data_vars.items()
             if variable.dims == ("step",)
         }
@@ -43,11 +44,6 @@ class Csv(Output):
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Name the file, which is complete."""
         return (place.file(".csv"),)
-
-
-def _header(name: str, variable: xr.DataArray) -> str:
-    unit = variable.attrs.get("units", "1")
-    return name if unit == "1" else f"{name} [{unit}]"
 
 
 @hookimpl

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
 from pellicle import hookimpl, storage
 from pellicle.components import Output, Place
-from pellicle.plotting import save_figures
+from pellicle.plotting import save_figures, save_study_figures
 from pellicle.result import Result
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 class Figures(Output):
@@ -30,6 +33,10 @@ class Figures(Output):
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Draw the result and return the files."""
         return save_figures(result, place.directory, place.name, self.formats)
+
+    def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
+        """Draw the table and return the files."""
+        return save_study_figures(table, place.directory, place.name, self.formats)
 
 
 @hookimpl

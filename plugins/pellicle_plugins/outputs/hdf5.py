@@ -28,11 +28,16 @@ class Hdf5(Output):
             return
         remedy = "choose another folder (-o DIR), or allow it to be replaced (--overwrite)"
         try:
-            held = storage.configuration(path)
+            held = storage.attributes(path)
         except StorageError as error:
             raise StorageError(f"{error}; {remedy}") from None
-        if held != place.configuration:
+        if held.get("identity") != place.identity:
             raise StorageError(f"{path} holds the result of another configuration; {remedy}")
+
+    def resume(self, place: Place) -> xr.Dataset | None:
+        """Return the steps in the file."""
+        path = place.file(".h5")
+        return None if place.overwrite or not path.exists() else storage.read(path)
 
     def step(self, place: Place, step: xr.Dataset) -> None:
         """Write the step behind the ones before it."""
@@ -43,8 +48,10 @@ class Hdf5(Output):
             storage.append(step, path)
 
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
-        """Name the file, which is complete."""
-        return (place.file(".h5"),)
+        """Make it one file."""
+        path = place.file(".h5")
+        storage.close(path)
+        return (path,)
 
 
 @hookimpl

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pellicle import hookimpl
 from pellicle.components import IterativeSolver, Solver
+from pellicle.errors import ConfigError
 from pellicle.operators import Array
 from pellicle.problem import Problem, height_scale
 from pellicle.transfer import prolong
@@ -101,7 +102,11 @@ class ActiveSet(IterativeSolver):
 
     def _cold_start(self, problem: Problem) -> Array:
         if max(problem.grid.shape) > _COARSEST:
-            coarse = problem.coarsened()
+            try:
+                coarse = problem.coarsened()
+            except ConfigError:
+                # A thin incompressible layer is rigid under cells much wider than it is thick.
+                return first_guess(problem)
             if coarse.touches:
                 tolerance = max(self.tolerance, _COARSE_TOLERANCE)
                 solver = self.model_copy(update={"tolerance": tolerance})

@@ -12,7 +12,8 @@ from pellicle.problem import Problem
 from .preconditioner import Cells, OnContact
 from .products import dot
 
-# The error shrinks by this factor before the contact is looked at again.
+# The error shrinks by this factor before the contact is looked at again: by more for a stiffness of
+# an order above 2, where a small gap is a large pressure, whose sign decides.
 _REDUCTION: Final = 0.03
 # No solve shrinks the error by more than this: the operator is applied in single precision, which
 # has no more digits, and the next solve starts from a displacement in double.
@@ -60,7 +61,8 @@ def inner_solve(
     pressed = pressure.ravel()[cells]
     aloft = displacement.ravel()[cells] - problem.profile.ravel()[cells]
     residual = problem.depth(aloft) - aloft
-    next_look = max(_REDUCTION * error, goal)
+    reduction = _REDUCTION ** max(1.0, preconditioner.order / 2)
+    next_look = max(reduction * error, goal)
     best, since_best = np.inf, 0
     direction = search(residual)
     descent = dot(residual, direction)
@@ -85,7 +87,7 @@ def inner_solve(
             settled = pressed.min() >= 0 and not _penetrates(problem, displacement, cells, error)
             if error <= goal or not settled:
                 break
-            next_look = max(_REDUCTION * next_look, goal)
+            next_look = max(reduction * next_look, goal)
         ascent = search(residual)
         before, descent = descent, dot(residual, ascent)
         # The direction was multiplied by its step length.

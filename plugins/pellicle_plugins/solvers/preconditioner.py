@@ -41,7 +41,7 @@ class Preconditioner:
             self._plane = self._padded = _free_shape(grid.shape)
             levels = _halvings(self._padded)
         self._symbol = _stiffness(operator, self._plane)
-        self._orders = _orders(operator, levels)
+        self._orders = _orders(operator, levels + 1)
 
     def on(self, contact: NDArray[np.bool_]) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""
@@ -62,8 +62,9 @@ class Preconditioner:
             cells=np.flatnonzero(contact),
             places=whole,
             copied=np.concatenate([np.empty(0, dtype=np.int64), *copied]),
-            extension=Extension(known, self._orders),
+            extension=Extension(known, [min(order, 2.0) for order in self._orders[:-1]]),
             stiffen=self._stiffen,
+            order=self._orders[0],
         )
 
     def _stiffen(self, field: Field) -> Field:
@@ -89,9 +90,12 @@ class OnContact:
         copied: Cells,
         extension: Extension,
         stiffen: Callable[[Field], Field],
+        order: float,
     ) -> None:
         self.cells = cells
         """Flat index of each cell of the contact on the grid."""
+        self.order = order
+        """α of the stiffness, k ~ q^α, at the size of a cell."""
         self._places = places
         self._copied = copied
         self._extension = extension
@@ -129,13 +133,13 @@ def _halvings(shape: tuple[int, int]) -> int:
 
 
 def _orders(operator: Operator, levels: int) -> list[float]:
-    """Return the order α of the stiffness, k ~ q^α, at the cell size of each level from the finest.
+    """Return the order α ≥ 0 of the stiffness, k ~ q^α, at the cells of each level from the finest.
 
-    Beyond 2, where an extension would have to be smoother than this one is, it counts as 2.
+    The extension takes those beyond 2, for which it would have to be smoother, as 2.
     """
     q = np.pi / max(operator.grid.spacing) * 0.5 ** np.arange(levels + 1, dtype=np.float64)
     stiffness = 1 / operator.kernel.compliance(q)
-    return [float(order) for order in np.clip(-np.diff(np.log2(stiffness)), 0, 2)]
+    return [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]
 
 
 def _stiffness(operator: Operator, shape: tuple[int, int]) -> NDArray[np.float32]:

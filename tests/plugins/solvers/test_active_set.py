@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 
-from pellicle import Grid, Kernel, Problem, Solver, Stop
+from pellicle import ConfigError, Grid, Kernel, Problem, Solver, Stop
 from pellicle.operators import Array, make_operator
 from pellicle.problem import Equilibrium, measure
 from pellicle_plugins.indenters.self_affine import SelfAffine
@@ -73,6 +73,20 @@ class Plate(Kernel):
     def compliance(self, q: Array) -> Array:
         """Return 1/k."""
         return 1 / (q / 2 + self.elastocapillary_length / 2 * q**2 + self.bending * q**4)
+
+
+class Incompressible(Kernel):
+    """Layer with ν = ½ bonded to a rigid base: k = (q/2)(cosh t + t²/2 + 1)/(sinh t − t)."""
+
+    type: Literal["incompressible"] = "incompressible"
+    thickness: float
+
+    def compliance(self, q: Array) -> Array:
+        """Return 1/k with t = 2qh; sinh t − t from its series where it cancels."""
+        t = np.minimum(2 * q * self.thickness, 600)
+        u = np.minimum(t, 0.5)
+        series = u**3 / 6 * (1 + u**2 / 20 * (1 + u**2 / 42 * (1 + u**2 / 72)))
+        return 2 / q * np.where(t < 0.5, series, np.sinh(t) - t) / (np.cosh(t) + t**2 / 2 + 1)
 
 
 @dataclass(frozen=True)
@@ -552,3 +566,13 @@ def test_applications_of_a_rough_surface_hardly_grow(s: float) -> None:
     counts = rough_applications(s)
     # Measured slopes: 0.09 at s = 0; 0.145 at 0.02 L and 0.13 at L miss the goal of 0.1.
     assert np.polyfit(np.log([*counts]), np.log([*counts.values()]), 1)[0] <= 0.2
+
+
+def test_a_layer_too_thin_for_the_coarser_grid_is_solved_without_it() -> None:
+    """An incompressible layer is rigid under cells much wider than its thickness."""
+    kernel = Incompressible(thickness=0.15 / 96)
+    with pytest.raises(ConfigError, match="use more points"):
+        make_operator(kernel, Grid(points=48, size=1.0))
+    problem = make(96, "free", kernel, lambda x, y: -(x**2 + y**2) / 2, "depth", 0.02)
+    found = active_set(problem, 1e-6).found
+    assert found.contact.sum() > 500

@@ -1,0 +1,200 @@
+"""What the components of all families keep: configuration, code, schema and provenance in one."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import pickle
+import tomllib
+from collections.abc import Callable, Iterable, Iterator
+from typing import Annotated, Any, get_args, get_origin
+
+from pydantic import ValidationError
+
+from pellicle.components import FAMILIES, Component
+from pellicle.errors import ConfigError, PellicleError
+from pellicle.plugins import GROUP, checked_type, registry
+from pellicle.toml import toml_lines
+from pellicle.units import Quantity
+
+from .rules import Rule, keep, require
+
+_LONGEST_SUMMARY = 100
+
+
+def check(component: object, family: str, rules: list[Rule], *arguments: Any) -> None:
+    """Check what all components keep, then the family's own rules with ``arguments``.
+
+    What needs an installed plugin comes last: the rest can be tried before there is one.
+    """
+    keep([is_an_instance], component, family)
+    keep(RULES, component)
+    keep(rules, component, *arguments)
+    keep([is_registered, goes_through_the_registry], component)
+
+
+def is_an_instance(component: object, family: str) -> None:
+    """A check takes an instance of a component of its own family."""
+    base = FAMILIES[family]
+    if isinstance(component, type):
+        raise AssertionError(f"the class {component.__name__}; make one: {component.__name__}(…)")
+    require(
+        isinstance(component, base),
+        f"{component!r}, which is no pellicle.{base.__name__}",
+    )
+
+
+def class_can_be_registered(component: Component) -> None:
+    """The class has one type, a docstring, descriptions and a JSON schema, and lacks no method."""
+    try:
+        checked_type(type(component), component.family)
+    except PellicleError as error:
+        raise AssertionError(str(error)) from None
+
+
+def docstring_starts_with_a_sentence(component: Component) -> None:
+    """The first line, shown in tables, has at most 100 characters and ends with a period."""
+    line = (inspect.getdoc(type(component)) or "").partition("\n")[0]
+    require(
+        len(line) <= _LONGEST_SUMMARY and line.endswith("."), f"{line!r} of {len(line)} characters"
+    )
+
+
+def numbers_have_units(component: Component) -> None:
+    """A float field is a Quantity, "1" for a pure number; one with a unit has it in its text."""
+    for name, info in type(component).model_fields.items():
+        quantities = [*_among(info.metadata), *_quantities(info.annotation)]
+        require(
+            bool(quantities) or float not in _kinds(info.annotation),
+            f'the field {name} is a bare float; annotate it with Quantity("SI unit") or one of '
+            "pellicle.units, such as Length",
+        )
+        for unit in {quantity.unit for quantity in quantities} - {"1"}:
+            require(
+                f"[{unit}]" in (info.description or ""),
+                f"the description of {name}, {info.description!r}, does not hold [{unit}]",
+            )
+
+
+def _kinds(annotation: Any) -> Iterator[Any]:
+    inner = get_args(annotation)
+    if get_origin(annotation) is Annotated:
+        inner = inner[:1]
+    yield annotation
+    for kind in inner:
+        yield from _kinds(kind)
+
+
+def _quantities(annotation: Any) -> Iterator[Quantity]:
+    for kind in _kinds(annotation):
+        yield from _among(getattr(kind, "__metadata__", ()))
+
+
+def _among(metadata: Iterable[Any]) -> Iterator[Quantity]:
+    return (found for found in metadata if isinstance(found, Quantity))
+
+
+def is_frozen(component: Component) -> None:
+    """No field can be set, so that a configuration cannot change under a run."""
+    for name in type(component).model_fields:
+        try:
+            setattr(component, name, getattr(component, name))
+        except ValidationError:
+            continue
+        raise AssertionError(f"{name} can be set; leave model_config frozen")
+
+
+def pickles(component: Component) -> None:
+    """A copy by pickle, as a worker gets it, is equal and of equal hash."""
+    copy = pickle.loads(pickle.dumps(component))
+    require(type(copy) is type(component) and copy == component, f"{copy!r} of {component!r}")
+    require(hash(copy) == hash(component), "the hash of the copy differs")
+
+
+def goes_through_json(component: Component) -> None:
+    """What is written into a result as JSON makes the same component again."""
+    _goes_through(component, lambda table: json.loads(json.dumps(table, allow_nan=False)))
+
+
+def goes_through_toml(component: Component) -> None:
+    """What is written as TOML makes the same component again."""
+    _goes_through(component, _by_toml)
+
+
+def _goes_through(component: Component, copy: Callable[[dict[str, Any]], dict[str, Any]]) -> None:
+    made = type(component)(**copy(_table(component)))
+    require(made == component, f"{made!r} of {component!r}")
+
+
+def _table(component: Component) -> dict[str, Any]:
+    """Return the component as a file would hold it."""
+    table: dict[str, Any] = json.loads(component.model_dump_json(exclude_none=True))
+    return table
+
+
+def _by_toml(table: dict[str, Any]) -> dict[str, Any]:
+    read: dict[str, Any] = tomllib.loads("".join(toml_lines({"it": table})))["it"]
+    return read
+
+
+def unknown_field_is_refused(component: Component) -> None:
+    """A field that does not exist is an error that names it, not a silent default."""
+    try:
+        type(component)(**_table(component) | {"nonsense": 1})
+    except ConfigError as error:
+        require(any(field == "nonsense" for field, _ in error.problems), str(error))
+    else:
+        raise AssertionError('nonsense = 1 is accepted; leave model_config extra="forbid"')
+
+
+def schema_tells_the_fields(component: Component) -> None:
+    """The JSON schema has every field, its one type, and no room for others."""
+    schema = type(component).model_json_schema()
+    fields = type(component).model_fields.keys()
+    require(schema["properties"].keys() == fields, f"properties {sorted(schema['properties'])}")
+    type_ = _table(component)["type"]
+    require(schema["properties"]["type"].get("const") == type_, str(schema["properties"]["type"]))
+    require(schema.get("additionalProperties") is False, "additional properties are allowed")
+    require(_table(component).keys() <= fields, f"a component is written as {_table(component)}")
+
+
+def is_registered(component: Component) -> None:
+    """A plugin that is installed here registers the class under its type."""
+    family, type_ = component.family, _table(component)["type"]
+    module = type(component).__module__
+    try:
+        found = registry().find(family, type_)
+    except PellicleError as error:
+        raise AssertionError(
+            f"{error}\nIf the plugin is yours, its pyproject.toml needs\n"
+            f'    [project.entry-points.{GROUP}]\n    "{family}.{type_}" = "{module}"\n'
+            "the module a hook that registers the class, and the package to be installed again: "
+            "pip install -e ."
+        ) from None
+    require(
+        found is type(component),
+        f"{type_!r} is {found.__module__}.{found.__qualname__}, not this class of {module}; give "
+        "yours another type, or import it by the name that the entry point has",
+    )
+
+
+def goes_through_the_registry(component: Component) -> None:
+    """The registry makes the same component of its table, and takes it as it is."""
+    base = FAMILIES[component.family]
+    for table in (_table(component), _by_toml(_table(component)), component.model_dump()):
+        made = registry().make(base, table)
+        require(made == component, f"{made!r} of {component!r}")
+    require(registry().make(base, component) is component, "a component is made anew")
+
+
+RULES: list[Rule] = [
+    class_can_be_registered,
+    docstring_starts_with_a_sentence,
+    numbers_have_units,
+    is_frozen,
+    pickles,
+    goes_through_json,
+    goes_through_toml,
+    unknown_field_is_refused,
+    schema_tells_the_fields,
+]

@@ -1,0 +1,119 @@
+"""What every area correction keeps: an area [m²] of the cells in contact, however they lie."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation, binary_erosion
+
+from pellicle.components import AreaCorrection
+
+from .component import check
+from .rules import Rule, require, require_close
+from .runs import solved
+
+_SPACING = (2e-6, 3e-6)
+_CELL = _SPACING[0] * _SPACING[1]
+
+
+def check_correction(correction: AreaCorrection) -> None:
+    """Check that an area correction keeps its contract.
+
+    Beside what all components keep: ``area`` is pure, 0 without contact, that of the domain in full
+    contact, between the contact without its boundary cells and with a further row of them, scales
+    with the cells, and is the same seen in a mirror, moved or with x and y exchanged; and it goes
+    into the result of a run.
+
+    Raises
+    ------
+    AssertionError
+        It does not; says what was asked and what was found.
+    """
+    check(correction, "correction", RULES)
+
+
+def _islands() -> NDArray[np.bool_]:
+    """Return contact in half of the cells, in patches, none at the edge of the domain."""
+    x, y = np.mgrid[0:40, 0:30]
+    contact: NDArray[np.bool_] = np.sin(x / 3) * np.cos(y / 4) + 0.3 * np.sin(x / 5 + y) > 0
+    contact[[0, 1, -2, -1]] = contact[:, [0, 1, -2, -1]] = False
+    return contact
+
+
+def area_is_pure(correction: AreaCorrection) -> None:
+    """area(contact, spacing) is a number, the same if asked twice, and contact is as it was."""
+    contact = _islands()
+    area = correction.area(contact, _SPACING)
+    require(np.ndim(area) == 0 and np.isrealobj(area), f"{area!r}")
+    require(np.array_equal(contact, _islands()), "area(contact, spacing) changes contact")
+    require(correction.area(contact, _SPACING) == area, "the second area differs")
+
+
+def no_contact_has_no_area(correction: AreaCorrection) -> None:
+    """Without contact the area is 0."""
+    area = correction.area(np.zeros((8, 6), dtype=bool), _SPACING)
+    require(area == 0, f"{area:g} m²")
+
+
+def full_contact_is_the_domain(correction: AreaCorrection) -> None:
+    """Where all cells touch there is no boundary, and the area is that of the domain."""
+    area = correction.area(np.ones((8, 6), dtype=bool), _SPACING)
+    require_close(area, 48 * _CELL, "the area [m²] of full contact", relative=1e-12)
+
+
+def area_is_near_the_count(correction: AreaCorrection) -> None:
+    """A correction moves the area by less than the cells on either side of the boundary."""
+    contact = _islands()
+    least = _CELL * np.count_nonzero(binary_erosion(contact))
+    most = _CELL * np.count_nonzero(binary_dilation(contact))
+    area = correction.area(contact, _SPACING)
+    require(least <= area <= most, f"{area:g} m², not between {least:g} and {most:g}")
+
+
+def area_scales_with_the_cells(correction: AreaCorrection) -> None:
+    """Cells larger by a factor make an area larger by its square."""
+    area = correction.area(_islands(), _SPACING)
+    for factor in (1e-3, 7.0):
+        larger = correction.area(_islands(), (factor * _SPACING[0], factor * _SPACING[1]))
+        require_close(
+            larger, factor**2 * area, f"the area [m²] of cells {factor:g} × as wide", relative=1e-12
+        )
+
+
+def area_does_not_depend_on_the_view(correction: AreaCorrection) -> None:
+    """Mirrored, moved, or with x and y exchanged, the contact has the same area."""
+    contact = _islands()
+    area = correction.area(contact, _SPACING)
+    for what, seen, spacing in (
+        ("mirrored across x", contact[::-1], _SPACING),
+        ("mirrored across y", contact[:, ::-1], _SPACING),
+        ("moved", np.roll(contact, (1, -1), axis=(0, 1)), _SPACING),
+        ("with x and y exchanged", contact.T, _SPACING[::-1]),
+    ):
+        require_close(correction.area(seen, spacing), area, f"the area [m²] {what}", relative=1e-12)
+
+
+def goes_into_the_result(correction: AreaCorrection) -> None:
+    """A run has the area under contact_area_<type>."""
+    found = solved(
+        {
+            "grid": {"points": 24, "size": "1 mm"},
+            "kernel": {"type": "half_space", "reduced_modulus": 1e4},
+            "indenter": {"type": "paraboloid", "radius": "1 mm"},
+            "loading": {"depth": "50 um"},
+            "corrections": [correction],
+        }
+    )
+    area = found[f"contact_area_{correction.type}"].item()  # type: ignore[attr-defined]
+    require(area > 0, f"{area:g} m² for {found['contact_area'].item():g} m² of cells")
+
+
+RULES: list[Rule] = [
+    area_is_pure,
+    no_contact_has_no_area,
+    full_contact_is_the_domain,
+    area_is_near_the_count,
+    area_scales_with_the_cells,
+    area_does_not_depend_on_the_view,
+    goes_into_the_result,
+]

@@ -1,0 +1,118 @@
+"""What every indenter keeps: a profile on the grid's points, with its lowest point at 0."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pellicle.components import Indenter
+from pellicle.grid import Grid
+from pellicle.operators import Array
+
+from .component import check
+from .rules import Rule, require
+from .runs import solved
+
+
+def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
+    """Check that an indenter keeps its contract.
+
+    Beside what all components keep: ``profile`` makes float heights ≤ 0 of the grid's shape, 0 at
+    the lowest point; it is pure; each height depends on its own point only, unless the indenter
+    ends with the domain; and a small indentation converges.
+
+    Parameters
+    ----------
+    indenter
+        The component.
+    grid
+        Points that suit the indenter, the lowest point among them; 13 × 11 on 1.3 mm × 1.1 mm if
+        None.
+
+    Raises
+    ------
+    AssertionError
+        It does not; says what was asked and what was found.
+    """
+    check(indenter, "indenter", RULES, grid or Grid(points=[13, 11], size=["1.3 mm", "1.1 mm"]))
+
+
+def profile_has_the_shape_of_the_grid(indenter: Indenter, grid: Grid) -> None:
+    """profile(x, y) of shapes (nx, 1) and (1, ny) is an array of floats of shape (nx, ny)."""
+    found = indenter.profile(*grid.coordinates())
+    require(
+        isinstance(found, np.ndarray) and found.dtype == np.float64 and found.shape == grid.shape,
+        f"{type(found).__name__} of shape {np.shape(found)}, {getattr(found, 'dtype', 'no')} "
+        f"dtype, for {grid.shape}",
+    )
+
+
+def profile_is_pure(indenter: Indenter, grid: Grid) -> None:
+    """The points are as they were, and asking twice gives the same, in an array of its own."""
+    points = grid.coordinates()
+    first = indenter.profile(*points)
+    for name, left, were in zip("xy", points, grid.coordinates(), strict=True):
+        require(np.array_equal(left, were), f"profile(x, y) changes {name}")
+    kept = first.copy()
+    if first.flags.writeable:
+        first[...] = -np.inf
+    again = indenter.profile(*grid.coordinates())
+    require(np.array_equal(again, kept, equal_nan=True), "the second profile differs")
+
+
+def profile_is_nowhere_positive(indenter: Indenter, grid: Grid) -> None:
+    """Heights are ≤ 0, finite or −inf, and somewhere there is an indenter."""
+    found = indenter.profile(*grid.coordinates())
+    x, y = np.broadcast_arrays(*grid.coordinates())
+    for at in np.argwhere(~(found <= 0)):
+        i, j = map(int, at)
+        raise AssertionError(f"{found[i, j]:g} m at x = {x[i, j]:g} m, y = {y[i, j]:g} m")
+    require(np.isfinite(found).any(), "no height is finite")
+
+
+def lowest_point_is_at_zero(indenter: Indenter, grid: Grid) -> None:
+    """The highest value is 0; where the indenter ends with the domain, up to what a cell hides."""
+    found = indenter.profile(*grid.coordinates())
+    allowed = (1e-12 if indenter.footprint == "unbounded" else 0.1) * _range(found)
+    require(-found.max() <= allowed, f"the highest value is {found.max():g} m")
+
+
+def heights_depend_on_their_own_point(indenter: Indenter, grid: Grid) -> None:
+    """Seen on a part of the points, an indenter that is unbounded has the same heights."""
+    if indenter.footprint != "unbounded":
+        return
+    x, y = grid.coordinates()
+    whole = indenter.profile(x, y)
+    part = indenter.profile(x[1:4], y[:, 2:4])
+    require(
+        np.allclose(part, whole[1:4, 2:4], rtol=1e-12, atol=0),
+        f"heights of a part of the points are {part.tolist()} m, and of the whole there "
+        f"{whole[1:4, 2:4].tolist()} m; a shape that ends with the domain has footprint 'domain'",
+    )
+
+
+def run_converges(indenter: Indenter, grid: Grid) -> None:
+    """Pressed into a half-space, the indenter makes contact and the run converges."""
+    depth = 0.01 * _range(indenter.profile(*grid.coordinates())) or 0.01 * min(grid.size)
+    found = solved(
+        {
+            "grid": grid,
+            "kernel": {"type": "half_space", "reduced_modulus": 1e4},
+            "indenter": indenter,
+            "loading": {"depth": depth},
+        }
+    )
+    require(found["force"].item() > 0, f"no contact at a depth of {depth:g} m")
+
+
+def _range(heights: Array) -> float:
+    return float(np.ptp(heights[np.isfinite(heights)]))
+
+
+RULES: list[Rule] = [
+    profile_has_the_shape_of_the_grid,
+    profile_is_nowhere_positive,
+    profile_is_pure,
+    lowest_point_is_at_zero,
+    heights_depend_on_their_own_point,
+    run_converges,
+]

@@ -1,0 +1,232 @@
+"""What every kernel keeps: its compliance, its closed form and the operators agree."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.integrate import quad
+
+from pellicle.components import Kernel
+from pellicle.grid import Grid
+from pellicle.operators import Array, HasClosedForm, displacement, mean_compliance
+
+from .component import check
+from .rules import Rule, require, require_close
+from .runs import solved
+
+# Of the Gaussian pressure exp(−r²/2w²) [m].
+_WIDTH = 1e-4
+_FORMS = ("greens_function", "radial_primitive")
+
+
+def check_kernel(kernel: Kernel) -> None:
+    """Check that a kernel keeps its contract.
+
+    Beside what all components keep: ``compliance`` is vectorised, pure, positive, finite for
+    10⁻³ to 10¹² rad/m, and does not grow for ever shorter waves; a closed form, if there is one,
+    belongs to it; the operators of both boundaries answer as it says; a small indentation converges
+    on both.
+
+    Raises
+    ------
+    AssertionError
+        It does not; says what was asked and what was found.
+    """
+    rules = [
+        compliance_is_vectorised,
+        compliance_leaves_its_argument,
+        compliance_is_positive_and_finite,
+        compliance_does_not_grow_for_short_waves,
+        periodic_operator_is_the_compliance,
+        periodic_run_converges,
+        uniform_pressure_sinks_by_the_mean_compliance,
+        closed_form_is_whole,
+        *(_OF_A_CLOSED_FORM if isinstance(kernel, HasClosedForm) else []),
+        free_operator_is_the_transform_of_the_compliance,
+        free_run_converges,
+    ]
+    check(kernel, "kernel", rules)
+
+
+def _wavenumbers() -> Array:
+    return np.geomspace(1.0, 1e9, 24)
+
+
+def compliance_is_vectorised(kernel: Kernel) -> None:
+    """compliance(q) has the shape of q, floats, and each value depends on its own q only."""
+    each = [np.ravel(kernel.compliance(_wavenumbers()[i : i + 1]))[0] for i in range(24)]
+    for shape in ((24,), (4, 6), (2, 3, 4)):
+        found = kernel.compliance(_wavenumbers().reshape(shape))
+        require(
+            isinstance(found, np.ndarray) and found.dtype == np.float64,
+            f"compliance(q) is {type(found).__name__} of {getattr(found, 'dtype', 'no')} dtype",
+        )
+        require_close(
+            found,
+            np.reshape(each, shape),
+            f"compliance of q of shape {shape}",
+            relative=1e-12,
+        )
+
+
+def compliance_leaves_its_argument(kernel: Kernel) -> None:
+    """A kernel is pure: q is as it was, and asking twice gives the same."""
+    q = _wavenumbers()
+    first = np.array(kernel.compliance(q))
+    require_close(q, _wavenumbers(), "after compliance(q), q")
+    require_close(kernel.compliance(q), first, "the second compliance(q)")
+
+
+def compliance_is_positive_and_finite(kernel: Kernel) -> None:
+    """Pressure pushes the surface inwards at every q > 0."""
+    q = np.geomspace(1e-3, 1e12, 200)
+    found = kernel.compliance(q)
+    for bad in np.flatnonzero(~(np.isfinite(found) & (found > 0))):
+        raise AssertionError(f"compliance is {found[bad]:g} m/Pa at q = {q[bad]:g} rad/m")
+
+
+def compliance_does_not_grow_for_short_waves(kernel: Kernel) -> None:
+    """As q grows without bound, the surface does not yield ever more."""
+    q = np.geomspace(1e10, 1e12, 9)
+    found = kernel.compliance(q)
+    for bad in np.flatnonzero(np.diff(found) > 1e-9 * found[:-1]):
+        raise AssertionError(
+            f"compliance rises from {found[bad]:g} to {found[bad + 1]:g} m/Pa between q = "
+            f"{q[bad]:g} and {q[bad + 1]:g} rad/m"
+        )
+
+
+def periodic_operator_is_the_compliance(kernel: Kernel) -> None:
+    """A wave of pressure on a periodic grid is answered by G(q) times the wave."""
+    grid = Grid(points=[32, 18], size=["1 mm", "0.7 mm"], boundary="periodic")
+    x, y = grid.coordinates()
+    for m, n in ((1, 0), (0, 3), (5, 2), (8, 4)):
+        qx, qy = 2 * np.pi * m / grid.size[0], 2 * np.pi * n / grid.size[1]
+        wave = np.cos(qx * x + qy * y + 0.3)
+        answer = float(kernel.compliance(np.array([np.hypot(qx, qy)]))[0])
+        require_close(
+            displacement(wave, kernel=kernel, grid=grid),
+            answer * wave,
+            f"the displacement [m] under a wave of 1 Pa, q = ({qx:g}, {qy:g}) rad/m,",
+            absolute=1e-11 * answer,
+        )
+
+
+def uniform_pressure_sinks_by_the_mean_compliance(kernel: Kernel) -> None:
+    """On a periodic grid a uniform pressure sinks by mean_compliance(), not at all if that is ∞."""
+    grid = Grid(points=[6, 5], size="1 mm", boundary="periodic")
+    mean = mean_compliance(kernel)
+    expected = np.full(grid.shape, 3 * mean if np.isfinite(mean) else 0.0)
+    found = displacement(np.full(grid.shape, 3.0), kernel=kernel, grid=grid)
+    require_close(found, expected, "the displacement [m] under 3 Pa", relative=1e-13)
+
+
+def periodic_run_converges(kernel: Kernel) -> None:
+    """A paraboloid pressed into a periodic surface converges."""
+    _indent(kernel, "periodic")
+
+
+def free_run_converges(kernel: Kernel) -> None:
+    """A paraboloid pressed into a free surface converges."""
+    _indent(kernel, "free")
+
+
+def _indent(kernel: Kernel, boundary: str) -> None:
+    solved(
+        {
+            "grid": {"points": 24, "size": "1 mm", "boundary": boundary},
+            "kernel": kernel,
+            "indenter": {"type": "paraboloid", "radius": "1 mm"},
+            "loading": {"depth": ["5 um", "20 um"]},
+        }
+    )
+
+
+def closed_form_is_whole(kernel: Kernel) -> None:
+    """A kernel has both of greens_function and radial_primitive, or neither."""
+    there = [name for name in _FORMS if hasattr(kernel, name)]
+    require(len(there) != 1, f"only {' '.join(there)}")
+
+
+def primitive_is_the_integral_of_the_closed_form(kernel: HasClosedForm) -> None:
+    """radial_primitive starts at 0 and grows by ∫ greens_function r dr."""
+    radii = np.geomspace(1e-9, 1e2, 45)
+    primitive = kernel.radial_primitive(radii.copy())
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    middle, half = (radii[1:] + radii[:-1]) / 2, np.diff(radii) / 2
+    r = middle[:, None] + half[:, None] * nodes
+    integral = half * ((kernel.greens_function(r.copy()) * r) @ weights)
+    require_close(
+        np.diff(primitive),
+        integral,
+        "the growth of radial_primitive [m²/N] between radii of 1 nm to 100 m",
+        relative=1e-10,
+        absolute=1e-13 * float(np.abs(primitive).max()),
+    )
+    require_close(
+        kernel.radial_primitive(np.zeros(1)),
+        np.zeros(1),
+        "radial_primitive(0) [m²/N]",
+        absolute=1e-9 * float(np.abs(primitive[0])),
+    )
+
+
+def closed_form_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
+    """The middle of a Gaussian pressure sinks equally by greens_function and by compliance."""
+    assert isinstance(kernel, HasClosedForm)
+    form = kernel
+    middle = _integral(lambda t: float((form.greens_function(t * _WIDTH) * t * _WIDTH)[0]))
+    require_close(
+        2 * np.pi * _WIDTH * middle,
+        _middle_by_compliance(kernel),
+        "by greens_function, the displacement [m] amid a Gaussian of 1 Pa, 0.1 mm wide,",
+        relative=1e-9,
+    )
+
+
+def free_operator_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
+    """On a free grid the middle of a Gaussian pressure sinks as the Hankel integral says."""
+    grid = Grid(points=255, size=10 * _WIDTH, boundary="free")
+    x, y = grid.coordinates()
+    pressure = np.exp(-(x**2 + y**2) / (2 * _WIDTH**2))
+    require_close(
+        displacement(pressure, kernel=kernel, grid=grid)[127, 127],
+        _middle_by_compliance(kernel, grid.spacing[0]),
+        "on a free grid, the displacement [m] amid a Gaussian of 1 Pa, 0.1 mm wide,",
+        # The grid ends at five widths, where the Gaussian is 4e-6.
+        relative=1e-5,
+    )
+
+
+def _middle_by_compliance(kernel: Kernel, cell: float = 0.0) -> float:
+    """Return u(0) = ∫ G(q) p̂(q) q dq / 2π [m] for the Gaussian, p̂ = 2πw² exp(−q²w²/2).
+
+    A pressure that is uniform in each cell of side h has p̂ less by the factor 1 − q²h²/24, except
+    for springs, the part of G that is left at q → ∞: they see the middle of their cell.
+    """
+    springs = kernel.compliance(np.array([1e12]))
+
+    def integrand(t: Array) -> float:
+        q = t / _WIDTH
+        compliance = kernel.compliance(q)
+        lost = (compliance - springs) * (q * cell) ** 2 / 24
+        return float(((compliance - lost) * t)[0])
+
+    return _integral(integrand)
+
+
+def _integral(function: Callable[[Array], float]) -> float:
+    """Return ∫ f(t) exp(−t²/2) dt over t > 0."""
+
+    def integrand(t: float) -> float:
+        return function(np.array([t])) * float(np.exp(-(t**2) / 2))
+
+    # full_output: what it says of its accuracy is a warning otherwise, an error to some.
+    return float(quad(integrand, 0, 9, epsabs=0, epsrel=1e-11, limit=200, full_output=1)[0])
+
+
+_OF_A_CLOSED_FORM: list[Rule] = [
+    primitive_is_the_integral_of_the_closed_form,
+    closed_form_is_the_transform_of_the_compliance,
+]

@@ -1,0 +1,22 @@
+"""Small runs that the checks solve."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import xarray as xr
+
+from pellicle.config import Run
+from pellicle.orchestrator import solve
+
+from .rules import require
+
+
+def solved(configuration: dict[str, Any]) -> xr.Dataset:
+    """Return the dataset of a run, every step of which must converge."""
+    run = Run(**configuration)
+    result = solve(run)
+    for index, message in result.failures():
+        what = f"{run.grid.boundary} boundary, {run.loading.prescribed} prescribed"
+        require(False, f"step {index + 1} of a run ({what}) did not converge: {message}")
+    return result.dataset

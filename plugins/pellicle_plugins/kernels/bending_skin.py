@@ -1,0 +1,39 @@
+"""The elastic half-space under a skin that resists bending."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Kernel
+from pellicle.operators import Array
+from pellicle.units import BendingStiffness
+
+from .elastic_solid import ElasticSolid
+from .skin import Skin
+
+
+class BendingSkin(Skin, ElasticSolid):
+    """Elastic half-space under a skin with tension and bending stiffness (Kirchhoff plate).
+
+    Waves shorter than (2B/E*)^⅓ are carried by the bending stiffness. Without it this is
+    `tensed_membrane`. The shear traction between skin and solid is neglected.
+    """
+
+    type: Literal["bending_skin"] = "bending_skin"
+    bending: Annotated[
+        BendingStiffness, Field(description="bending stiffness B of the skin [N*m], 0 for none")
+    ]
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) = 1/(E* q/2 + τ₀ q² + B q⁴) [m/Pa]."""
+        return 1 / (self.reduced_modulus * q / 2 + self.skin_stiffness(q))
+
+
+@hookimpl
+def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
+    """Register the half-space under a skin that bends."""
+    register(BendingSkin)

@@ -1,0 +1,58 @@
+"""The elastic layer bonded to a rigid base."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import factorial
+from typing import Final, Literal
+
+import numpy as np
+
+from pellicle import hookimpl
+from pellicle.components import Kernel
+from pellicle.operators import Array
+
+from .elastic_layer import ElasticLayer
+
+# sinh y − y = y³/6 Σ c_k y^2k, to the last digit below the split.
+_SPLIT: Final = 2.0
+_COEFFICIENTS: Final = [6 / factorial(2 * k + 3) for k in range(12)]
+
+
+class BondedLayer(ElasticLayer):
+    """Elastic layer that sticks to a rigid base (Hayes et al. 1972).
+
+    A layer thick against the contact is a half-space. A thin compressible one is a bed of springs,
+    p = M u/h; a thin incompressible one resists by flowing sideways, G = (h³/3μ) q², and is the
+    stiffer the longer the wave.
+    """
+
+    type: Literal["bonded_layer"] = "bonded_layer"
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) [m/Pa] of a layer on a rigid base without slip; Hayes et al. 1972.
+
+        G = (2/(E* q)) [κ sinh 2x − 2x]/[κ cosh 2x + 2x² + 5 − 12ν + 8ν²], κ = 3 − 4ν, x = qh,
+        here times e^{−2x} above and below, with κ sinh 2x − 2x = κ (sinh 2x − 2x) + 4(1 − 2ν)x.
+        """
+        nu, y = self.poissons_ratio, self._twice_depth(q)
+        kappa, decay = 3 - 4 * nu, np.exp(-y)
+        above = kappa * _scaled_excess(y) + 2 * (1 - 2 * nu) * y * decay
+        below = kappa * (1 + decay**2) / 2 + (y**2 / 2 + 5 - 12 * nu + 8 * nu**2) * decay
+        return 2 / (self.reduced_modulus * q) * (above / below)
+
+
+def _scaled_excess(y: Array) -> Array:
+    """Return (sinh y − y) e^{−y} for y > 0 without cancellation."""
+    small = np.minimum(y, _SPLIT)
+    series = np.zeros_like(y)
+    for coefficient in reversed(_COEFFICIENTS):
+        series = series * small**2 + coefficient
+    near = small**3 / 6 * series * np.exp(-small)
+    return np.where(y < _SPLIT, near, -np.expm1(-2 * y) / 2 - y * np.exp(-y))
+
+
+@hookimpl
+def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
+    """Register the bonded layer."""
+    register(BondedLayer)

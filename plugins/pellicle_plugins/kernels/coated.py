@@ -1,0 +1,43 @@
+"""A skin on any other kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Kernel
+from pellicle.fields import FromRegistry
+from pellicle.operators import Array, mean_compliance
+
+from .skin import Skin
+
+
+class Coated(Skin):
+    """Skin with tension and bending stiffness on any other kernel.
+
+    The stiffnesses of substrate and skin add, for each wave on its own: exact if the skin passes on
+    normal tractions only, as a tension does.
+    """
+
+    type: Literal["coated"] = "coated"
+    substrate: Annotated[
+        Kernel, FromRegistry(), Field(description="the kernel under the skin: a table with type")
+    ]
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) = 1/(1/G_s + τ₀ q² + B q⁴) [m/Pa], with G_s of the substrate."""
+        substrate = self.substrate.compliance(q)
+        return substrate / (1 + substrate * self.skin_stiffness(q))
+
+    def mean_compliance(self) -> float:
+        """Return that of the substrate [m/Pa]: a uniform displacement does not bend the skin."""
+        return mean_compliance(self.substrate)
+
+
+@hookimpl
+def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
+    """Register the skin on another kernel."""
+    register(Coated)

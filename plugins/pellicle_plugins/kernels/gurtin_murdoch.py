@@ -1,0 +1,47 @@
+"""The elastic half-space whose surface is itself elastic."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Kernel
+from pellicle.operators import Array
+from pellicle.units import Tension
+
+from .isotropic_solid import IsotropicSolid
+from .skin import Skin
+
+
+class GurtinMurdoch(Skin, IsotropicSolid):
+    """Elastic half-space whose surface resists stretching too (Gurtin & Murdoch 1975).
+
+    The surface has a residual tension τ₀ and a stiffness κ_s = λ_s + 2μ_s against in-plane strain.
+    Pressing moves the surface of a compressible solid sideways too, which its stiffness hinders. An
+    incompressible one it does not: with ν = ½, or κ_s = 0, this is `tensed_membrane`.
+    """
+
+    type: Literal["gurtin_murdoch"] = "gurtin_murdoch"
+    surface_stiffness: Annotated[
+        Tension, Field(description="stiffness κ_s = λ_s + 2μ_s of the surface in its plane [N/m]")
+    ]
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) [m/Pa] of surface elasticity after Gurtin & Murdoch 1975.
+
+        1/G = (E* q/2)(1 + η)/(1 + (1 − g²)η) + τ₀ q² + B q⁴ with η = 2κ_s q/E* and
+        g = (1 − 2ν)/(2(1 − ν)), the share of a normal displacement that appears sideways.
+        """
+        eta = 2 * self.surface_stiffness * q / self.reduced_modulus
+        g = (1 - 2 * self.poissons_ratio) / (2 * (1 - self.poissons_ratio))
+        hindered = (1 + eta) / (1 + (1 - g**2) * eta)
+        return 1 / (self.reduced_modulus * q / 2 * hindered + self.skin_stiffness(q))
+
+
+@hookimpl
+def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
+    """Register the half-space with surface elasticity."""
+    register(GurtinMurdoch)

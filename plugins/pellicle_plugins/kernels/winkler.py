@@ -1,0 +1,37 @@
+"""The bed of springs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Kernel
+from pellicle.operators import Array
+from pellicle.units import FoundationStiffness
+
+
+class Winkler(Kernel):
+    """Bed of independent springs: the surface yields only where it is pressed (Winkler 1867)."""
+
+    type: Literal["winkler"] = "winkler"
+    foundation: Annotated[
+        FoundationStiffness, Field(description="stiffness k of the springs per area [Pa/m]")
+    ]
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) = 1/k [m/Pa], the same for every wave; Johnson 1985, section 4.3."""
+        return np.full_like(q, 1 / self.foundation)
+
+    def mean_compliance(self) -> float:
+        """Return 1/k [m/Pa]."""
+        return 1 / self.foundation
+
+
+@hookimpl
+def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
+    """Register the bed of springs."""
+    register(Winkler)

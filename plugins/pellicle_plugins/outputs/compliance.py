@@ -1,0 +1,122 @@
+"""The kernel in Fourier space, as the cells have it, against its symbol."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+import scipy.fft
+from pydantic import Field
+
+from pellicle import Run, displacement, hookimpl
+from pellicle.columns import Runs, names
+from pellicle.components import Output
+from pellicle.expression import evaluate
+from pellicle.operators import Array
+from pellicle.plotting import save_figure
+
+from .drawing import Drawing, along, label, one_axis, pick, set_scales, write_csv
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+_SYMBOLS = 40
+
+
+class Compliance(Drawing):
+    """Compliance of the cells against the kernel's symbol, over the wavenumber.
+
+    Symbols are the Fourier transform of the displacement under a pressure on one cell, along x,
+    divided by that of the pressure; lines are the kernel's formula. ``x`` and ``y`` are arithmetic
+    over ``q`` [rad/m], ``compliance`` [m/Pa] and the numbers of the configuration; the numbers
+    drawn are written as CSV beside the figure.
+    """
+
+    type: Literal["compliance"] = "compliance"
+    x: Annotated[str, Field(description="expression for the horizontal axis")] = "q"
+    y: Annotated[str, Field(description="expression for the vertical axis")] = "compliance"
+    by: Annotated[
+        str | None, Field(description="axis of the study each value of which has its own curve")
+    ] = None
+    label: Annotated[
+        str | None,
+        Field(description="name of a curve; {expression} in it is replaced by its value"),
+    ] = None
+    x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
+    y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
+
+    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the figure and its numbers."""
+        rows: list[dict[str, object]] = []
+
+        def fill(axes: Axes) -> None:
+            rows.extend(self._fill(axes, runs))
+
+        files = save_figure(lambda figure: fill(figure.add_subplot()), stem, self.formats)
+        return (*files, write_csv(stem.with_name(f"{stem.name}.csv"), rows))
+
+    def _fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        one_axis(runs.table.sizes, self.by, "by")
+        for number, at in enumerate(along(runs.table, self.by)):
+            picked = pick(runs.table, at)
+            run = Run.from_json(runs.open(str(picked["run"].item())).attrs["configuration"])
+            name = label(self.label, picked, self.by)
+            q, of_cells = of_cells_along_x(run)
+            shown = np.unique(np.geomspace(1, q.size, _SYMBOLS).astype(int)) - 1
+            for values, what, style in (
+                (of_cells, "cells", "o"),
+                (run.kernel.compliance(q), "symbol", "-"),
+            ):
+                x, y = self._columns(picked, q, values)
+                axes.plot(
+                    x,
+                    y,
+                    style,
+                    color=f"C{number}",
+                    markersize=3.5,
+                    markerfacecolor="white",
+                    markevery=list(shown) if style == "o" else None,
+                    linewidth=1.0,
+                    label=(name or what) if style == "o" else None,
+                )
+                for px, py in zip(x, y, strict=True):
+                    yield {"curve": name, "series": what, "x": px, "y": py}
+        axes.plot([], [], color="0.4", linewidth=1.0, label="symbol")
+        axes.set(
+            xlabel=self.x_label or (f"{self.x} [rad/m]" if self.x == "q" else self.x),
+            ylabel=self.y_label or (f"{self.y} [m/Pa]" if self.y == "compliance" else self.y),
+            title=self.title,
+        )
+        set_scales(axes, ("x", "y"))
+        axes.legend(frameon=False, fontsize="small")
+
+    def _columns(self, picked: xr.Dataset, q: Array, values: Array) -> tuple[Array, Array]:
+        known = {**names(picked), "q": q, "compliance": values}
+        x, y = (np.asarray(evaluate(text, known)) + 0 * q for text in (self.x, self.y))
+        return x, y
+
+
+def of_cells_along_x(run: Run) -> tuple[Array, Array]:
+    """Return q > 0 [rad/m] along x, and the compliance [m/Pa] that the cells of a run have there.
+
+    It is the discrete Fourier transform of the displacement under a unit pressure on the cell at
+    the middle, cut off at half of the domain to each side: on a free boundary it swings about the
+    symbol by about s/L where the length s of the tension is not small against the domain L.
+    """
+    middle = tuple(n // 2 for n in run.grid.shape)
+    pressure = np.zeros(run.grid.shape)
+    pressure[middle] = 1.0
+    response = displacement(pressure, kernel=run.kernel, grid=run.grid)
+    along_x = np.roll(response.sum(axis=1), -middle[0])
+    values = scipy.fft.rfft(along_x).real[1:]
+    # The last wavenumber of an even number of cells is listed as negative.
+    return np.abs(run.grid.wavenumbers()[0].ravel()[1 : values.size + 1]), values
+
+
+@hookimpl
+def register_outputs(register: Callable[[type[Output]], None]) -> None:
+    """Register the compliance."""
+    register(Compliance)

@@ -1,0 +1,107 @@
+"""A field over the domain, a panel for each run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.columns import Runs, names
+from pellicle.components import Output
+from pellicle.expression import evaluate
+from pellicle.plotting import axis_unit, extent, save_figure
+
+from .drawing import Drawing, along, label, one_axis, pick, scaled, step_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_PANEL = 2.7
+_COLUMNS = 4
+
+
+class Maps(Drawing):
+    """A field over the domain, one panel for each value of an axis.
+
+    Of the other axes of a study the first value is drawn, and of the steps the last. ``field`` is
+    arithmetic over the fields and numbers of a run: ``contact`` is drawn black on white, and
+    ``displacement - depth - gap`` is the profile of the indenter.
+    """
+
+    type: Literal["maps"] = "maps"
+    field: Annotated[str, Field(description="expression for what is drawn")] = "pressure"
+    by: Annotated[
+        str | None, Field(description="axis of the study, or step: each value has its own panel")
+    ] = None
+    label: Annotated[
+        str | None,
+        Field(description="title of a panel; {expression} in it is replaced by its value"),
+    ] = None
+    field_label: Annotated[str | None, Field(description="label of the colours")] = None
+
+    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the figure."""
+        import xarray as xr
+
+        one_axis(runs.table.sizes, self.by, "by")
+        panels = []
+        for at in along(runs.table, self.by):
+            picked = pick(runs.table, at)
+            run = step_of(runs, picked)
+            if run is not None:
+                values, _ = xr.broadcast(evaluate(self.field, names(run)), run["contact"])
+                panels.append((label(self.label, picked, self.by), run, values))
+        across = min(max(len(panels), 1), _COLUMNS)
+        down = ceil(max(len(panels), 1) / across)
+        size = (_PANEL * across + 1.2, _PANEL * down + 1.0) if len(panels) > 1 else (5.4, 4.2)
+        return save_figure(
+            lambda figure: self._fill(figure, panels, down, across), stem, self.formats, size
+        )
+
+    def _fill(
+        self,
+        figure: Figure,
+        panels: list[tuple[str, xr.Dataset, xr.DataArray]],
+        down: int,
+        across: int,
+    ) -> None:
+        all_axes = figure.subplots(down, across, squeeze=False).ravel()
+        for axes in all_axes[len(panels) :]:
+            axes.set_axis_off()
+        if not panels:
+            return
+        values = np.concatenate([field.values.ravel() for *_, field in panels])
+        yes_or_no = panels[0][2].dtype == bool
+        factor, name = (
+            (1.0, "") if yes_or_no else scaled(self.field, panels[0][2], self.field_label)
+        )
+        values = values[np.isfinite(values)] * factor
+        for axes, (title, run, field) in zip(all_axes, panels, strict=False):
+            length, unit = axis_unit(np.append(run["x"].values, run["y"].values), "m")
+            image = axes.imshow(
+                field.transpose("y", "x").values * factor,
+                origin="lower",
+                extent=extent(run["x"].values * length, run["y"].values * length),
+                cmap="binary" if yes_or_no else "viridis",
+                vmin=values.min(initial=0.0) if yes_or_no else values.min(),
+                vmax=1 if yes_or_no else values.max(),
+                interpolation="nearest" if yes_or_no else None,
+            )
+            axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
+            axes.set_title(title, fontsize="medium")
+            axes.label_outer()
+        if not yes_or_no:
+            figure.colorbar(image, ax=list(all_axes), label=name, shrink=0.85)
+        figure.suptitle(self.title)
+
+
+@hookimpl
+def register_outputs(register: Callable[[type[Output]], None]) -> None:
+    """Register the maps."""
+    register(Maps)

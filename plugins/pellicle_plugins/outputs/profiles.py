@@ -1,0 +1,140 @@
+"""Fields along a line through the centre, run beside run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.columns import Runs, names
+from pellicle.components import Output
+from pellicle.expression import evaluate
+from pellicle.plotting import save_figure
+from pellicle_plugins.analytic.twin import exact_line
+
+from .drawing import (
+    Drawing,
+    along,
+    label,
+    one_axis,
+    pick,
+    scaled,
+    set_scales,
+    step_of,
+    write_csv,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+_ACROSS = {"x": "y", "y": "x"}
+_SYMBOLS = 90
+
+
+class Profiles(Drawing):
+    """Fields along x or y through the centre, one curve for each value of an axis.
+
+    Of the other axes of a study the first value is drawn, and of the steps the last. ``x`` and
+    ``y`` are arithmetic over the fields and numbers of each run; the numbers drawn are written as
+    CSV beside the figure.
+    """
+
+    type: Literal["profiles"] = "profiles"
+    along: Annotated[Literal["x", "y"], Field(description="direction of the line")] = "x"
+    x: Annotated[
+        str | None, Field(description="expression for the horizontal axis; the position if absent")
+    ] = None
+    y: Annotated[str, Field(description="expression for the vertical axis")] = "pressure"
+    by: Annotated[
+        str | None, Field(description="axis of the study, or step: each value has its own curve")
+    ] = None
+    label: Annotated[
+        str | None,
+        Field(description="name of a curve; {expression} in it is replaced by its value"),
+    ] = None
+    x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
+    y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
+    reference: Annotated[
+        Literal["axisymmetric"] | None,
+        Field(description="draw the same expressions of the semi-analytic solution too"),
+    ] = None
+
+    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the figure and its numbers."""
+        rows: list[dict[str, object]] = []
+
+        def fill(axes: Axes) -> None:
+            rows.extend(self._fill(axes, runs))
+
+        files = save_figure(lambda figure: fill(figure.add_subplot()), stem, self.formats)
+        return (*files, write_csv(stem.with_name(f"{stem.name}.csv"), rows))
+
+    def _fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        one_axis(runs.table.sizes, self.by, "by")
+        factors: tuple[float, float] | None = None
+        for number, at in enumerate(along(runs.table, self.by)):
+            picked = pick(runs.table, at)
+            run = step_of(runs, picked)
+            if run is None:
+                continue
+            name = label(self.label, picked, self.by)
+            line = run.isel({_ACROSS[self.along]: run.sizes[_ACROSS[self.along]] // 2})
+            x, y = self._columns(line)
+            if factors is None:
+                (fx, x_label), (fy, y_label) = (
+                    scaled(self.x or self.along, x, self.x_label),
+                    scaled(self.y, y, self.y_label),
+                )
+                factors = fx, fy
+                axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
+            axes.plot(
+                x.values * factors[0],
+                y.values * factors[1],
+                "o" if self.reference else "-",
+                color=f"C{number}",
+                markersize=3.5,
+                markerfacecolor="white",
+                markevery=max(1, x.size // _SYMBOLS) if self.reference else None,
+                linewidth=1.2,
+                label=name or None,
+            )
+            yield from _rows(name, "run", x, y)
+            if self.reference:
+                x, y = self._columns(exact_line(line))
+                axes.plot(
+                    x.values * factors[0],
+                    y.values * factors[1],
+                    color=f"C{number}",
+                    linewidth=1.0,
+                    zorder=1,
+                )
+                yield from _rows(name, "semi-analytic", x, y)
+        if self.reference:
+            axes.plot([], [], color="0.4", linewidth=1.0, label="semi-analytic")
+        set_scales(axes, ())
+        if axes.get_legend_handles_labels()[1]:
+            axes.legend(frameon=False, fontsize="small")
+
+    def _columns(self, line: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
+        """Return x and y along a line, each with a value for every point."""
+        import xarray as xr
+
+        known = names(line)
+        x, y = (evaluate(text, known) for text in (self.x or self.along, self.y))
+        x, y = (xr.DataArray(0.0 * line[self.along] + each, attrs=each.attrs) for each in (x, y))
+        return x, y
+
+
+def _rows(name: str, what: str, x: xr.DataArray, y: xr.DataArray) -> Iterator[dict[str, object]]:
+    for px, py in zip(x.values, y.values, strict=True):
+        yield {"curve": name, "series": what, "x": px, "y": py}
+
+
+@hookimpl
+def register_outputs(register: Callable[[type[Output]], None]) -> None:
+    """Register the profiles."""
+    register(Profiles)

@@ -1,0 +1,119 @@
+"""Operator applications of active_set on every built-in kernel.
+
+    python tests/benchmarks/kernels.py --points 64 128 256
+    python tests/benchmarks/kernels.py --cases free
+
+Domain L = 1 mm, E* = 10 kPa, to 1e-8; a row that did not converge says so:
+rough   periodic, self-affine (H = 0.8, rms 0.01 L, eight waves along the edge), 300 Pa
+free    paraboloid of radius L at a depth of 0.01 L, domain L/2
+"""
+
+from __future__ import annotations
+
+import argparse
+import warnings
+from typing import Any
+
+import pellicle as pl
+
+LENGTH, MODULUS = 1e-3, 1e4
+SOLID = {"reduced_modulus": MODULUS}
+
+
+def layer(base: str, nu: float, thickness: float) -> dict[str, Any]:
+    """Return the table of a layer whose thickness is given over L."""
+    return SOLID | {"type": base, "poissons_ratio": nu, "thickness": thickness * LENGTH}
+
+
+def bending(length: float) -> float:
+    """Return B for which a wave of q = 1/(length L) feels skin and solid alike."""
+    return MODULUS / 2 * (length * LENGTH) ** 3
+
+
+def surface(tension: float) -> dict[str, Any]:
+    """Return the table of surface elasticity, κ_s = 1 N/m."""
+    elastic = {"type": "gurtin_murdoch", "poissons_ratio": 0.3, "surface_stiffness": 1.0}
+    return SOLID | elastic | {"tension": tension}
+
+
+def coated(substrate: dict[str, Any], **skin: float) -> dict[str, Any]:
+    """Return the table of a skin on a kernel."""
+    return {"type": "coated", "substrate": substrate, **skin}
+
+
+SPRINGS = {"type": "winkler", "foundation": MODULUS / (0.1 * LENGTH)}
+KERNELS: dict[str, dict[str, Any]] = {
+    "`half_space`": SOLID | {"type": "half_space"},
+    "`tensed_membrane`, s = 0.02 L": SOLID | {"type": "tensed_membrane", "tension": 0.1},
+    "`gurtin_murdoch`, ν = 0.3": surface(0.0),
+    "`gurtin_murdoch`, ν = 0.3, s = 0.02 L": surface(0.1),
+    "`bonded_layer`, ν = 0.3, h = 0.02 L": layer("bonded_layer", 0.3, 0.02),
+    "`bonded_layer`, ν = 0.3, h = 0.2 L": layer("bonded_layer", 0.3, 0.2),
+    "`bonded_layer`, ν = 0.5, h = 0.02 L": layer("bonded_layer", 0.5, 0.02),
+    "`bonded_layer`, ν = 0.5, h = 0.2 L": layer("bonded_layer", 0.5, 0.2),
+    "`frictionless_layer`, h = 0.02 L": layer("frictionless_layer", 0.3, 0.02),
+    "`frictionless_layer`, h = 0.2 L": layer("frictionless_layer", 0.3, 0.2),
+    "`winkler`": SPRINGS,
+    "`coated` `winkler`, τ₀ = 0.1 N/m": coated(SPRINGS, tension=0.1),
+    "`coated` layer, ν = 0.3, h = 0.02 L, τ₀ = 1 N/m": coated(
+        layer("bonded_layer", 0.3, 0.02), tension=1.0
+    ),
+    "`coated` layer, ν = 0.5, h = 0.02 L, τ₀ = 1 N/m": coated(
+        layer("bonded_layer", 0.5, 0.02), tension=1.0
+    ),
+    "`bending_skin`, (2B/E\\*)^⅓ = 0.02 L": SOLID
+    | {"type": "bending_skin", "bending": bending(0.02)},
+    "`bending_skin`, the same and τ₀ = 0.1 N/m": SOLID
+    | {"type": "bending_skin", "bending": bending(0.02), "tension": 0.1},
+    "`bending_skin`, (2B/E\\*)^⅓ = 0.2 L": SOLID
+    | {"type": "bending_skin", "bending": bending(0.2)},
+    "`coated` layer, ν = 0.45, h = 0.1 L, (2B/E\\*)^⅓ = 0.05 L": coated(
+        layer("bonded_layer", 0.45, 0.1), bending=bending(0.05)
+    ),
+}
+
+
+def solve(case: str, kernel: dict[str, Any], points: int) -> Any:
+    """Return the only step of a case."""
+    rough = {
+        "grid": {"points": points, "size": LENGTH, "boundary": "periodic"},
+        "indenter": {
+            "type": "self_affine",
+            "rms_height": LENGTH / 100,
+            "hurst": 0.8,
+            "cutoff_wavelength": LENGTH / 8,
+            "seed": 1,
+        },
+        "loading": {"mean_pressure": 300.0},
+    }
+    free = {
+        "grid": {"points": points, "size": LENGTH / 2, "boundary": "free"},
+        "indenter": {"type": "paraboloid", "radius": LENGTH},
+        "loading": {"depth": LENGTH / 100},
+    }
+    run = pl.Run(kernel=kernel, **{"rough": rough, "free": free}[case])
+    return pl.run(run, progress=False, threads=1).dataset.isel(step=0)
+
+
+def main() -> None:
+    """Solve every case and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--cases", nargs="+", default=["rough", "free"])
+    parser.add_argument("--points", type=int, nargs="+", default=[64, 128, 256])
+    options = parser.parse_args()
+    warnings.simplefilter("ignore", pl.ConvergenceWarning)
+    heads = [f"{case}, N = {points}" for case in options.cases for points in options.points]
+    print(f"| kernel | {' | '.join(heads)} |")
+    print("|" + " --- |" * (len(heads) + 1))
+    for name, kernel in KERNELS.items():
+        steps = [solve(case, kernel, points) for case in options.cases for points in options.points]
+        cells = [
+            str(step["operator_applications"].item())
+            + ("" if step["converged"] else " not converged")
+            for step in steps
+        ]
+        print(f"| {name} | {' | '.join(cells)} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

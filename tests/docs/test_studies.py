@@ -1,0 +1,179 @@
+"""The studies of the paper's figures, smaller than they stand in docs/studies."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from blocks import ROOT
+from typer.testing import CliRunner
+
+from pellicle.cli import app
+from pellicle.study_config import from_toml
+from pellicle_plugins.analytic.axisymmetric import indent
+from pellicle_plugins.analytic.axisymmetric_indenters import Paraboloid
+
+STUDIES = ROOT / "docs/studies"
+RADIUS, MODULUS, DEPTH = 1e-3, 10e3, 50e-6
+Rows = list[dict[str, str]]
+
+
+def run(name: str, folder: Path, *overrides: str) -> None:
+    """Carry out a study of docs/studies as a user would."""
+    words = [word for text in overrides for word in ("--set", text)]
+    done = CliRunner().invoke(
+        app, ["run", str(STUDIES / name), "-o", str(folder), "--threads", "1", *words]
+    )
+    assert done.exit_code == 0, done.output
+
+
+def drawn(path: Path, **which: str) -> Rows:
+    """Return the numbers that a figure shows, of which only those with these texts."""
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return [row for row in rows if all(row[key] == value for key, value in which.items())]
+
+
+def column(rows: Rows, name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Return a column of numbers."""
+    assert rows
+    return np.array([float(row[name]) for row in rows])
+
+
+@pytest.mark.parametrize("path", sorted(STUDIES.glob("*.toml")), ids=lambda path: path.name)
+def test_study_is_valid(path: Path) -> None:
+    """Every file in docs/studies makes a run or a study."""
+    from_toml(path)
+
+
+def test_fig2_cells_have_the_symbol(tmp_path: Path) -> None:
+    """Below a third of the highest wavenumber the cells' compliance is the formula's to 5 % + s/L.
+
+    Above it a cell is no point any more; below the tenth mode the domain's end shows.
+    """
+    run("fig2.toml", tmp_path, "grid.points=256", "grid.size='5 mm'")
+    rows = drawn(tmp_path / "study-compliance.csv")
+    for name in ("s = 0 µm", "s = 20 µm", "s = 200 µm"):
+        q, cells, symbol = (
+            column([row for row in rows if (row["curve"], row["series"]) == (name, what)], axis)[
+                10:42
+            ]
+            for axis, what in (("x", "cells"), ("y", "cells"), ("y", "symbol"))
+        )
+        s = float(name.split()[2]) * 1e-6
+        np.testing.assert_allclose(symbol, 2 / (MODULUS * (q + s * q**2)), rtol=1e-12)
+        np.testing.assert_allclose(cells, symbol, rtol=0.05 + s / 5e-3)
+
+
+def test_fig3_the_correction_helps_on_every_grid(tmp_path: Path) -> None:
+    """The corrected area is nearer to the true one, and both get there as N grows."""
+    run("fig3.toml", tmp_path, 'study.vary={"grid.points"=[32,64,128]}')
+    true = np.pi * indent(Paraboloid(RADIUS), MODULUS, 1.0, depth=DEPTH).contact_radius ** 2 * 1e6
+    path = tmp_path / "study-curves.csv"
+    counted, corrected = (
+        abs(column(drawn(path, series=series), "y") / true - 1)
+        for series in ("without correction", "with correction")
+    )
+    np.testing.assert_allclose(
+        column(drawn(path, series="with correction, semi-analytic"), "y"), true, rtol=1e-9
+    )
+    assert (corrected < counted).all()
+    assert counted[0] < 0.05
+    assert counted[-1] < 0.015
+    assert corrected[-1] < 0.006
+
+
+def test_fig4_pressure_is_the_semi_analytic_one(tmp_path: Path) -> None:
+    """Inside the contact, three cells from its edge, the pressures agree to 2 %."""
+    run("fig4.toml", tmp_path, "grid.points=64")
+    rows = drawn(tmp_path / "study-profiles.csv")
+    for name in dict.fromkeys(row["curve"] for row in rows):
+        run_, true = (
+            [row for row in rows if (row["curve"], row["series"]) == (name, series)]
+            for series in ("run", "semi-analytic")
+        )
+        x, y = column(run_, "x"), column(run_, "y")
+        inside = abs(x) < 0.8
+        expected = np.interp(x[inside], column(true, "x"), column(true, "y"))
+        np.testing.assert_allclose(y[inside], expected, rtol=0.02)
+        assert (y[abs(x) > 1.1] == 0).all()
+
+
+def test_fig5_force_and_depth_follow_the_semi_analytic_solution(tmp_path: Path) -> None:
+    """Both ratios over Hertz agree with the semi-analytic ones at the same s/a."""
+    tensions = 'study.vary={"kernel.tension"=["10 mN/m", "0.1 N/m", "1 N/m"]}'
+    run("fig5.toml", tmp_path, "grid.points=64", tensions)
+    for name, tolerance in (("force", 0.02), ("depth", 0.02)):
+        path = tmp_path / f"study-{name}.csv"
+        found = drawn(path, series="boundary elements")
+        true = drawn(path, series="boundary elements, semi-analytic")
+        for axis in ("x", "y"):
+            np.testing.assert_allclose(column(found, axis), column(true, axis), rtol=tolerance)
+        assert (np.diff(column(found, "y")) > 0).all()
+
+
+def test_fig6_the_ellipse_is_more_slender_with_tension(tmp_path: Path) -> None:
+    """a₁/a₂ falls with tension; without it both semi-axes are those of Hertz."""
+    run("fig6.toml", tmp_path, "grid.points=64")
+    ratio = column(drawn(tmp_path / "study-slenderness.csv", curve=""), "y")
+    assert (np.diff(ratio) < 0).all()
+    path = tmp_path / "study-semi-axes.csv"
+    spacing = 0.7 / 64
+    for series, hertz in (("a₁", 0.210473), ("a₂", 0.333769)):
+        assert abs(column(drawn(path, series=series), "y")[0] - hertz) < spacing / 2
+    assert abs(ratio[0] - 0.210473 / 0.333769) < 0.005
+
+
+def test_fig7_is_the_surface(tmp_path: Path) -> None:
+    """The surface is drawn without a contact being solved."""
+    run("fig7.toml", tmp_path, "grid.points=128", "indenter.cutoff_wavelength='0.125 mm'")
+    assert (tmp_path / "fig7-maps.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.fixture(scope="module")
+def rough(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a small figure 8 and, of the same runs, figure 9."""
+    folder = tmp_path_factory.mktemp("rough")
+    smaller = (
+        "grid.points=64",
+        "indenter.cutoff_wavelength='0.125 mm'",
+        "loading.depth=['40 um','100 um']",
+    )
+    tensions = '"kernel.tension"=["0 mN/m","10 mN/m","50 mN/m","100 mN/m"]'
+    axes = f'study.vary={{{tensions},"indenter.seed"=[0,1]}}'
+    for name in ("fig8.toml", "fig9.toml"):
+        run(name, folder, *smaller, axes)
+    return folder
+
+
+def test_fig8_the_fraction_falls_with_tension(rough: Path) -> None:
+    """At every depth and for every seed a higher tension makes a smaller contact."""
+    table = xr.open_dataset(rough / "study.h5", engine="h5netcdf")
+    for area in ("contact_area", "contact_area_yastrebov"):
+        assert (table[area].diff("kernel.tension") < 0).all()
+    path = rough / "study-curves.csv"
+    for tension in ("0", "10", "50", "100"):
+        curve = drawn(path, curve=f"τ₀ = {tension} mN/m", series="corrected")
+        low, mean, high = (column(curve, name) for name in ("y_lowest", "y", "y_highest"))
+        assert (low <= mean).all()
+        assert (mean <= high).all()
+        assert (column(curve, "runs") == 2).all()
+    assert (rough / "study-maps.png").is_file()
+
+
+def test_fig9_a_fraction_needs_more_force_with_tension(rough: Path) -> None:
+    """The mean pressure in contact, force over area, grows with the tension at every depth."""
+    path = rough / "study-force.csv"
+    pressures = [
+        column(curve, "x") / column(curve, "y")
+        for curve in (drawn(path, curve=f"τ₀ = {t} mN/m") for t in ("0", "10", "50", "100"))
+    ]
+    assert (np.diff(pressures, axis=0) > 0).all()
+
+
+def test_fig9_solves_nothing_in_the_folder_of_fig8(rough: Path) -> None:
+    """Both studies have the same runs: there is one file for each of eight."""
+    assert len(list((rough / "runs").glob("*.h5"))) == 8

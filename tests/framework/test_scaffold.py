@@ -1,0 +1,102 @@
+"""Packages of plugins: names that can be used, and plain words for those that cannot."""
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from pellicle import ConfigError, StorageError
+from pellicle.cli import app
+from pellicle.components import FAMILIES
+from pellicle.scaffold import write_plugin
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_writes_a_package(family: str, tmp_path: Path) -> None:
+    """A name with a dash is a type, a module and a distribution, each in its own spelling."""
+    folder = write_plugin(family, "graded-solid2", tmp_path)
+    assert folder == tmp_path / "pellicle-graded-solid2"
+    assert {path.name for path in folder.iterdir()} == {
+        "README.md",
+        "graded_solid2.toml",
+        "pellicle_graded_solid2.py",
+        "pyproject.toml",
+        "test_pellicle_graded_solid2.py",
+    }
+    code = (folder / "pellicle_graded_solid2.py").read_text(encoding="utf-8")
+    assert "class GradedSolid2(pl." in code
+    assert 'type: Literal["graded_solid2"] = "graded_solid2"' in code
+    entry = f'"{family}.graded_solid2" = "pellicle_graded_solid2"'
+    assert entry in (folder / "pyproject.toml").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "",
+        "2d",
+        "Graded",
+        "a b",
+        "a/b",
+        "../up",
+        "a.b",
+        "a--b",
+        "_a",
+        "a-",
+        "größe",
+        "none",
+        "class",
+    ],
+)
+def test_name_that_is_none(name: str, tmp_path: Path) -> None:
+    """What is no name of a component, a module and a class is refused; nothing is written."""
+    with pytest.raises(ConfigError, match="cannot be the name of a component; give lower-case"):
+        write_plugin("kernel", name, tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_name_of_a_component_that_there_is(tmp_path: Path) -> None:
+    """A type that is taken in the family, by whom it says; another family may have it."""
+    with pytest.raises(ConfigError, match=r"'half_space' is the type of a kernel already, of pell"):
+        write_plugin("kernel", "half-space", tmp_path)
+    assert write_plugin("indenter", "half-space", tmp_path).is_dir()
+
+
+def test_name_of_a_module_that_there_is(tmp_path: Path) -> None:
+    """The package would hide another: pellicle_plugins holds the built-in components."""
+    with pytest.raises(ConfigError, match="a module pellicle_plugins is installed already"):
+        write_plugin("output", "plugins", tmp_path)
+
+
+def test_family_that_is_none(tmp_path: Path) -> None:
+    """Families are named."""
+    with pytest.raises(ConfigError, match="'kernal' is no family; give one of kernel, indenter"):
+        write_plugin("kernal", "graded", tmp_path)
+
+
+def test_folder_that_there_is(tmp_path: Path) -> None:
+    """What is there is left alone."""
+    kept = write_plugin("kernel", "graded", tmp_path) / "pellicle_graded.py"
+    kept.write_text("mine")
+    with pytest.raises(StorageError, match="pellicle-graded exists already; give another name"):
+        write_plugin("indenter", "graded", tmp_path)
+    assert kept.read_text() == "mine"
+
+
+def test_folder_that_cannot_be_written(tmp_path: Path) -> None:
+    """The folder is named, with a remedy."""
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(StorageError, match="pellicle-graded: cannot be written"):
+        write_plugin("kernel", "graded", tmp_path / "file")
+
+
+def test_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The command says what to do next, and which argument is missing."""
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, ["new", "--plugin", "indenter", "tip"])
+    assert done.exit_code == 0
+    assert done.output.startswith("wrote pellicle-tip; next: cd pellicle-tip")
+    assert (tmp_path / "pellicle-tip" / "pyproject.toml").is_file()
+    done = CliRunner().invoke(app, ["new", "--plugin", "indenter"])
+    assert done.exit_code == 2
+    assert "NAME: is missing; for example: pellicle new --plugin indenter mine" in done.stderr

@@ -1,0 +1,503 @@
+"""Studies carried out: the table, what is repeated and what is not, and what goes wrong."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle import lock, storage
+from pellicle import study as study_module
+from pellicle.cli import app
+from pellicle.components import Monitor
+from pellicle.operators import Array
+
+RUN: dict[str, Any] = {
+    "title": "Study",
+    "grid": {"points": 16, "size": "0.4 mm"},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
+    "indenter": {"type": "paraboloid", "radius": "1 mm"},
+    "loading": {"depth": ["5 um", "10 um", "15 um"]},
+    "outputs": [],
+}
+TENSION, RADIUS = "kernel.tension", "indenter.radius"
+NUMBERS = ("depth", "force", "contact_area", "residual_contact", "iterations", "converged")
+
+
+class Counting(pl.Solver):
+    """Counts what it solves; fails where it is told to."""
+
+    type: Literal["counting"] = "counting"
+    solved: ClassVar[list[tuple[float, float]]] = []
+    fails_at: ClassVar[Callable[[pl.Problem], Exception | None]] = lambda problem: None
+
+    def solve(self, problem: pl.Problem, start: Array | None, monitor: Monitor) -> pl.Solution:
+        """Let another solver do it."""
+        if (error := type(self).fails_at(problem)) is not None:
+            raise error
+        tension = problem.operator.kernel.tension  # type: ignore[attr-defined]
+        self.solved.append((tension, problem.value))
+        return pl.solver("active_set").solve(problem, start, monitor)
+
+
+@pytest.fixture(autouse=True)
+def _nothing_solved(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Counting, "solved", [])
+
+
+def study(vary: dict[str, Any] | None = None, **others: Any) -> pl.Study:
+    """Return a study whose solver counts."""
+    run = RUN | {"solver": Counting()} | others
+    return pl.Study(run=run, vary=vary or {TENSION: [0.0, 0.5], RADIUS: [1e-3, 2e-3]})
+
+
+def carry_out(made: pl.Study, directory: Path | None = None, **options: Any) -> xr.Dataset:
+    """Return the table of a study, silently."""
+    return pl.run_study(made, directory, progress=False, threads=1, **options)
+
+
+def same_numbers(one: xr.Dataset, other: xr.Dataset) -> None:
+    """Fail unless two tables agree bit for bit, but for the time that the steps took."""
+    for name in (*NUMBERS, "status", "run"):
+        xr.testing.assert_equal(one[name], other[name])
+
+
+def break_at(monkeypatch: pytest.MonkeyPatch, tension: float, depth: float) -> None:
+    """Have one step of the runs of one tension fail."""
+
+    def fails(problem: pl.Problem) -> Exception | None:
+        here = problem.operator.kernel.tension == tension and problem.value == depth  # type: ignore[attr-defined]
+        return ZeroDivisionError("struck by lightning") if here else None
+
+    monkeypatch.setattr(Counting, "fails_at", staticmethod(fails))
+
+
+def test_table_is_that_of_its_runs() -> None:
+    """Each entry of the table is what the run on its own gives."""
+    made = study()
+    table = carry_out(made)
+    assert dict(table.sizes) == {TENSION: 2, RADIUS: 2, "step": 3}
+    for point in made.points:
+        alone = pl.run(point.run, progress=False, threads=1).dataset
+        row = table.isel({TENSION: point.place[0], RADIUS: point.place[1]})
+        assert row[TENSION] == point.run.kernel.tension  # type: ignore[attr-defined]
+        for name in NUMBERS:
+            assert (row[name].values == alone[name].values).all()
+        assert row["run"].item() == point.run.identity[:16]
+    assert table[TENSION].attrs["units"] == "N/m"
+    assert table["force"].attrs["units"] == "N"
+    assert pl.Study.from_json(
+        json.dumps(json.loads(table.attrs["configuration"]) | {"solver": {"type": "active_set"}})
+    )
+
+
+def test_nothing_stays_without_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A study without a directory leaves no file."""
+    monkeypatch.chdir(tmp_path)
+    carry_out(study({TENSION: [0.5, 1.0]}))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_files(tmp_path: Path) -> None:
+    """The folder holds a result for each run, the table, and no trace of the work."""
+    table = carry_out(study(), tmp_path)
+    names = {f"{name}.h5" for name in table["run"].values.ravel()}
+    assert {path.name for path in (tmp_path / "runs").iterdir()} == names
+    visible = {path.name for path in tmp_path.iterdir() if path.name[0] != "."}
+    assert visible == {"runs", "study.h5", "study.csv"}
+    with xr.open_dataset(tmp_path / "study.h5", engine="h5netcdf") as stored:
+        same_numbers(stored.load(), table)
+    lines = (tmp_path / "study.csv").read_text(encoding="utf-8").splitlines()
+    assert len(lines) == 1 + table["force"].size
+    assert lines[0].startswith(
+        "run,kernel.tension [N/m],indenter.radius [m],step,depth [m],force [N]"
+    )
+    assert float(lines[-1].split(",")[5]) == table["force"].values.ravel()[-1]
+
+
+def test_finished_study_repeats_nothing(tmp_path: Path) -> None:
+    """A finished study solves nothing again, and says the same."""
+    table = carry_out(study(), tmp_path)
+    assert len(Counting.solved) == table["force"].size
+    Counting.solved.clear()
+    same_numbers(carry_out(study(), tmp_path), table)
+    assert Counting.solved == []
+
+
+def test_changed_axis_runs_only_the_new_points(tmp_path: Path) -> None:
+    """Another value, another order or a finer axis repeats no run that is there."""
+    carry_out(study({TENSION: [0.0, 0.5]}), tmp_path)
+    Counting.solved.clear()
+    table = carry_out(study({TENSION: [1.0, 0.5, 0.0]}), tmp_path)
+    assert {tension for tension, _ in Counting.solved} == {1.0}
+    assert table["converged"].values.all()
+    assert table[TENSION].values.tolist() == [1.0, 0.5, 0.0]
+
+
+def test_overwrite_begins_anew(tmp_path: Path) -> None:
+    """Everything is solved again where it is asked for."""
+    table = carry_out(study(), tmp_path)
+    Counting.solved.clear()
+    same_numbers(carry_out(study(), tmp_path, overwrite=True), table)
+    assert len(Counting.solved) == table["force"].size
+
+
+def test_failing_run_stops_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that fails has its reason in the table, and is all that is tried again."""
+    break_at(monkeypatch, 0.5, 1e-5)
+    with pytest.warns(pl.ConvergenceWarning, match="of 3 runs 1 failed; see status"):
+        table = carry_out(study({TENSION: [0.0, 0.5, 1.0]}), tmp_path)
+    bad = table.sel({TENSION: 0.5})
+    assert bad["status"].values.tolist() == [
+        "converged",
+        *["failed: ZeroDivisionError: struck by lightning"] * 2,
+    ]
+    assert np.isfinite(bad["force"].values).tolist() == [True, False, False]
+    assert bad["converged"].values.tolist() == [True, False, False]
+    assert table.sel({TENSION: [0.0, 1.0]})["converged"].values.all()
+    shown = CliRunner().invoke(app, ["show", str(tmp_path)])
+    assert shown.exit_code == 1
+    assert "struck by lightning" in shown.stderr
+    monkeypatch.undo()
+    monkeypatch.setattr(Counting, "solved", [])
+    again = carry_out(study({TENSION: [0.0, 0.5, 1.0]}), tmp_path)
+    # Its first step was there.
+    assert Counting.solved == [(0.5, 1e-5), (0.5, 1.5e-5)]
+    same_numbers(again, carry_out(study({TENSION: [0.0, 0.5, 1.0]})))
+
+
+def test_unconverged_run(tmp_path: Path) -> None:
+    """A step that did not converge is in the table with its status, and is not solved in vain."""
+    deep = {"depth": ["5 um", "60 um", "70 um"]}
+    with pytest.warns(pl.ConvergenceWarning, match="of 2 runs 2 did not converge"):
+        table = carry_out(study({TENSION: [0.0, 1.0]}, loading=deep), tmp_path)
+    assert "reaches the edge" in table["status"].values[0, 1]
+    Counting.solved.clear()
+    with pytest.warns(pl.ConvergenceWarning, match="of 2 runs 2 did not converge"):
+        again = carry_out(study({TENSION: [0.0, 1.0]}, loading=deep), tmp_path)
+    same_numbers(again, table)
+    assert Counting.solved == []
+
+
+def test_runs_of_unequal_length() -> None:
+    """Runs with fewer steps have none in the rest of the table, and lack nothing."""
+    table = carry_out(study({"loading.depth": [["5 um"], ["5 um", "10 um"]]}))
+    assert table["status"].values.tolist() == [["converged", ""], ["converged", "converged"]]
+    assert np.isnan(table["force"].values[0, 1])
+
+
+def test_corrections_that_vary() -> None:
+    """An area that only some runs have is NaN in the others."""
+    table = carry_out(study({"corrections": [[], [{"type": "yastrebov"}]]}))
+    area = table["contact_area_yastrebov"].values
+    assert np.isnan(area[0]).all()
+    assert (area[1] > 0).all()
+
+
+def test_fields_are_read_where_they_are_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Fields of all runs are there, equal those of each run, and cost nothing until looked at."""
+    break_at(monkeypatch, 0.5, 1e-5)
+    made = study()
+    with pytest.warns(pl.ConvergenceWarning):
+        table = carry_out(made, tmp_path, fields=True)
+    read: list[int] = []
+    plain = storage.field
+    monkeypatch.setattr(storage, "field", lambda *where: (read.append(where[2]), plain(*where))[1])
+    assert table["pressure"].shape == (2, 2, 3, 16, 16)
+    assert table["pressure"].attrs["units"] == "Pa"
+    assert read == []
+    name = table["run"].values[0, 1]
+    alone = pl.load(tmp_path / "runs" / f"{name}.h5").dataset
+    for field in ("pressure", "displacement", "gap", "contact"):
+        part = table[field][0, 1].isel(x=slice(None, None, -3), y=[5, 2, 9])
+        wanted = alone[field].isel(x=slice(None, None, -3), y=[5, 2, 9])
+        assert (part.values == wanted.values).all()
+    read.clear()
+    assert np.isnan(table["pressure"][1, 0, 1:].values).all()
+    assert not table["contact"][1, 0, 1:].values.any()
+    assert read == []
+    table["pressure"][:, 0, 0].max().item()
+    assert read == [0, 0]
+
+
+def test_fields_that_cannot_be() -> None:
+    """Fields want a folder, and one grid."""
+    with pytest.raises(pl.ConfigError, match="give a directory"):
+        carry_out(study(), fields=True)
+    with pytest.raises(pl.ConfigError, match="different grids"):
+        carry_out(study({"grid.points": [8, 16]}), Path("x"), fields=True)
+
+
+@pytest.mark.parametrize("after", [1, 2, 5, 6, 11])
+def test_interrupted(after: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C keeps every finished step, in runs and table, and the same command goes on."""
+    presses = iter(range(100))
+
+    def press(problem: pl.Problem) -> None:
+        if next(presses) == after:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Counting, "fails_at", staticmethod(press))
+    with pytest.raises(KeyboardInterrupt):
+        carry_out(study(), tmp_path)
+    kept, _ = study_module.read(tmp_path)
+    assert np.isfinite(kept["force"].values).sum() == after
+    assert (kept["status"] == "not run").sum() == kept["force"].size - after
+    assert len(Counting.solved) == after
+    table = carry_out(study(), tmp_path)
+    assert len(Counting.solved) == kept["force"].size
+    same_numbers(table, carry_out(study()))
+
+
+def test_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run on its own goes on too, to the same fields bit for bit; a finished one does nothing."""
+    run = pl.Run(**RUN | {"solver": Counting(), "outputs": None})
+    break_at(monkeypatch, 1.0, 1.5e-5)
+    with pytest.raises(ZeroDivisionError):
+        pl.run(run, directory=tmp_path, progress=False, threads=1)
+    assert len(Counting.solved) == 2
+    monkeypatch.setattr(Counting, "fails_at", staticmethod(lambda problem: None))
+    result = pl.run(run, directory=tmp_path, progress=False, threads=1)
+    assert len(Counting.solved) == 3
+    whole = pl.run(run, progress=False, threads=1)
+    Counting.solved.clear()
+    again = pl.run(run, directory=tmp_path, progress=False, threads=1)
+    assert Counting.solved == []
+    for one in (
+        result,
+        again,
+        pl.load(next(tmp_path.glob("*.h5"))),
+    ):
+        xr.testing.assert_equal(
+            one.dataset.drop_vars("wall_time"), whole.dataset.drop_vars("wall_time")
+        )
+    rows = next(tmp_path.glob("*.csv")).read_text(encoding="utf-8").splitlines()
+    assert len(rows) == 1 + 3
+    assert [row.split(",")[0] for row in rows[1:]] == ["0", "1", "2"]
+    pl.run(run, directory=tmp_path, progress=False, threads=1, overwrite=True)
+    assert len(Counting.solved) == 3
+
+
+def test_title_and_outputs_make_no_other_run(tmp_path: Path) -> None:
+    """What is drawn of a finished run may be changed afterwards."""
+    run = RUN | {"solver": Counting(), "outputs": None}
+    pl.run(run, directory=tmp_path, progress=False)
+    Counting.solved.clear()
+    pl.run(
+        run | {"outputs": [{"type": "hdf5"}, {"type": "csv"}]}, directory=tmp_path, progress=False
+    )
+    assert Counting.solved == []
+
+
+def test_two_processes_on_one_folder(tmp_path: Path) -> None:
+    """The second process is told who holds the folder; the lock of a dead one is no hindrance."""
+    code = (
+        "import sys, pathlib\nfrom pellicle import lock\n"
+        "with lock.held(pathlib.Path(sys.argv[1])):\n"
+        "    print('held', flush=True)\n    sys.stdin.read()"
+    )
+    holder = subprocess.Popen(
+        [sys.executable, "-c", code, tmp_path], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    assert holder.stdout is not None
+    try:
+        assert holder.stdout.readline() == b"held\n"
+        said = (
+            f"is at work: process {holder.pid} on .*wait until it has finished, or choose another"
+        )
+        with pytest.raises(pl.StorageError, match=said):
+            carry_out(study(), tmp_path)
+        assert Counting.solved == []
+        holder.send_signal(signal.SIGKILL)
+        holder.wait()
+        assert (tmp_path / "study.lock").exists()
+        carry_out(study(), tmp_path)
+        assert not (tmp_path / "study.lock").exists()
+    finally:
+        holder.kill()
+        holder.wait()
+        holder.stdout.close()
+        assert holder.stdin is not None
+        holder.stdin.close()
+
+
+def test_lock_is_released(tmp_path: Path) -> None:
+    """A folder may be held again by the same process, but not twice at once."""
+    for _ in range(2):
+        with (
+            lock.held(tmp_path),
+            pytest.raises(pl.StorageError, match="is at work"),
+            lock.held(tmp_path),
+        ):
+            raise AssertionError("held twice")
+
+
+@pytest.fixture
+def full_disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[int], None]]:
+    """Return a function that fills the disk after so many more files have been written."""
+
+    def fill_after(count: int) -> None:
+        left = [count]
+        plain = os.fsync
+
+        def fsync(descriptor: int) -> None:
+            left[0] -= 1
+            if left[0] < 0:
+                raise OSError(28, "No space left on device")
+            plain(descriptor)
+
+        monkeypatch.setattr("os.fsync", fsync)
+
+    return fill_after  # type: ignore[return-value]
+
+
+@pytest.mark.parametrize("files", [0, 1, 3, 4, 5, 8, 13])
+def test_full_disk(
+    files: int, tmp_path: Path, full_disk: Callable[[int], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A disk that fills up ends the study with a message; what was finished is whole and counts."""
+    full_disk(files)
+    with pytest.raises(pl.StorageError, match=r"study\..*No space left on device.*another folder"):
+        carry_out(study(), tmp_path)
+    before = len(Counting.solved)
+    held = {path.name: storage.read(path) for path in (tmp_path / "runs").glob("*.h5")}
+    steps = sum(data.sizes["step"] for data in held.values())
+    # No more than the step whose file did not fit is lost.
+    assert before - steps <= 1
+    assert not list(tmp_path.rglob(".*.part"))
+    monkeypatch.undo()
+    monkeypatch.setattr(Counting, "solved", [])
+    table = carry_out(study(), tmp_path)
+    assert len(Counting.solved) == table["force"].size - steps
+    assert table["converged"].values.all()
+
+
+def test_folder_that_cannot_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A read-only folder is named before anything is solved."""
+
+    def refuse(*arguments: object, **options: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("tempfile.TemporaryFile", refuse)
+    with pytest.raises(pl.StorageError, match=r"cannot be written \(Permission denied\)"):
+        carry_out(study(), tmp_path)
+    (tmp_path / "file").touch()
+    with pytest.raises(pl.StorageError, match="cannot be written"):
+        carry_out(study(), tmp_path / "file" / "folder")
+    assert Counting.solved == []
+
+
+def test_damaged_run_file(tmp_path: Path) -> None:
+    """A damaged result fails its own run, with what to do, and is left as it is."""
+    table = carry_out(study(), tmp_path)
+    path = tmp_path / "runs" / f"{table['run'].values[1, 0]}.h5"
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) // 2])
+    Counting.solved.clear()
+    with pytest.warns(pl.ConvergenceWarning, match="of 4 runs 1 failed"):
+        again = carry_out(study(), tmp_path)
+    assert Counting.solved == []
+    status = again["status"].values[1, 0, 0]
+    assert status.startswith("failed: ")
+    assert "not a readable result file" in status
+    assert "--overwrite" in status
+    assert path.read_bytes() == content[: len(content) // 2]
+    path.unlink()
+    same_numbers(carry_out(study(), tmp_path), table)
+    assert len(Counting.solved) == 3
+
+
+def test_foreign_table(tmp_path: Path) -> None:
+    """A file in the place of the table that is none is not replaced unless it may be."""
+    (tmp_path / "study.h5").write_text("mine")
+    with pytest.raises(pl.StorageError, match=r"study\.h5: not a readable.*--overwrite"):
+        carry_out(study(), tmp_path)
+    assert (tmp_path / "study.h5").read_text() == "mine"
+    assert Counting.solved == []
+    carry_out(study(), tmp_path, overwrite=True)
+
+
+def test_left_overs_of_the_dead_are_swept(tmp_path: Path) -> None:
+    """Half-written files of processes that are no more go; those of the living stay."""
+    dead = subprocess.run(
+        [sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True
+    )
+    host = storage._host()
+    runs = tmp_path / "runs"
+    runs.mkdir()
+    gone = runs / f".a.h5.{host}.{int(dead.stdout)}.part"
+    kept = [
+        runs / f".a.h5.{host}.{os.getppid()}.part",
+        runs / f".a.h5.elsewhere.{int(dead.stdout)}.part",
+        runs / ".mine.part",
+    ]
+    for path in (gone, *kept):
+        path.touch()
+    carry_out(study(), tmp_path)
+    assert not gone.exists()
+    assert all(path.exists() for path in kept)
+
+
+class Listing(pl.Output):
+    """Names each run that it is called for."""
+
+    type: Literal["listing"] = "listing"
+
+    def close(self, place: pl.Place, result: pl.Result) -> tuple[Path, ...]:
+        """Leave an empty file."""
+        path = place.file(".txt")
+        path.touch()
+        return (path,)
+
+
+class Summary(Listing):
+    """Leaves one file for the study."""
+
+    type: Literal["summary"] = "summary"  # type: ignore[assignment]
+
+    def study(self, place: pl.Place, table: xr.Dataset) -> tuple[Path, ...]:
+        """Leave the highest force."""
+        path = place.file("-summary.txt")
+        path.write_text(f"{table['force'].max().item()}", encoding="utf-8")
+        return (path,)
+
+
+def test_outputs_of_runs_and_of_the_study(tmp_path: Path) -> None:
+    """An output with a method for studies is called once, any other by each run."""
+    table = carry_out(study(outputs=[Listing(), Summary()]), tmp_path)
+    texts = {path.name for path in tmp_path.rglob("*.txt")}
+    assert texts == {"study-summary.txt", *(f"{name}.txt" for name in table["run"].values.ravel())}
+    highest = float((tmp_path / "study-summary.txt").read_text())
+    assert highest == table["force"].max().item()
+
+
+def test_figures(tmp_path: Path) -> None:
+    """The standard outputs of a study draw it."""
+    carry_out(study({TENSION: [0.0, 1.0], "indenter.radius": [1e-3, 2e-3]}, outputs=None), tmp_path)
+    assert {path.name for path in tmp_path.glob("*.png")} == {
+        "study-force.png",
+        "study-contact_fraction.png",
+    }
+
+
+def test_configuration_of_a_run(tmp_path: Path) -> None:
+    """The configuration that a run's file records is the run's own."""
+    made = study()
+    table = carry_out(made, tmp_path)
+    path = tmp_path / "runs" / f"{table['run'].values[0, 0]}.h5"
+    assert json.loads(storage.attributes(path)["configuration"]) == json.loads(
+        made.points[0].run.to_json()
+    )

@@ -1,0 +1,352 @@
+"""From a study file to its runs: axes, identity, and what is wrong with them."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import pellicle as pl
+from pellicle import memory
+from pellicle.model import replaced
+from pellicle.study_config import Study
+from pellicle.toml import toml_lines
+
+RUN: dict[str, Any] = {
+    "grid": {"points": 16, "size": "0.4 mm"},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
+    "indenter": {"type": "paraboloid", "radius": "1 mm"},
+    "loading": {"depth": ["5 um", "10 um"]},
+    "solver": {"type": "active_set"},
+    "corrections": [{"type": "yastrebov"}],
+}
+TENSION = "kernel.tension"
+
+
+def study(vary: object = None, **others: Any) -> Study:
+    """Return a study of the run above."""
+    return Study(run=RUN, vary={} if vary is None else vary, **others)
+
+
+def values(key: str, given: object, **others: Any) -> list[Any]:
+    """Return the values of a single axis as the coordinate has them."""
+    dimension, coordinate = study({key: given}, **others).coordinates()[key]
+    assert dimension == key
+    return coordinate.values.tolist()
+
+
+def refused(vary: object = None, **others: Any) -> str:
+    """Return what is said of a study that cannot be."""
+    with pytest.raises(pl.ConfigError) as caught:
+        study(vary, **others)
+    return str(caught.value)
+
+
+def test_product() -> None:
+    """Each value is combined with each; the last axis varies fastest."""
+    made = study({TENSION: [0, "10 mN/m"], "indenter.radius": ["1 mm", "2 mm", "3 mm"]})
+    assert made.shape == (2, 3)
+    assert [point.place for point in made.points][:4] == [(0, 0), (0, 1), (0, 2), (1, 0)]
+    for point in made.points:
+        assert point.run.kernel.tension == [0.0, 0.01][point.place[0]]  # type: ignore[attr-defined]
+        radius = point.run.indenter.radius  # type: ignore[attr-defined]
+        assert radius == pytest.approx([1e-3, 2e-3, 3e-3][point.place[1]])
+        assert point.run.loading == made.points[0].run.loading
+
+
+def test_zip() -> None:
+    """Zipped axes take their values together and share one dimension, next to the product's."""
+    zipped = [{"indenter.radius": ["1 mm", "2 mm"], "grid.size": ["0.4 mm", "0.8 mm"]}]
+    made = study({TENSION: [0, 1]}, zip=zipped)
+    assert made.dimensions.keys() == {TENSION, "indenter.radius"}
+    assert made.shape == (2, 2)
+    pairs = {(p.run.indenter.radius, p.run.grid.size[0]) for p in made.points}  # type: ignore[attr-defined]
+    assert pairs == {(1e-3, 0.4e-3), (2e-3, 0.8e-3)}
+    assert made.coordinates()["grid.size"][0] == "indenter.radius"
+
+
+@pytest.mark.parametrize(
+    ("key", "given", "expected"),
+    [
+        (TENSION, {"start": "0 mN/m", "stop": "100 mN/m", "num": 3}, [0, 0.05, 0.1]),
+        (
+            TENSION,
+            {"start": "10 mN/m", "stop": "1 N/m", "num": 3, "spacing": "log"},
+            [0.01, 0.1, 1],
+        ),
+        (TENSION, {"start": 0.5, "stop": 2, "num": 4}, [0.5, 1, 1.5, 2]),
+        (TENSION, ["10 mN/m", 0.5], [0.01, 0.5]),
+        (TENSION, np.array([0.25, 0.5]), [0.25, 0.5]),
+        ("grid.points", {"start": 16, "stop": 64, "num": 3, "spacing": "log"}, [16, 32, 64]),
+        ("grid.points", [16, [32, 16]], ["16", "[32, 16]"]),
+        ("kernel.type", ["tensed_membrane"], ["tensed_membrane"]),
+        ("loading.depth", ["5 um", "10 um"], [5e-6, 1e-5]),
+        ("loading.depth", [["5 um"], ["5 um", "10 um"]], ['["5 um"]', '["5 um", "10 um"]']),
+        ("loading.depth.0", ["1 um", "2 um"], [1e-6, 2e-6]),
+        ("corrections", [[], [{"type": "yastrebov"}]], ["[]", '[{"type": "yastrebov"}]']),
+        ("corrections.0.type", ["yastrebov"], ["yastrebov"]),
+        ("solver.tolerance", {"start": 1e-8, "stop": 1e-6, "num": 2}, [1e-8, 1e-6]),
+        (
+            "indenter",
+            [{"type": "sphere", "radius": "1 mm"}, {"type": "flat_punch", "radius": "50 um"}],
+            ["sphere", "flat_punch"],
+        ),
+    ],
+)
+def test_values(key: str, given: Any, expected: list[Any]) -> None:
+    """Lists and ranges of any parameter become SI numbers, or texts that tell them apart."""
+    # Entries of lists can be varied where the run has a list.
+    assert values(key, given) == (
+        expected if isinstance(expected[0], str) else pytest.approx(expected, rel=1e-15)
+    )
+
+
+def test_whole_numbers_stay_whole() -> None:
+    """Seeds of a range are whole numbers, as their field wants them."""
+    rough = {
+        "type": "self_affine",
+        "rms_height": "1 um",
+        "hurst": 0.7,
+        "cutoff_wavelength": "0.2 mm",
+    }
+    made = Study(
+        run=RUN | {"indenter": rough},
+        vary={"indenter.seed": {"start": 0, "stop": 19, "num": 20}},
+    )
+    seeds = made.coordinates()["indenter.seed"][1].values
+    assert seeds.tolist() == list(range(20))
+    assert seeds.dtype.kind == "i"
+
+
+def test_units() -> None:
+    """Coordinates know the unit of their field, also inside tuples and of load steps."""
+    made = study({TENSION: [1, 2], "grid.size": [1e-3, 2e-3], "loading.depth": [1e-6, 2e-6]})
+    units = {key: each.attributes.get("units") for key, (_, each) in made.coordinates().items()}
+    assert units == {TENSION: "N/m", "grid.size": "m", "loading.depth": "m"}
+
+
+def test_axes_without_quotes(tmp_path: Path) -> None:
+    """A dotted key without quotes makes nested tables in TOML, and means the same."""
+    text = pl.Run(**RUN).to_toml() + "[study.vary]\nkernel.tension = [0, 1]\nkernel.{} = [1e4, 2e4]"
+    (tmp_path / "a.toml").write_text(text.format("reduced_modulus"), encoding="utf-8")
+    made = Study.from_toml(tmp_path / "a.toml", ["study.vary.kernel.tension=[0, 1, 2]"])
+    assert made.dimensions.keys() == {TENSION, "kernel.reduced_modulus"}
+    assert made.shape == (3, 2)
+
+
+def test_what_varies_may_be_left_out_of_the_run() -> None:
+    """A required field needs no value besides those of its axis."""
+    kernel = {"type": "tensed_membrane", "reduced_modulus": 1e4}
+    assert Study(run=RUN | {"kernel": kernel}, vary={TENSION: [0, 1]}).shape == (2,)
+    with pytest.raises(pl.ConfigError, match=r"^run\.kernel\.tension: is missing"):
+        Study(run=RUN | {"kernel": kernel}, vary={"indenter.radius": [1e-3]})
+
+
+def test_a_run_may_be_varied() -> None:
+    """A `Run` does as well as the mapping that makes it."""
+    vary = {TENSION: [0, 1], "grid.points": [16, 24]}
+    runs = [point.run for point in Study(run=pl.Run(**RUN), vary=vary).points]
+    assert runs == [point.run for point in study(vary).points]
+
+
+def test_round_trips() -> None:
+    """TOML and JSON of a study make the same runs in the same order."""
+    zipped = [{"indenter.radius": ["1 mm", "2 mm"], "grid.size": [4e-4, 8e-4]}]
+    made = study(
+        {
+            TENSION: {"start": "0 mN/m", "stop": "1 N/m", "num": 3},
+            "corrections": [[], [{"type": "yastrebov"}]],
+        },
+        zip=zipped,
+        derived={"s": "kernel.tension / kernel.reduced_modulus"},
+    )
+    again = Study.from_json(made.to_json())
+    toml = Study.from_mapping(tomllib.loads(made.to_toml()))
+    for other in (again, toml):
+        assert other.points == made.points
+        assert other.dimensions == made.dimensions
+        assert other.derived == made.derived
+        assert other.executor == made.executor
+    jsonschema.validate(json.loads(made.to_json()), pl.schema())
+
+
+def test_relative_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files that a study names lie beside it, from wherever it is read, written or carried out."""
+    for name, factor in (("a", 1.0), ("b", 2.0)):
+        heights = np.add.outer(np.arange(16.0), np.arange(16.0)) * factor
+        np.save(tmp_path / f"{name}.npy", heights, allow_pickle=False)
+    indenter = {"type": "heights", "path": "a.npy", "unit": "1 um"}
+    data = RUN | {"indenter": indenter, "study": {"vary": {"indenter.path": ["a.npy", "b.npy"]}}}
+    (tmp_path / "s.toml").write_text("".join(toml_lines(data)), encoding="utf-8")
+    made = Study.from_toml(tmp_path / "s.toml")
+    monkeypatch.chdir("/")
+    again = Study.from_json(made.to_json())
+    assert [point.run for point in again.points] == [point.run for point in made.points]
+    assert made.points[0].run.identity != made.points[1].run.identity
+
+
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [
+        ({}, "vary: varies nothing"),
+        ({TENSION: []}, f"vary.{TENSION}: is empty; give at least one value"),
+        ({TENSION: 3}, f"vary.{TENSION}: 3 is not allowed; give a list of values"),
+        ({TENSION: [-1, 1]}, f"vary.{TENSION}: -1 is not allowed; give a value ≥ 0 N/m"),
+        ({TENSION: ["1 m"]}, f"vary.{TENSION}: '1 m' measures [length]"),
+        (
+            {"kernel.tensoin": [7]},
+            "vary.kernel.tensoin: 7: is not a field here; did you mean 'tension'?",
+        ),
+        (
+            {"kernle.tension": [7]},
+            "vary.kernle.tension: 7: is not a field here; did you mean 'kernel'?",
+        ),
+        ({"kernel.type": ["nope"]}, "vary.kernel.type: 'nope' is no kernel"),
+        ({TENSION: [1, 1.0]}, "are the same run; leave one out"),
+        ({TENSION: [0.01, "10 mN/m"]}, "(kernel.tension = 0.01) and (kernel.tension = 10 mN/m)"),
+        ({"title": ["a", "b"]}, "are the same run"),
+        (
+            {"kernel": [RUN["kernel"]], TENSION: [1]},
+            f"vary.{TENSION}: would override the axis kernel",
+        ),
+        ({"grid.points.0": [8]}, "vary.grid.points.0: 8: grid.points = 16 is not a table"),
+        ({"corrections.3.type": ["a"]}, "corrections has no entry 3; give one of its 1"),
+        ({TENSION: {"start": 1, "stop": 2}}, "a range that has start, stop is not allowed"),
+        ({TENSION: {"start": 1, "stop": 1, "num": 2}}, "starts where it stops"),
+        ({TENSION: {"start": 1, "stop": 2, "num": 1}}, f"vary.{TENSION}.num: 1 is not allowed"),
+        (
+            {TENSION: {"start": 0, "stop": 2, "num": 2, "spacing": "log"}},
+            "needs start and stop ≠ 0",
+        ),
+        ({TENSION: {"start": 1, "stop": 2, "num": 2, "spacing": "cubic"}}, '"linear" or "log"'),
+        ({TENSION: {"start": "1 N/m", "stop": 2, "num": 2}}, "both with a unit, or both without"),
+        ({TENSION: {"start": "1 N/m", "stop": "1 m", "num": 2}}, "measures [length]"),
+        (
+            {TENSION: {"start": "x", "stop": 2, "num": 2}},
+            "'x' is not allowed; give a finite number",
+        ),
+        ({TENSION: {"start": 0, "stop": float("inf"), "num": 2}}, "give a finite number"),
+        ([1], "vary: [1] is not a table"),
+    ],
+)
+def test_bad_axes(vary: object, words: str) -> None:
+    """What is wrong with an axis is said with its name, the value and what is allowed."""
+    assert words in refused(vary)
+
+
+def test_bad_zip() -> None:
+    """Zipped axes of unequal lengths are named with their lengths; an axis is there once."""
+    unequal = [{TENSION: [0, 1], "indenter.radius": [1e-3]}]
+    assert "zip.0: kernel.tension has 2, indenter.radius has 1" in refused(zip=unequal)
+    twice = refused({TENSION: [0, 1]}, zip=[{TENSION: [2, 3], "indenter.radius": [1e-3, 2e-3]}])
+    assert "would override the axis kernel.tension" in twice
+
+
+def test_all_problems_at_once() -> None:
+    """Every bad value of every axis is named, each once, though many runs have it."""
+    said = refused({TENSION: [-1, 1, -2], "indenter.radius": [0, 1e-3], "grid.points": [16, 0]})
+    for value in (
+        "-1",
+        "-2",
+        "0 is not allowed; give a whole number",
+        "0 is not allowed; give a value > 0 m",
+    ):
+        assert said.count(value) == 1
+    assert len(said.splitlines()) == 4
+
+
+def test_problem_of_a_combination() -> None:
+    """What is wrong with some runs only is said with one of these."""
+    made = RUN | {"loading": {"mean_pressure": 10}}
+    with pytest.raises(
+        pl.ConfigError, match=r"run\.loading\.mean_pressure: .*grid\.boundary = free"
+    ):
+        Study(run=made, vary={"grid.boundary": ["periodic", "free"]})
+
+
+def test_too_many_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A product that cannot even be listed is refused with its number and its memory."""
+    monkeypatch.setattr(memory, "available", lambda: 1e9)
+    many = {"start": 1.0, "stop": 2.0, "num": 1000}
+    said = refused({TENSION: many, "indenter.radius": many, "kernel.reduced_modulus": many})
+    assert "1000000000 runs need about 4e+04 GB" in said
+
+
+def test_problems_of_a_file(tmp_path: Path) -> None:
+    """In a file the axes are in the table study, and what they share is at the top."""
+    text = pl.Run(**RUN).to_toml() + "[study.vary]\nkernel.tension = [-1]\ngrid.point = [1]"
+    (tmp_path / "a.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(pl.ConfigError) as caught:
+        Study.from_toml(tmp_path / "a.toml", ["kernel.tensoin=1", "study.executer=1"])
+    assert "study.executer: is not a field here; did you mean 'executor'?" in str(caught.value)
+    with pytest.raises(pl.ConfigError) as caught:
+        Study.from_toml(tmp_path / "a.toml", ["kernel.tensoin=1"])
+    fields = {problem.field for problem in caught.value.problems}
+    assert fields == {"kernel.tensoin", "study.vary.kernel.tension", "study.vary.grid.point"}
+
+
+def test_a_study_is_no_run_and_a_run_no_study(tmp_path: Path) -> None:
+    """Each says what the other is for."""
+    plain = pl.Run(**RUN).to_toml()
+    (tmp_path / "run.toml").write_text(plain, encoding="utf-8")
+    (tmp_path / "study.toml").write_text(f"{plain}[study.vary]\nkernel.tension = [1]")
+    with pytest.raises(pl.ConfigError, match="study: is missing, so this is a single run"):
+        pl.run_study(tmp_path / "run.toml")
+    with pytest.raises(pl.ConfigError, match="makes this file a study: use run_study"):
+        pl.run(tmp_path / "study.toml")
+
+
+CHANGES: dict[str, list[Any]] = {
+    "grid.points": [24, [16, 24]],
+    "grid.size": [4.0000000001e-4, 1.0],
+    "grid.boundary": ["periodic"],
+    TENSION: [0.0, 1.0000000001],
+    "kernel.reduced_modulus": [1.00000001e4],
+    "indenter.radius": [2e-3],
+    "loading.depth": [[5e-6], [1e-5, 5e-6], [5e-6, 1e-5, 1.1e-5]],
+    "solver.tolerance": [1e-7],
+    "corrections": [[]],
+}
+
+
+@given(st.sampled_from([(key, value) for key, values in CHANGES.items() for value in values]))
+def test_identity_changes_with_any_value(change: tuple[str, Any]) -> None:
+    """Whatever decides a number is in the identity."""
+    assert pl.Run(**replaced(RUN, *change)).identity != pl.Run(**RUN).identity
+
+
+@given(
+    st.floats(0, 10),
+    st.floats(1e-5, 1e-2),
+    st.integers(1, 64),
+    st.text(),
+    st.sampled_from([(), None]),
+)
+def test_identity_of_equal_runs(
+    tension: float, radius: float, points: int, title: str, outputs: Any
+) -> None:
+    """Units, defaults, order, title and outputs make no other run."""
+    one = pl.Run(
+        grid={"points": points, "size": "1 mm"},
+        kernel={"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": tension},
+        indenter={"type": "paraboloid", "radius": radius},
+        loading={"depth": "10 um"},
+    )
+    other = pl.Run(
+        title=title,
+        outputs=outputs,
+        solver={"type": "active_set"},
+        loading={"depth": [1e-5]},
+        indenter={"radius": f"{radius!r} m", "type": "paraboloid"},
+        kernel={"tension": tension, "reduced_modulus": 1e4, "type": "tensed_membrane"},
+        grid={"size": [1e-3, 1e-3], "points": [points, points], "boundary": "free"},
+    )
+    assert one.identity == other.identity
+    assert one.identity == pl.Run.from_json(other.to_json()).identity

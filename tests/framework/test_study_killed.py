@@ -1,0 +1,89 @@
+"""A study killed at random moments ends as if nothing had happened."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import xarray as xr
+
+import pellicle as pl
+from pellicle import storage
+
+FILE = """
+title = "18 runs of 3 steps"
+outputs = []
+[grid]
+points = 48
+size = "0.5 mm"
+[kernel]
+type = "tensed_membrane"
+reduced_modulus = "10 kPa"
+[indenter]
+type = "paraboloid"
+radius = "1 mm"
+[loading]
+depth = ["5 um", "10 um", "15 um"]
+[study]
+executor = { type = "processes", workers = 2 }
+[study.vary]
+kernel.tension = { start = "0.1 N/m", stop = "1 N/m", num = 6, spacing = "log" }
+indenter.radius = ["1 mm", "1.2 mm", "1.4 mm"]
+"""
+KILLS = 4
+TIMES = {"wall_time"}
+
+
+def _start(folder: Path) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "pellicle", "run", "s.toml", "-o", "out", "--quiet"]
+    environment = os.environ | {"OMP_NUM_THREADS": "1"}
+    return subprocess.Popen(command, cwd=folder, env=environment)
+
+
+def _marks(runs: Path) -> int:
+    """Return how many times a file of a run has been begun or replaced, as far as one can see."""
+    return len({(path.name, path.stat().st_size) for path in _present(runs)})
+
+
+def _present(runs: Path) -> list[Path]:
+    return [path for path in runs.glob("*.h5") if path.exists()]
+
+
+def test_killed_and_restarted(tmp_path: Path) -> None:
+    """SIGKILL at random moments loses no finished step, spoils no file and changes no number."""
+    (tmp_path / "s.toml").write_text(FILE, encoding="utf-8")
+    runs = tmp_path / "out" / "runs"
+    chance = random.Random(4)
+    held: dict[str, int] = {}
+    for kill in range(KILLS):
+        process = _start(tmp_path)
+        # Counted in files, not in seconds: a slow machine must be killed in mid-study too.
+        wanted = _marks(runs) + chance.randrange(1, 5)
+        while process.poll() is None and _marks(runs) < wanted:
+            time.sleep(0.002)
+        time.sleep(chance.random() * 0.05)
+        process.send_signal(signal.SIGKILL)
+        assert process.wait() == -signal.SIGKILL, f"it had ended before kill {kill}"
+        for path in runs.glob("*.h5"):
+            found = storage.read(path).sizes["step"]
+            assert found >= held.get(path.name, 0)
+            held[path.name] = found
+    assert 0 < sum(held.values()) < 54
+    process = _start(tmp_path)
+    assert process.wait() == 0
+    table = xr.load_dataset(tmp_path / "out" / "study.h5", engine="h5netcdf")
+    made = pl.Study.from_toml(tmp_path / "s.toml", ["study.executor={type='serial'}"])
+    undisturbed = pl.run_study(made, progress=False, threads=1)
+    assert table.sizes == undisturbed.sizes
+    for name in undisturbed.data_vars:
+        if name not in TIMES:
+            xr.testing.assert_equal(table[name], undisturbed[name])
+    changed = {path: path.stat().st_mtime_ns for path in runs.iterdir()}
+    assert len(changed) == 18, "no half-written file is left"
+    assert _start(tmp_path).wait() == 0
+    assert {path: path.stat().st_mtime_ns for path in runs.iterdir()} == changed

@@ -1,0 +1,261 @@
+"""Contact on finite layers and on springs, whose limits are known in closed form."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+
+YOUNGS, THICKNESS = 9e3, 5e-5
+PERIODIC = {"points": [24, 20], "size": [1e-3, 0.8e-3], "boundary": "periodic"}
+ROUGH = {"type": "self_affine", "rms_height": 5e-6, "hurst": 0.8, "cutoff_wavelength": 2e-4}
+
+
+def layer(base: str, poissons_ratio: float, thickness: float = THICKNESS) -> dict[str, Any]:
+    """Return the table of a layer."""
+    return {
+        "type": base,
+        "youngs_modulus": YOUNGS,
+        "poissons_ratio": poissons_ratio,
+        "thickness": thickness,
+    }
+
+
+def wave_modulus(nu: float) -> float:
+    """Return M = E(1 − ν)/((1 + ν)(1 − 2ν)) [Pa]."""
+    return YOUNGS * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+
+
+def solve(**tables: Any) -> Any:
+    """Return the only step of a run."""
+    return pl.run(pl.Run(**tables), progress=False).dataset.isel(step=0)
+
+
+@pytest.mark.parametrize("base", ["bonded_layer", "frictionless_layer"])
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
+def test_full_contact_compresses_a_layer_by_uniaxial_strain(
+    base: str, nu: float, solver: str
+) -> None:
+    """Beyond full contact each further step of mean pressure sinks the indenter by h/M times it."""
+    steps = np.array([4.0, 5.0, 7.0]) * wave_modulus(nu) * 2e-5 / THICKNESS
+    run = pl.Run(
+        grid=PERIODIC,
+        kernel=layer(base, nu),
+        indenter=ROUGH,
+        loading={"mean_pressure": list(steps)},
+        solver={"type": solver},
+    )
+    found = pl.run(run, progress=False).dataset
+    assert found["converged"].all()
+    assert found["contact"].all()
+    rise = np.diff(found["depth"].values) / np.diff(steps)
+    np.testing.assert_allclose(rise, THICKNESS / wave_modulus(nu), rtol=1e-6)
+
+
+def test_a_depth_on_a_layer_counts_from_first_touch(solver: str) -> None:
+    """Prescribed depths start at 0, go past full contact, and belong to the pressures they make."""
+    kernel, depths = layer("bonded_layer", 0.3), [1e-7, 1e-5, 4e-5]
+    made = [
+        solve(
+            grid=PERIODIC,
+            kernel=kernel,
+            indenter=ROUGH,
+            loading={"depth": depth},
+            solver={"type": solver},
+        )
+        for depth in depths
+    ]
+    assert all(step["converged"] for step in made)
+    # The lightest touch is on one cell or few; the deepest is beyond the mean plane.
+    assert made[0]["contact_fraction"] < 0.02
+    assert made[2]["contact"].all()
+    again = solve(
+        grid=PERIODIC,
+        kernel=kernel,
+        indenter=ROUGH,
+        loading={"mean_pressure": float(made[1]["mean_pressure"])},
+        solver={"type": solver},
+    )
+    assert float(again["depth"]) == pytest.approx(depths[1], rel=1e-6)
+
+
+def test_an_incompressible_layer_keeps_its_mean_plane() -> None:
+    """With ν = ½ no pressure moves the mean plane, so a depth beyond it is refused as ever."""
+    with pytest.raises(pl.ConfigError, match="beyond full contact"):
+        solve(
+            grid=PERIODIC,
+            kernel=layer("bonded_layer", 0.5),
+            indenter=ROUGH,
+            loading={"depth": 1e-3},
+        )
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_a_paraboloid_on_springs(boundary: str, solver: str) -> None:
+    """The pressure is k times the overlap in each cell, the force π k R δ² (Johnson 1985, 4.3)."""
+    k, radius, depth = 1e8, 1e-3, 2e-5
+    step = solve(
+        grid={"points": 96, "size": 6e-4, "boundary": boundary},
+        kernel={"type": "winkler", "foundation": k},
+        indenter={"type": "paraboloid", "radius": radius},
+        loading={"depth": depth},
+        solver={"type": solver},
+    )
+    x, y = step["x"].values[:, None], step["y"].values[None]
+    overlap = np.maximum(depth - (x**2 + y**2) / (2 * radius), 0)
+    np.testing.assert_allclose(step["pressure"].values, k * overlap, atol=1e-6 * k * depth)
+    assert float(step["force"]) == pytest.approx(np.pi * k * radius * depth**2, rel=1e-3)
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.45])
+def test_a_thin_layer_under_a_paraboloid_is_springs(nu: float) -> None:
+    """Its force is that of springs M/h, less 2c h²/Rδ of it, where G = (h/M)(1 + c(qh)² + …).
+
+    The elastic energy of a given displacement changes by −½ c h² (h/M) ∫ |∇p|² to first order.
+    """
+    radius, depth, h = 1e-3, 1e-5, 4e-6
+    step = solve(
+        grid={"points": 192, "size": 3.6e-4, "boundary": "periodic"},
+        kernel=layer("bonded_layer", nu, h),
+        indenter={"type": "paraboloid", "radius": radius},
+        loading={"depth": depth},
+    )
+    assert step["converged"]
+    springs = np.pi * wave_modulus(nu) / h * radius * depth**2
+    c = (3 - 4 * nu) / (3 * (1 - 2 * nu)) - 1 / (1 - nu)
+    softer = 2 * c * h**2 / (radius * depth)
+    assert 1 - float(step["force"]) / springs == pytest.approx(softer, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("poissons_ratio", "slenderness", "expected"), [(0.3, 0.2, 1.206558), (0.5, 1.0, 3.618736)]
+)
+def test_flat_punch_on_a_bonded_layer(
+    poissons_ratio: float, slenderness: float, expected: float
+) -> None:
+    """κ in P = 2 E* a δ κ comes near its value at a/h as 1/N, and by extrapolation within 0.2 %.
+
+    The values are solutions of the integral equation of Hayes et al. (1972), to seven digits.
+    """
+    radius, depth, modulus = 1e-3, 1e-5, 1e4
+    kernel = {
+        "type": "bonded_layer",
+        "reduced_modulus": modulus,
+        "poissons_ratio": poissons_ratio,
+        "thickness": radius / slenderness,
+    }
+    points, found = np.array([24, 48, 96, 192]), []
+    for n in points:
+        # Several offsets of the rim against the grid, as a circle of cells is never quite round.
+        steps = [
+            solve(
+                grid={"points": n, "size": share * radius},
+                kernel=kernel,
+                indenter={"type": "flat_punch", "radius": radius},
+                loading={"depth": depth},
+            )
+            for share in np.linspace(2.2, 2.5, 7)
+        ]
+        assert all(step["converged"] for step in steps)
+        forces = np.array([float(step["force"]) for step in steps])
+        found.append(forces / (2 * modulus * radius * depth))
+    errors = [np.sqrt(np.mean((kappas / expected - 1) ** 2)) for kappas in found]
+    assert -np.polyfit(np.log(points), np.log(errors), 1)[0] > 0.8
+    assert errors[-1] < 4e-3
+    extrapolated = 2 * found[3].mean() - found[2].mean()
+    assert extrapolated == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize("base", ["bonded_layer", "frictionless_layer"])
+@pytest.mark.parametrize("nu", [0.3, 0.5])
+def test_a_thick_layer_on_a_free_boundary_is_a_half_space(base: str, nu: float) -> None:
+    """The base is felt as a uniform shift that falls as 1/h, less than 1e-6 from h = 1000 L on."""
+    grid = pl.Grid(points=[32, 24], size=1e-3)
+    pressure = np.random.default_rng(0).uniform(size=grid.shape)
+    bare = pl.kernel("half_space", reduced_modulus=1e4)
+    known = pl.displacement(pressure, kernel=bare, grid=grid)
+    apart = []
+    for h in (1.0, 10.0):
+        kernel = pl.kernel(base, reduced_modulus=1e4, poissons_ratio=nu, thickness=h)
+        found = pl.displacement(pressure, kernel=kernel, grid=grid)
+        apart.append(np.abs(found - known) / known.max())
+    np.testing.assert_allclose(apart[0], apart[0].mean(), rtol=1e-3)
+    assert apart[0].max() / apart[1].max() == pytest.approx(10, rel=1e-3)
+    far = pl.kernel(base, reduced_modulus=1e4, poissons_ratio=nu, thickness=1e3)
+    np.testing.assert_allclose(
+        pl.displacement(pressure, kernel=far, grid=grid), known, rtol=0, atol=1e-6 * known.max()
+    )
+
+
+def test_an_incompressible_layer_bulges_by_as_much_as_it_is_pressed_in() -> None:
+    """Beside the contact its surface rises, and the displaced volume is zero."""
+    grid = pl.Grid(points=192, size=2e-3)
+    x, y = grid.coordinates()
+    pressure = np.exp(-(x**2 + y**2) / (2 * 4e-5**2))
+    kernel = pl.kernel(
+        "bonded_layer", youngs_modulus=YOUNGS, poissons_ratio=0.5, thickness=THICKNESS
+    )
+    u = pl.displacement(pressure, kernel=kernel, grid=grid)
+    assert u.min() < -0.02 * u.max()
+    assert abs(u.sum()) < 1e-5 * np.abs(u).sum()
+
+
+@pytest.mark.parametrize("tension", [1e-6, 1e-2, 10.0])
+def test_a_coated_half_space_on_a_free_boundary_is_a_tensed_membrane(tension: float) -> None:
+    """From its symbol alone it has the displacements of the closed form, to 1e-10."""
+    grid = pl.Grid(points=[32, 24], size=1e-3)
+    pressure = np.random.default_rng(0).uniform(size=grid.shape)
+    bare = {"type": "half_space", "reduced_modulus": 1e4}
+    coated = pl.kernel("coated", tension=tension, substrate=bare)
+    known = pl.kernel("tensed_membrane", reduced_modulus=1e4, tension=tension)
+    np.testing.assert_allclose(
+        pl.displacement(pressure, kernel=coated, grid=grid),
+        pl.displacement(pressure, kernel=known, grid=grid),
+        rtol=1e-10,
+    )
+
+
+@pytest.mark.parametrize(("nu", "slope"), [(0.3, 0.8806), (0.5, 1.1329)])
+def test_a_paraboloid_feels_a_distant_base_as_published(nu: float, slope: float) -> None:
+    """F over that on the half-space grows as 1 + 2|α₀|χ/π, χ = √(Rδ)/h (Dimitriadis et al. 2002).
+
+    Their α₀ = −(1.2876 − 1.4678ν + 1.3442ν²)/(1 − ν) of a bonded layer is a fit in ν.
+    """
+    radius, depth = 1e-3, 1e-5
+    problem = {
+        "grid": {"points": 96, "size": 2.4e-4},
+        "indenter": {"type": "paraboloid", "radius": radius},
+        "loading": {"depth": depth},
+    }
+    solid = {"youngs_modulus": YOUNGS, "poissons_ratio": nu}
+    bare = float(solve(kernel={"type": "half_space", **solid}, **problem)["force"])
+    excess = []
+    for chi in (0.01, 0.02):
+        kernel = layer("bonded_layer", nu, np.sqrt(radius * depth) / chi)
+        excess.append((float(solve(kernel=kernel, **problem)["force"]) / bare - 1) / chi)
+    assert 2 * excess[0] - excess[1] == pytest.approx(slope, rel=0.01)
+
+
+def test_a_paraboloid_on_a_thin_incompressible_layer_is_on_a_film() -> None:
+    """As h falls F comes near 2πμR²δ³/h³ and a near 2 √(Rδ), twice Hertz's (lubrication)."""
+    radius, depth = 1e-3, 1e-5
+    reach = np.sqrt(radius * depth)
+    ratios, radii = [], []
+    for h in (0.1 * reach, 0.2 * reach):
+        step = solve(
+            grid={"points": 128, "size": 4.8 * reach},
+            kernel=layer("bonded_layer", 0.5, h),
+            indenter={"type": "paraboloid", "radius": radius},
+            loading={"depth": depth},
+        )
+        assert step["converged"]
+        film = 2 * np.pi * YOUNGS / 3 * radius**2 * depth**3 / h**3
+        ratios.append(float(step["force"]) / film)
+        radii.append(np.sqrt(float(step["contact_area"]) / np.pi) / (2 * reach))
+    # Measured: the force is off by the order of (h/a)², the radius by that of h/a.
+    assert (4 * ratios[0] - ratios[1]) / 3 == pytest.approx(1, abs=0.01)
+    assert 2 * radii[0] - radii[1] == pytest.approx(1, abs=0.02)
+    assert abs(ratios[0] - 1) < 0.05

@@ -1,0 +1,118 @@
+"""What the outputs that draw studies show, and what they refuse."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import pellicle as pl
+
+TENSION, RADIUS = "kernel.tension", "indenter.radius"
+
+
+def study(*outputs: dict[str, Any], **derived: str) -> dict[str, Any]:
+    """Return a small study of two tensions, two radii and two steps."""
+    return {
+        "grid": {"points": 16, "size": "0.4 mm"},
+        "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": 0.0},
+        "indenter": {"type": "paraboloid", "radius": "1 mm"},
+        "loading": {"depth": ["5 um", "10 um"]},
+        "outputs": list(outputs),
+        "study": {
+            "vary": {TENSION: [0.0, 1.0], RADIUS: ["1 mm", "2 mm"]},
+            **({"derived": derived} if derived else {}),
+        },
+    }
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    """Return the numbers that were drawn."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def carried(folder: Path, *outputs: dict[str, Any], **derived: str) -> xr.Dataset:
+    """Return the table of the study, its outputs left in the folder."""
+    return pl.run_study(study(*outputs, **derived), folder, progress=False, threads=1)
+
+
+def test_curves_are_mean_and_range_of_the_table(tmp_path: Path) -> None:
+    """One curve for each tension, its points means over the radii, with lowest and highest."""
+    table = carried(
+        tmp_path,
+        {"type": "curves", "x": "depth", "y": "force", "by": TENSION, "over": RADIUS},
+    )
+    found = rows(tmp_path / "study-curves.csv")
+    for name, expected in (
+        ("y", table["force"].mean(RADIUS)),
+        ("y_lowest", table["force"].min(RADIUS)),
+        ("y_highest", table["force"].max(RADIUS)),
+    ):
+        drawn = [float(row[name]) for row in found]
+        np.testing.assert_allclose(drawn, expected.values.ravel(), rtol=1e-14)
+
+
+def test_derived_columns_build_on_each_other_and_on_constants(tmp_path: Path) -> None:
+    """A derived column may name those before it, axes and numbers of the configuration."""
+    table = carried(tmp_path, s=f"2 * {TENSION} / kernel.reduced_modulus", s_over_r=f"s / {RADIUS}")
+    np.testing.assert_allclose(table["s_over_r"][1, 0], 2 * 1.0 / 1e4 / 1e-3, rtol=1e-14)
+    np.testing.assert_allclose(table["s_over_r"][1, 1], 2 * 1.0 / 1e4 / 2e-3, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("kernel.tensoin * 2", r"study.derived.s: 'kernel.tensoin'.*did you mean"),
+        ("force +", r"study.derived.s: .*not arithmetic"),
+    ],
+)
+def test_wrong_derived_columns_are_known_before_running(text: str, message: str) -> None:
+    """The study is refused, with the column's name."""
+    with pytest.raises(pl.ConfigError, match=message):
+        pl.Study.from_mapping(study(s=text))
+
+
+@pytest.mark.parametrize(
+    ("output", "message"),
+    [
+        ({"type": "curves", "by": "kernel.tensoin"}, "no axis of the table; did you mean"),
+        ({"type": "curves", "by": TENSION}, "would go over indenter.radius and step"),
+        ({"type": "maps", "by": "seed"}, "no axis of the table"),
+        ({"type": "profiles", "y": "presure"}, "did you mean 'pressure'"),
+    ],
+)
+def test_what_cannot_be_drawn_is_named(
+    output: dict[str, Any], message: str, tmp_path: Path
+) -> None:
+    """The message says which axis or name there is; the table is written all the same."""
+    with pytest.raises(pl.ConfigError, match=message):
+        carried(tmp_path, output)
+    assert (tmp_path / "study.h5").is_file()
+
+
+def test_fields_are_reduced_for_each_run(tmp_path: Path) -> None:
+    """An expression over fields gives the number of each step."""
+    carried(
+        tmp_path,
+        {"type": "curves", "x": "depth", "y": "sum(pressure)", "by": TENSION, "over": RADIUS},
+    )
+    table = carried(tmp_path)
+    spacing = 0.4e-3 / 16
+    drawn = [float(row["y"]) * spacing**2 for row in rows(tmp_path / "study-curves.csv")]
+    np.testing.assert_allclose(drawn, table["force"].mean(RADIUS).values.ravel(), rtol=1e-12)
+
+
+def test_semi_analytic_twin_is_only_of_what_has_one(tmp_path: Path) -> None:
+    """An indenter that is not axisymmetric is refused by name."""
+    run = study() | {
+        "indenter": {"type": "quadric", "radius_x": "1 mm", "radius_y": "2 mm"},
+        "outputs": [{"type": "curves", "reference": "axisymmetric"}],
+    }
+    del run["study"]
+    with pytest.raises(pl.ConfigError, match=r"'quadric'.*have no axisymmetric solution"):
+        pl.run(run, directory=tmp_path, progress=False)
