@@ -18,6 +18,8 @@ from typer.core import TyperGroup
 from .errors import ConfigError, PellicleError, PluginError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import xarray as xr
 
     from .config import Run
@@ -150,7 +152,7 @@ def fit(
         typer.Argument(help="CSV or TSV with a header such as position [um],force [nN]; HDF5."),
     ],
     indenter: Annotated[
-        str, typer.Option("--indenter", "-i", help="paraboloid, sphere, cone, flat_punch.")
+        str, typer.Option("--indenter", "-i", help="Type: paraboloid, sphere, cone, flat_punch, …")
     ],
     radius: Annotated[str | None, typer.Option(help='Radius with its unit: "5 um".')] = None,
     half_angle: Annotated[
@@ -167,6 +169,23 @@ def fit(
         str, typer.Option(help="Fitted of the force before contact: none, offset, slope.")
     ] = "none",
     segment: Annotated[str, typer.Option(help="Pass to fit: approach, retract.")] = "approach",
+    kernel: Annotated[
+        str | None, typer.Option(help="Type of the solid, if it is no half-space: coated, …")
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help='Further fields: --set indenter.radius_x="5 um", --set executor.type=processes',
+        ),
+    ] = None,
+    grid_points: Annotated[
+        int | None, typer.Option(help="Cells along each grid, where contacts are simulated.")
+    ] = None,
+    cache: Annotated[
+        Path | None, typer.Option(help="Folder that keeps simulated force curves.")
+    ] = None,
     directory: Annotated[
         Path | None, typer.Option("-o", "--output", help="Folder for JSON and a figure.")
     ] = None,
@@ -175,18 +194,33 @@ def fit(
     """Fit reduced modulus, tension and contact point to a measured curve, with intervals."""
     from .fitting.fit import fit as fit_curve
     from .fitting.read import read
+    from .fitting.simulation import GRID_POINTS
+    from .study_config import DEFAULT_EXECUTOR
 
     measured = read(curve)
-    fields = {"radius": radius, "half_angle": half_angle}
+    shape = {"type": indenter, "radius": radius, "half_angle": half_angle}
+    tables = _tables(
+        {
+            "indenter": {name: value for name, value in shape.items() if value is not None},
+            "kernel": {} if kernel is None else {"type": kernel},
+            "executor": {"type": DEFAULT_EXECUTOR},
+        },
+        set_ or (),
+    )
     made = fit_curve(
         measured.position,
         measured.force,
         depth=measured.depth,
-        indenter={"type": indenter} | {k: v for k, v in fields.items() if v is not None},
+        indenter=tables["indenter"],
+        kernel=tables["kernel"] or None,
         poissons_ratio=poissons_ratio,
         fix=dict(map(_assignment, fix or ())),
         baseline=baseline,  # type: ignore[arg-type]
         segment=segment,  # type: ignore[arg-type]
+        cache=cache,
+        executor=tables["executor"],
+        grid_points=GRID_POINTS if grid_points is None else grid_points,
+        progress=sys.stderr.isatty(),
     )
     if json:
         _print_json(made.to_dict())
@@ -373,6 +407,20 @@ def _assignment(text: str) -> tuple[str, str | float]:
         return name.strip(), float(value)
     except ValueError:
         return name.strip(), value.strip()
+
+
+def _tables(tables: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
+    """Return tables of components with what ``--set`` says put in."""
+    from .model import nearest, replaced
+    from .toml import parse_override
+
+    for text in overrides:
+        key, value = parse_override(text)
+        table, _, field = key.partition(".")
+        if table not in tables or not field:
+            raise ConfigError(f"--set {text!r}: {table} is no table here; {nearest(table, tables)}")
+        tables = replaced(tables, key, value)
+    return tables
 
 
 def _print_fit(fit: Fit) -> None:
