@@ -18,7 +18,7 @@ from typer.core import TyperGroup
 from .errors import ConfigError, PellicleError, PluginError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     import xarray as xr
 
@@ -189,6 +189,9 @@ def fit(
     directory: Annotated[
         Path | None, typer.Option("-o", "--output", help="Folder for JSON and a figure.")
     ] = None,
+    report: Annotated[
+        bool, typer.Option("--report", help="Leave a web page, there or in the current folder.")
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Fit reduced modulus, tension and contact point to a measured curve, with intervals."""
@@ -226,13 +229,8 @@ def fit(
         _print_json(made.to_dict())
     else:
         _print_fit(made)
-    if directory is not None:
-        from .fitting.drawing import save_figure
-
-        name = f"{curve.stem}-fit"
-        files = made.save(directory / f"{name}.json"), save_figure(made, directory / f"{name}.png")
-        for path in files:
-            typer.echo(f"wrote {path}", err=json)
+    for path in _fit_files(made, curve.stem, directory, report=report):
+        typer.echo(f"wrote {path}", err=json)
 
 
 @app.command()
@@ -407,6 +405,20 @@ def _assignment(text: str) -> tuple[str, str | float]:
         return name.strip(), float(value)
     except ValueError:
         return name.strip(), value.strip()
+
+
+def _fit_files(fit: Fit, stem: str, directory: Path | None, *, report: bool) -> Iterator[Path]:
+    """Write what is asked for of a fit, and yield each file."""
+    name = f"{stem}-fit"
+    if directory is not None:
+        from .fitting.drawing import save_figure
+
+        yield fit.save(directory / f"{name}.json")
+        yield save_figure(fit, directory / f"{name}.png")
+    if report:
+        from .fitting.report import save_report
+
+        yield save_report(fit, (directory or Path()) / f"{name}.html", stem)
 
 
 def _tables(tables: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:

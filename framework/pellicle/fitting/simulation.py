@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import shutil
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +16,9 @@ import platformdirs
 from pellicle.components import Executor, Indenter
 from pellicle.errors import ConfigError, ConvergenceError
 from pellicle.operators import Array
+from pellicle.plugins import registry
 from pellicle.study import as_study, carry_out, failures, is_table, read
+from pellicle.study_config import Study
 
 from .extent import half_widths
 from .simulated import SCALE, SimulatedCurve, stretched
@@ -48,8 +51,7 @@ def simulate(
     """Return the force curve of an indenter, from a study that is run unless it is there already.
 
     The study is that of a reduced modulus of 1 Pa and of lengths over one of the problem's own, so
-    that it serves every indenter and solid of these proportions.  Each contact is solved on a grid
-    of its own size, and once more with half as many cells each way.
+    that it serves every indenter and solid of these proportions.
 
     Parameters
     ----------
@@ -75,6 +77,81 @@ def simulate(
     StorageError
         The folder cannot be used, or another process is at it.
     """
+    planned = plan(indenter, solid, deepest, grid_points)
+    if isinstance(executor, str):
+        executor = {"type": executor}
+    folder = cache or platformdirs.user_cache_path("pellicle")
+    table = _table(planned.study(executor), folder / "force-curves", progress)
+    forces = table["force"].values.reshape(2, planned.depths.size, _RATIOS.size)
+    if not (forces > 0).all():
+        raise ConvergenceError("some contacts of the study carry no force; give more grid points")
+    made = partial(
+        SimulatedCurve,
+        indenter,
+        solid.kernel,
+        planned.depths,
+        _RATIOS,
+        width=planned.width,
+        unit=planned.unit,
+    )
+    return made(np.log(forces[0]), coarse=made(np.log(forces[1])))
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The contacts that a force curve needs, in lengths over `unit`."""
+
+    unit: float
+    """[m]"""
+    kernel: Mapping[str, Any]
+    tension: str
+    """Dotted path of the tension in the kernel."""
+    indenter: Mapping[str, Any]
+    depths: Array
+    boxes: Array
+    """Edges of the grid at each depth, of shape (m, 2)."""
+    width: tuple[float, float]
+    """Slope and value at δ = 1 of log w over log δ."""
+    grid_points: int
+
+    def study(self, executor: Mapping[str, Any] | Executor) -> Study:
+        """Return the study: each contact on a grid of its own, and on one of half the cells."""
+        slope, intercept = self.width
+        widths = np.exp(intercept + slope * np.log(self.depths))
+        count = _RATIOS.size
+        return as_study(
+            {
+                "title": f"force curve of {self.indenter['type']} on {self.kernel['type']}",
+                "grid": {"points": self.grid_points, "size": 1.0},
+                "kernel": self.kernel,
+                "indenter": self.indenter,
+                "loading": {"depth": 1.0},
+                "outputs": [],
+                "study": {
+                    "vary": {"grid.points": [self.grid_points, self.grid_points // 2]},
+                    "zip": [
+                        {
+                            "loading.depth": np.repeat(self.depths, count).tolist(),
+                            f"kernel.{self.tension}": np.outer(widths, _RATIOS / 2)
+                            .ravel()
+                            .tolist(),
+                            "grid.size": np.repeat(self.boxes, count, axis=0).tolist(),
+                        }
+                    ],
+                    "executor": executor,
+                },
+            }
+        )
+
+
+def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GRID_POINTS) -> Plan:
+    """Return which contacts the force curve of an indenter needs down to a depth [m].
+
+    Raises
+    ------
+    ConfigError
+        As for `simulate`.
+    """
     if indenter.footprint != "unbounded":
         raise ConfigError(
             "ends where the grid does, so it has no force curve of its own; give one that has a "
@@ -85,63 +162,36 @@ def simulate(
         raise ConfigError(
             f"{grid_points} is not allowed; give an even number ≥ {_FEWEST}", "grid_points"
         )
-    if isinstance(executor, str):
-        executor = {"type": executor}
-    fit_lengths = lengths(indenter) or lengths(solid.kernel) or [deepest]
-    unit = fit_lengths[0] if scales(indenter) and scales(solid.kernel) else 1.0
-    free = (solid.modulus, solid.tension)
+    given = lengths(indenter) or lengths(solid.kernel) or [deepest]
+    unit = given[0] if scales(indenter) and scales(solid.kernel) else 1.0
     try:
-        kernel = scaled(solid.kernel, unit, free)
+        kernel = scaled(solid.kernel, unit, (solid.modulus, solid.tension))
     except ConfigError as error:
         raise error.within("kernel") from None
     shape = scaled(indenter, unit)
+    # Rounded up, so that curves of about the same depth share a study.
     top = int(np.ceil(np.log2(deepest / unit) - 1e-9))
     depths: Array = 2.0 ** np.arange(top - _OCTAVES, top + 1, dtype=np.float64)
-    boxes = np.array([half_widths(type(indenter)(**shape), depth) for depth in depths])
-    slope, intercept = np.polyfit(np.log(depths), np.log(boxes.prod(axis=1)) / 2, 1)
-    widths = np.exp(intercept + slope * np.log(depths))
+    made = registry().make(Indenter, shape)
+    halves = np.array([half_widths(made, depth) for depth in depths])
+    slope, intercept = np.polyfit(np.log(depths), np.log(halves.prod(axis=1)) / 2, 1)
     margin = _MARGIN_OF_LAYERS if lengths(solid.kernel) else _MARGIN
-    tensions = np.outer(widths, _RATIOS) / 2
-    data = {
-        "title": f"force curve of {kernel['type']} under {shape['type']}",
-        "grid": {"points": grid_points, "size": 1.0},
-        "kernel": kernel,
-        "indenter": shape,
-        "loading": {"depth": 1.0},
-        "outputs": [],
-        "study": {
-            "vary": {"grid.points": [grid_points, grid_points // 2]},
-            "zip": [
-                {
-                    "loading.depth": np.repeat(depths, _RATIOS.size).tolist(),
-                    f"kernel.{solid.tension}": tensions.ravel().tolist(),
-                    "grid.size": np.repeat(2 * margin * boxes, _RATIOS.size, axis=0).tolist(),
-                }
-            ],
-            "executor": executor,
-        },
-    }
-    table = _table(data, cache or platformdirs.user_cache_path("pellicle"), progress)
-    forces = table["force"].values.reshape(2, depths.size, _RATIOS.size)
-    if not (forces > 0).all():
-        raise ConvergenceError("some contacts of the study carry no force; give more grid points")
-    made = partial(
-        SimulatedCurve,
-        indenter,
-        solid.kernel,
+    return Plan(
+        unit,
+        kernel,
+        solid.tension,
+        shape,
         depths,
-        _RATIOS,
-        width=(float(slope), float(intercept)),
-        unit=unit,
+        2 * margin * halves,
+        (float(slope), float(intercept)),
+        grid_points,
     )
-    return made(np.log(forces[0]), coarse=made(np.log(forces[1])))
 
 
-def _table(data: dict[str, Any], cache: Path, progress: bool) -> xr.Dataset:
+def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:
     """Return the table of a study, run if need be; of its runs nothing else is kept."""
-    study = as_study(data)
     runs = [point.run.identity for point in study.points]
-    folder = cache / "force-curves" / hashlib.sha256("".join(runs).encode()).hexdigest()[:16]
+    folder = cache / hashlib.sha256("".join(runs).encode()).hexdigest()[:16]
     if is_table(folder):
         found, _ = read(folder)
         if not failures(found):
