@@ -67,8 +67,8 @@ class Kernel(Component):
 class Indenter(Component):
     """The rigid body that is pressed in.
 
-    One that knows its force on a half-space under tension, as `HasForceCurve` says, can be fitted
-    to measured curves.
+    One that knows its force on a half-space under tension, as `HasForceCurve` says, is fitted to
+    measured curves at once; for any other the force is simulated first.
     """
 
     family: ClassVar[str] = "indenter"
@@ -103,7 +103,7 @@ class ForceCurve(NamedTuple):
 
 @runtime_checkable
 class HasForceCurve(Protocol):
-    """An indenter that knows its force on a half-space under tension; `pellicle.fit` needs it."""
+    """An indenter that knows its force on a half-space under tension; `pellicle.fit` uses it."""
 
     @property
     def depth_limit(self) -> float:
