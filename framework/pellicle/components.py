@@ -40,6 +40,7 @@ Monitor = Callable[[int, float], None]
 """Called by a solver with its iteration and its residual over the tolerance, to show progress."""
 
 Outcome = TypeVar("Outcome")
+Footprint = Literal["unbounded", "domain"]
 
 
 class Component(Model):
@@ -73,15 +74,21 @@ class Indenter(Component):
 
     family: ClassVar[str] = "indenter"
 
-    footprint: ClassVar[Literal["unbounded", "domain"]] = "unbounded"
-    """``"domain"`` if the indenter ends where the domain does, so that contact may reach there."""
+    @property
+    def footprint(self) -> Footprint:
+        """``"domain"`` if the indenter ends where the domain does, so that contact may reach there.
+
+        A class whose answer is always the same says ``footprint: ClassVar[Footprint] = "domain"``.
+        """
+        return "unbounded"
 
     @abstractmethod
     def profile(self, x: Array, y: Array) -> Array:
         """Return f(x, y) [m]: 0 at the lowest point, negative elsewhere, −inf where there is none.
 
         ``x`` of shape (nx, 1) and ``y`` of shape (1, ny) are cell centres [m] seen from the centre
-        of the domain; the result is of shape (nx, ny).
+        of the domain; the result is of shape (nx, ny). An unbounded indenter that is turned is
+        asked for points ``x`` and ``y`` that are both of shape (nx, ny).
 
         Raises
         ------
