@@ -94,6 +94,7 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
         },
         "profiles": {"by": "step", "label": "{depth * 1e6} µm", "reference": "axisymmetric"},
         "maps": {"field": "displacement - depth - gap", "name": "indenter"},
+        "html": {"points": 8, "frames": 1},
         "compliance": {"x": "q * indenter.radius"},
     },
     "executor": {"serial": {"threads": 1}, "processes": {"workers": 2}, "dask": {"workers": 2}},
