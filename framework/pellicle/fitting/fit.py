@@ -150,10 +150,24 @@ class Fit:
         """Return what `to_dict` returns as JSON."""
         return json.dumps(self.to_dict(), indent=2, ensure_ascii=False) + "\n"
 
+    def model(self) -> dict[str, Any]:
+        """Return indenter and kernel that were fitted with, as JSON has them.
+
+        A kernel is there only if its force curve was simulated, without modulus and tension.
+        """
+        curve = self.likelihood.indenter
+        if isinstance(curve, SimulatedCurve):
+            said = {"kernel": dict(curve.kernel), "accuracy": curve.accuracy}
+            return {"indenter": curve.indenter.model_dump(mode="json", exclude_none=True), **said}
+        if isinstance(curve, Component):
+            return {"indenter": curve.model_dump(mode="json", exclude_none=True)}
+        return {"indenter": {"type": type(curve).__name__}}
+
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold."""
         gain = self.chi_squared_without_tension - self.chi_squared
         return {name: value.to_dict() for name, value in self.estimates().items()} | {
+            "model": self.model(),
             "confidence": CONFIDENCE,
             "noise": {"value": self.noise, "unit": "N", "from": self.noise_from},
             "points": self.points,
@@ -255,11 +269,13 @@ def fit(
     if material is not None:
         if not isinstance(shape, Indenter):
             raise ConfigError("is given beside a force curve, which has one already", "kernel")
-        reach = (1 + BEFORE) * float(np.ptp(curve.position))
+        span = float(np.ptp(curve.position))
+        reach = float(curve.position[-1]) - values[POINT] if POINT in held else (1 + BEFORE) * span
         shape = simulate(
             shape,
             material,
-            reach if POINT in free else float(curve.position[-1]) - values[POINT],
+            # Where nothing reaches contact, the fit itself says so.
+            reach if reach > 0 else span,
             cache=None if cache is None else Path(cache),
             executor=executor,
             grid_points=grid_points,

@@ -88,7 +88,7 @@ def simulate(
     made = partial(
         SimulatedCurve,
         indenter,
-        solid.kernel,
+        solid.given,
         planned.depths,
         _RATIOS,
         width=planned.width,
@@ -163,7 +163,11 @@ def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GR
             f"{grid_points} is not allowed; give an even number ≥ {_FEWEST}", "grid_points"
         )
     given = [*lengths(indenter), *lengths(solid.kernel), deepest]
-    unit = next(value for value in given if value > 0) if scales(indenter) and scales(solid.kernel) else 1.0
+    unit = (
+        next(value for value in given if value > 0)
+        if scales(indenter) and scales(solid.kernel)
+        else 1.0
+    )
     try:
         kernel = scaled(solid.kernel, unit, (solid.modulus, solid.tension))
     except ConfigError as error:
