@@ -202,6 +202,9 @@ def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:
             return found
     made = carry_out(study, folder, progress=progress).table
     if said := failures(made):
-        raise ConvergenceError(f"the force curve needs the study in {folder}: {said}")
+        raise ConvergenceError(
+            f"the force curve needs the study in {folder}: {said}; another number of grid points "
+            "may help"
+        )
     shutil.rmtree(folder / "runs")
     return made
