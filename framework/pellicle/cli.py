@@ -158,7 +158,7 @@ def _run_study(
 def fit(
     curve: Annotated[
         Path,
-        typer.Argument(help="CSV or TSV with a header such as position [um],force [nN]; HDF5."),
+        typer.Argument(help="CSV or TSV with a header such as position (um),force (nN); HDF5."),
     ],
     indenter: Annotated[
         str, typer.Option("--indenter", "-i", help="Type: paraboloid, sphere, cone, flat_punch, …")
