@@ -2,7 +2,8 @@
 
 Give an indenter, a soft material and the tension in its surface; get the contact pressure, area,
 force and depth. `run` solves a `Run`, `run_study` all runs of a `Study`; `kernel`, `indenter` and
-`solver` make components by name; `displacement` applies one operator.
+`solver` make components by name; `displacement` applies one operator; `fit` finds modulus and
+tension of a measured curve.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
         AreaCorrection,
         Case,
         Executor,
+        ForceCurve,
+        HasForceCurve,
         Indenter,
         IterativeSolver,
         Kernel,
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
         PluginError,
         StorageError,
     )
+    from .fitting.fit import Estimate, Fit, fit
     from .grid import Grid
     from .hookspecs import hookimpl
     from .loading import Loading
@@ -50,8 +54,12 @@ _HOME = {
     "ConfigError": "errors",
     "ConvergenceError": "errors",
     "ConvergenceWarning": "errors",
+    "Estimate": "fitting.fit",
     "Executor": "components",
+    "Fit": "fitting.fit",
+    "ForceCurve": "components",
     "Grid": "grid",
+    "HasForceCurve": "components",
     "Indenter": "components",
     "IterativeSolver": "components",
     "Kernel": "components",
@@ -70,6 +78,7 @@ _HOME = {
     "StorageError": "errors",
     "Study": "study_config",
     "displacement": "operators",
+    "fit": "fitting.fit",
     "hookimpl": "hookspecs",
     "load": "result",
     "registry": "plugins",
@@ -85,8 +94,12 @@ __all__ = [
     "ConfigError",
     "ConvergenceError",
     "ConvergenceWarning",
+    "Estimate",
     "Executor",
+    "Fit",
+    "ForceCurve",
     "Grid",
+    "HasForceCurve",
     "Indenter",
     "IterativeSolver",
     "Kernel",
@@ -106,6 +119,7 @@ __all__ = [
     "Study",
     "__version__",
     "displacement",
+    "fit",
     "hookimpl",
     "indenter",
     "kernel",

@@ -19,9 +19,12 @@ from typer.core import TyperGroup
 from .errors import ConfigError, PellicleError, PluginError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
     import xarray as xr
 
     from .config import Run
+    from .fitting.fit import Fit
     from .result import Result
     from .study_config import Study
 
@@ -149,6 +152,94 @@ def _run_study(
         for path in done.files:
             typer.echo(f"wrote {path}")
     _exit_by_status(done.table)
+
+
+@app.command()
+def fit(
+    curve: Annotated[
+        Path,
+        typer.Argument(help="CSV or TSV with a header such as position (um),force (nN); HDF5."),
+    ],
+    indenter: Annotated[
+        str, typer.Option("--indenter", "-i", help="Type: paraboloid, sphere, cone, flat_punch, …")
+    ],
+    radius: Annotated[str | None, typer.Option(help='Radius with its unit: "5 um".')] = None,
+    half_angle: Annotated[
+        str | None, typer.Option(help='Angle between axis and side of a cone: "70 degree".')
+    ] = None,
+    poissons_ratio: Annotated[
+        float | None, typer.Option(help="Poisson's ratio, to get Young's modulus as well.")
+    ] = None,
+    fix: Annotated[
+        list[str] | None,
+        typer.Option(help='Hold a parameter: --fix tension=0, --fix reduced_modulus="10 kPa".'),
+    ] = None,
+    baseline: Annotated[
+        str, typer.Option(help="Fitted of the force before contact: none, offset, slope.")
+    ] = "none",
+    segment: Annotated[str, typer.Option(help="Pass to fit: approach, retract.")] = "approach",
+    kernel: Annotated[
+        str | None, typer.Option(help="Type of the solid, if it is no half-space: coated, …")
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help='Further fields: --set indenter.radius_x="5 um", --set executor.type=processes',
+        ),
+    ] = None,
+    grid_points: Annotated[
+        int | None, typer.Option(help="Cells along each grid, where contacts are simulated.")
+    ] = None,
+    cache: Annotated[
+        Path | None, typer.Option(help="Folder that keeps simulated force curves.")
+    ] = None,
+    directory: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for JSON and a figure.")
+    ] = None,
+    report: Annotated[
+        bool, typer.Option("--report", help="Leave a web page, there or in the current folder.")
+    ] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Fit reduced modulus, tension and contact point to a measured curve, with intervals."""
+    from .fitting.fit import fit as fit_curve
+    from .fitting.read import read
+    from .fitting.simulation import GRID_POINTS
+    from .study_config import DEFAULT_EXECUTOR
+
+    measured = read(curve)
+    shape = {"type": indenter, "radius": radius, "half_angle": half_angle}
+    tables = _tables(
+        {
+            "indenter": {name: value for name, value in shape.items() if value is not None},
+            "kernel": {} if kernel is None else {"type": kernel},
+            "executor": {"type": DEFAULT_EXECUTOR},
+        },
+        set_ or (),
+    )
+    made = fit_curve(
+        measured.position,
+        measured.force,
+        depth=measured.depth,
+        indenter=tables["indenter"],
+        kernel=tables["kernel"] or None,
+        poissons_ratio=poissons_ratio,
+        fix=dict(map(_assignment, fix or ())),
+        baseline=baseline,  # type: ignore[arg-type]
+        segment=segment,  # type: ignore[arg-type]
+        cache=cache,
+        executor=tables["executor"],
+        grid_points=GRID_POINTS if grid_points is None else grid_points,
+        progress=sys.stderr.isatty(),
+    )
+    if json:
+        _print_json(made.to_dict())
+    else:
+        _print_fit(made)
+    for path in _fit_files(made, curve.stem, directory, report=report):
+        typer.echo(f"wrote {path}", err=json)
 
 
 @app.command()
@@ -313,6 +404,63 @@ def validate() -> None:
     if not rows:
         raise PluginError("no cases are registered; see what is broken with `pellicle plugins`")
     raise typer.Exit(0 if passed else 1)
+
+
+def _assignment(text: str) -> tuple[str, str | float]:
+    """Return name and value of ``name=value``; a bare number is in SI."""
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise ConfigError(f"{text!r} is not of the form name=value, e.g. tension=0", "fix")
+    try:
+        return name.strip(), float(value)
+    except ValueError:
+        return name.strip(), value.strip()
+
+
+def _fit_files(fit: Fit, stem: str, directory: Path | None, *, report: bool) -> Iterator[Path]:
+    """Write what is asked for of a fit, and yield each file."""
+    name = f"{stem}-fit"
+    if directory is not None:
+        from .fitting.drawing import save_figure
+
+        yield fit.save(directory / f"{name}.json")
+        yield save_figure(fit, directory / f"{name}.png")
+    if report:
+        from .fitting.report import save_report
+
+        yield save_report(fit, (directory or Path()) / f"{name}.html", stem)
+
+
+def _tables(tables: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
+    """Return tables of components with what ``--set`` says put in."""
+    from .model import nearest, replaced
+    from .toml import parse_override
+
+    for text in overrides:
+        key, value = parse_override(text)
+        table, _, field = key.partition(".")
+        if table not in tables or not field:
+            raise ConfigError(f"--set {text!r}: {table} is no table here; {nearest(table, tables)}")
+        tables = replaced(tables, key, value)
+    return tables
+
+
+def _print_fit(fit: Fit) -> None:
+    rows = []
+    for name, estimate in fit.estimates().items():
+        low, high = (
+            "open" if end is None else f"{end:.4g}" for end in (estimate.low, estimate.high)
+        )
+        interval = "held" if estimate.held else f"{low} to {high}"
+        value = f"{estimate.value:.4g}"
+        rows.append({"": name, "value": value, "95 % interval": interval, "unit": estimate.unit})
+    _print_table(["", "value", "95 % interval", "unit"], rows)
+    typer.echo(f"noise: {fit.noise:.3g} N, from {fit.noise_from}; {fit.points} points")
+    for line in (fit.comparison, fit.advice):
+        if line:
+            typer.echo(line)
+    for message in fit.messages:
+        typer.echo(f"note: {message}", err=True)
 
 
 def _write_starter(path: Path) -> None:

@@ -11,7 +11,17 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol, TypeVar
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    ClassVar,
+    Literal,
+    NamedTuple,
+    Protocol,
+    TypeVar,
+    runtime_checkable,
+)
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +66,11 @@ class Kernel(Component):
 
 
 class Indenter(Component):
-    """The rigid body that is pressed in."""
+    """The rigid body that is pressed in.
+
+    One that knows its force on a half-space under tension, as `HasForceCurve` says, is fitted to
+    measured curves at once; for any other the force is simulated first.
+    """
 
     family: ClassVar[str] = "indenter"
 
@@ -81,6 +95,35 @@ class Indenter(Component):
         ConfigError
             The indenter cannot be put on these points.
         """
+
+
+class ForceCurve(NamedTuple):
+    """Force over reduced modulus against depth, and its sensitivities, each of shape (n,)."""
+
+    force: Array
+    """P/E* [m²]."""
+    by_depth: Array
+    """∂(P/E*)/∂δ [m]."""
+    by_length: Array
+    """∂(P/E*)/∂s [m]."""
+
+
+@runtime_checkable
+class HasForceCurve(Protocol):
+    """An indenter that knows its force on a half-space under tension; `pellicle.fit` uses it."""
+
+    @property
+    def depth_limit(self) -> float:
+        """Depth [m] up to which the curve holds; infinite if there is none."""
+        ...
+
+    def force_curve(self, depth: Array, length: float) -> ForceCurve:
+        """Return force and sensitivities; 0 where there is no contact, at ``depth`` ≤ 0.
+
+        Smooth and rising in depth and length.  ``depth`` [m] is of shape (n,), ``length`` ≥ 0 is
+        the elastocapillary length s = 2τ₀/E* [m].
+        """
+        ...
 
 
 class Solver(Component):

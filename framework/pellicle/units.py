@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
@@ -142,6 +142,12 @@ class Quantity:
 
     def _dimension(self) -> str:
         return str(_registry().Unit(self.unit).dimensionality)
+
+    def powers(self) -> tuple[int, int]:
+        """Return the powers of Pa and of m that make the unit, whatever it has of seconds."""
+        dimensions: Mapping[str, Any] = _registry().Unit(self.unit).dimensionality
+        pressure = int(dimensions.get("[mass]", 0))
+        return pressure, int(dimensions.get("[length]", 0)) + pressure
 
     def _within(self, number: float) -> bool:
         return not (

@@ -10,9 +10,10 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.components import Indenter
+from pellicle.components import ForceCurve, Indenter
 from pellicle.operators import Array
 from pellicle.units import Quantity
+from pellicle_plugins.analytic import master_curves
 
 
 class Cone(Indenter):
@@ -28,6 +29,15 @@ class Cone(Indenter):
     def profile(self, x: Array, y: Array) -> Array:
         """Return −r cot α [m]."""
         return -np.hypot(x, y) / tan(self.half_angle)
+
+    @property
+    def depth_limit(self) -> float:
+        """No limit."""
+        return float("inf")
+
+    def force_curve(self, depth: Array, length: float) -> ForceCurve:
+        """Return P/E* and its sensitivities from the master curve of the axisymmetric equation."""
+        return master_curves.cone(self.half_angle, depth, length)
 
 
 @hookimpl

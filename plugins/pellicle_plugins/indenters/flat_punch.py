@@ -9,9 +9,10 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.components import Indenter
+from pellicle.components import ForceCurve, Indenter
 from pellicle.operators import Array
 from pellicle.units import Length
+from pellicle_plugins.analytic import master_curves
 
 
 class FlatPunch(Indenter):
@@ -23,6 +24,15 @@ class FlatPunch(Indenter):
     def profile(self, x: Array, y: Array) -> Array:
         """Return 0 under the punch and −inf beside it [m]."""
         return np.where(x**2 + y**2 <= self.radius**2, 0.0, -np.inf)
+
+    @property
+    def depth_limit(self) -> float:
+        """No limit."""
+        return float("inf")
+
+    def force_curve(self, depth: Array, length: float) -> ForceCurve:
+        """Return P/E* and its sensitivities from the master curve of the axisymmetric equation."""
+        return master_curves.flat_punch(self.radius, depth, length)
 
 
 @hookimpl

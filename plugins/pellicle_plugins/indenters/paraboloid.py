@@ -8,9 +8,10 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.components import Indenter
+from pellicle.components import ForceCurve, Indenter
 from pellicle.operators import Array
 from pellicle.units import Length
+from pellicle_plugins.analytic import master_curves
 
 
 class Paraboloid(Indenter):
@@ -22,6 +23,15 @@ class Paraboloid(Indenter):
     def profile(self, x: Array, y: Array) -> Array:
         """Return −(x² + y²)/2R [m]."""
         return -(x**2 + y**2) / (2 * self.radius)
+
+    @property
+    def depth_limit(self) -> float:
+        """No limit."""
+        return float("inf")
+
+    def force_curve(self, depth: Array, length: float) -> ForceCurve:
+        """Return P/E* and its sensitivities from the master curve of the axisymmetric equation."""
+        return master_curves.paraboloid(self.radius, depth, length)
 
 
 @hookimpl

@@ -9,9 +9,10 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.components import Indenter
+from pellicle.components import ForceCurve, Indenter
 from pellicle.operators import Array
 from pellicle.units import Length
+from pellicle_plugins.analytic import master_curves
 
 
 class Sphere(Indenter):
@@ -28,6 +29,15 @@ class Sphere(Indenter):
         # −r²/(R + root) instead of root − R, which cancels near the tip.
         shape = -(x**2 + y**2) / (self.radius + root)
         return np.where(inside, shape, -np.inf)
+
+    @property
+    def depth_limit(self) -> float:
+        """R, the equator [m]."""
+        return self.radius
+
+    def force_curve(self, depth: Array, length: float) -> ForceCurve:
+        """Return P/E* and its sensitivities from the master curve of the axisymmetric equation."""
+        return master_curves.sphere(self.radius, depth, length)
 
 
 @hookimpl

@@ -1,0 +1,1 @@
+"""From a measured curve of force to the modulus and the tension."""

@@ -1,0 +1,116 @@
+"""Which experiment would tell more: the Cramér–Rao bound of other radii and other ranges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pellicle.operators import Array
+
+from .likelihood import MODULUS, POINT, TENSION, Likelihood
+
+_FACTORS = (1 / 10, 1 / 3, 3.0, 10.0)
+_DEEPEST = 0.5
+"""Depth over radius that no advice goes beyond: linear elasticity ends about there."""
+_USELESS = 10.0
+"""A relative standard deviation that says nothing."""
+_GAIN = 1.3
+"""An experiment is worth naming if it tightens by this factor."""
+
+
+@dataclass(frozen=True)
+class Design:
+    """An experiment, and the standard deviations that no unbiased fit of it could beat."""
+
+    words: str
+    modulus: float
+    """Of the modulus, relative."""
+    tension: float
+    """Of the tension, relative."""
+
+    @property
+    def worse(self) -> float:
+        """The greater of the two."""
+        return max(self.modulus, self.tension)
+
+
+def designs(likelihood: Likelihood, parameters: Array) -> tuple[Design, list[Design]]:
+    """Return the experiment as it was and others, best first.
+
+    The others keep the number of points, the share of them before contact, and the noise relative
+    to the largest force.
+    """
+    now = _design("this curve", likelihood, parameters)
+    deepest = float(likelihood.position[-1] - parameters[POINT])
+    others = []
+    radius = getattr(likelihood.indenter, "radius", None)
+    for factor in _FACTORS:
+        if radius is None or factor * deepest <= _DEEPEST * radius:
+            kind = "deeper" if factor > 1 else "shallower"
+            how = f"a {kind} range, to {_metres(factor * deepest)},"
+            others.append(_design(how, _deeper(likelihood, parameters, factor), parameters))
+        if radius is not None and deepest <= _DEEPEST * factor * radius:
+            how = f"a {'larger' if factor > 1 else 'smaller'} radius, {_metres(factor * radius)},"
+            others.append(_design(how, _other_radius(likelihood, parameters, factor), parameters))
+    return now, sorted(others, key=lambda design: design.worse)
+
+
+def decidable(now: Design, others: list[Design]) -> bool:
+    """Return whether this experiment or one of the others says anything of both parameters."""
+    return any(design.worse < _USELESS for design in [now, *others])
+
+
+def advice(likelihood: Likelihood, parameters: Array) -> str:
+    """Return in words which experiment would tighten modulus and tension."""
+    now, others = designs(likelihood, parameters)
+    reached = (
+        f"no unbiased fit of this curve could beat ± {_percent(now.modulus)} of the modulus and "
+        f"± {_percent(now.tension)} of the tension (Cramér–Rao bound, one standard deviation)"
+    )
+    if not decidable(now, others):
+        return (
+            f"{reached}; with this indenter no other radius or range would tell them apart: hold "
+            "one of them, or press with another shape"
+        )
+    if not others or not others[0].worse * _GAIN < now.worse:
+        return f"{reached}; more points or less noise would help, another radius or range hardly"
+    best = others[0]
+    return (
+        f"{reached}; {best.words} at the same noise relative to the largest force would bring "
+        f"± {_percent(best.modulus)} and ± {_percent(best.tension)}"
+    )
+
+
+def _design(words: str, likelihood: Likelihood, parameters: Array) -> Design:
+    bound = likelihood.deviations(parameters)
+    return Design(words, float(bound[MODULUS]), float(bound[TENSION] / parameters[TENSION]))
+
+
+def _deeper(likelihood: Likelihood, parameters: Array, factor: float) -> Likelihood:
+    position = parameters[POINT] + factor * (likelihood.position - parameters[POINT])
+    return _measured(replace(likelihood, position=position), likelihood, parameters)
+
+
+def _other_radius(likelihood: Likelihood, parameters: Array, factor: float) -> Likelihood:
+    indenter: Any = likelihood.indenter
+    other = indenter.model_copy(update={"radius": factor * indenter.radius})
+    return _measured(replace(likelihood, indenter=other), likelihood, parameters)
+
+
+def _measured(other: Likelihood, likelihood: Likelihood, parameters: Array) -> Likelihood:
+    """Return an experiment with the same noise relative to its largest force."""
+    share = likelihood.noise / np.max(np.abs(likelihood.model(parameters)))
+    return replace(other, noise=share * float(np.max(np.abs(other.model(parameters)))))
+
+
+def _metres(value: float) -> str:
+    for factor, unit in ((1e-3, "mm"), (1e-6, "µm")):
+        if value >= factor:
+            return f"{value / factor:.3g} {unit}"
+    return f"{value / 1e-9:.3g} nm"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2g} %" if share < 10 else "more than 1000 %"

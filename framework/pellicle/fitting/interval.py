@@ -1,0 +1,104 @@
+"""Confidence intervals from the profile of χ²: where it has risen too far to be chance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from pellicle.operators import Array
+
+from .likelihood import MODULUS, POINT, REACH, TENSION, Likelihood
+
+_ACCURACY = 2e-3
+"""To which an end is found, relative to its distance from the value."""
+_BETTER = 1e-3
+"""By this much less χ² a profile has found another minimum."""
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Parameters of least χ²."""
+
+    parameters: Array
+    chi_squared: float
+
+
+class Better(Exception):  # noqa: N818 - no error: the search goes on from there
+    """Raised by a profile that passes lower than the minimum it starts from."""
+
+    def __init__(self, minimum: Minimum) -> None:
+        super().__init__(minimum)
+        self.minimum = minimum
+
+
+def interval(
+    likelihood: Likelihood, best: Minimum, which: int, rise: float
+) -> tuple[float | None, float | None]:
+    """Return the ends between which the least χ² at a held parameter is up by at most ``rise``.
+
+    None stands for an end that is not reached: tension 0, a modulus or a tension a hundred times
+    off, a contact point ten times the measured range away.
+
+    Raises
+    ------
+    Better
+        A profile passes below ``best``.
+    """
+    lowest, highest = _limits(likelihood, best.parameters, which)
+    return (
+        _end(likelihood, best, which, lowest, rise),
+        _end(likelihood, best, which, highest, rise),
+    )
+
+
+def _limits(likelihood: Likelihood, best: Array, which: int) -> tuple[float, float]:
+    value, scale = float(best[which]), float(likelihood.scale[which])
+    if which == MODULUS:
+        return value - REACH, value + REACH
+    if which == TENSION:
+        return 0.0, float(np.exp(REACH)) * max(value, scale)
+    reach = 10 * scale if which == POINT else 1e3 * scale
+    return value - reach, value + reach
+
+
+def _end(
+    likelihood: Likelihood, best: Minimum, which: int, limit: float, rise: float
+) -> float | None:
+    value = float(best.parameters[which])
+    span = limit - value
+    if not span:
+        return None
+    warm = best.parameters
+
+    def excess(share: float) -> float:
+        """Return √Δχ² − √rise, nearly linear in the distance."""
+        nonlocal warm
+        start = warm.copy()
+        start[which] = value + share * span
+        warm, chi_squared = likelihood.minimise(start, (which,))
+        if chi_squared < best.chi_squared - _BETTER:
+            raise Better(Minimum(warm, chi_squared))
+        return float(np.sqrt(max(chi_squared - best.chi_squared, 0.0)) - np.sqrt(rise))
+
+    deviation = float(likelihood.deviations(best.parameters)[which])
+    inside, below = 0.0, -float(np.sqrt(rise))
+    share = min(float(np.sqrt(rise)) * deviation / abs(span), 1.0)
+    while (above := excess(share)) < 0:
+        if share == 1:
+            return None
+        inside, below = share, above
+        share = min(2 * share, 1.0)
+    if above == 0:
+        return value + float(share) * span
+    # brentq asks again for the ends that are known.
+    known = {inside: below, share: above}
+    root = brentq(
+        lambda at: known[at] if at in known else excess(at),
+        inside,
+        share,
+        xtol=_ACCURACY * share,
+        rtol=_ACCURACY,
+    )
+    return value + float(root) * span

@@ -1,0 +1,122 @@
+"""How well parameters explain a curve: residuals, their Jacobian, minima and profiles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from pellicle.components import HasForceCurve
+from pellicle.operators import Array
+
+POINT, MODULUS, TENSION, OFFSET, SLOPE = range(5)
+"""Parameters: contact point [m], log of E* in Pa, τ₀ [N/m], force offset [N], its slope [N/m]."""
+REACH = np.log(100.0)
+"""How far in log E*, and in log τ₀ above, an interval is followed before it is called open."""
+_TOLERANCE = 1e-10
+
+
+@dataclass(frozen=True)
+class Likelihood:
+    """χ² of a curve under normal noise in the force, equal at all points."""
+
+    position: Array
+    force: Array
+    indenter: HasForceCurve
+    noise: float
+    free: tuple[int, ...]
+    """The parameters that are not held."""
+
+    @cached_property
+    def scale(self) -> Array:
+        """What each parameter moves by, about."""
+        span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
+        return np.array([span, 1.0, height / span, height, height / span])
+
+    def model(self, parameters: Array) -> Array:
+        """Return the force [N] at every position."""
+        return self._model(parameters)[0]
+
+    def _model(self, parameters: Array) -> tuple[Array, Array]:
+        point, log_modulus, tension, offset, slope = parameters
+        modulus = np.exp(log_modulus)
+        length = 2 * tension / modulus
+        curve = self.indenter.force_curve(self.position - point, length)
+        moved = self.position - self.position[0]
+        force = modulus * curve.force + offset + slope * moved
+        jacobian = np.column_stack(
+            [
+                -modulus * curve.by_depth,
+                modulus * (curve.force - length * curve.by_length),
+                2 * curve.by_length,
+                np.ones_like(moved),
+                moved,
+            ]
+        )
+        return force, jacobian
+
+    def jacobian(self, parameters: Array) -> Array:
+        """Return the derivatives of the force, shape (n, 5)."""
+        return self._model(parameters)[1]
+
+    def residuals(self, parameters: Array) -> Array:
+        """Return (model − force) / noise."""
+        return (self.model(parameters) - self.force) / self.noise
+
+    def chi_squared(self, parameters: Array) -> float:
+        """Return the sum of squared residuals."""
+        residuals = self.residuals(parameters)
+        return float(residuals @ residuals)
+
+    def information(self, parameters: Array, free: Sequence[int]) -> Array:
+        """Return the Fisher information of some parameters, in units of `scale`."""
+        jacobian = self.jacobian(parameters)[:, free] * self.scale[list(free)] / self.noise
+        return jacobian.T @ jacobian
+
+    def deviations(self, parameters: Array) -> Array:
+        """Return the Cramér–Rao bound of each parameter, as a standard deviation; 0 if held."""
+        bound = np.zeros(5)
+        information = self.information(parameters, self.free)
+        try:
+            variances = np.diag(np.linalg.inv(information))
+        except np.linalg.LinAlgError:
+            variances = np.full(len(self.free), np.inf)
+        variances = np.where(variances > 0, variances, np.inf)
+        bound[list(self.free)] = np.sqrt(variances) * self.scale[list(self.free)]
+        return bound
+
+    def minimise(self, start: Array, held: Sequence[int] = ()) -> tuple[Array, float]:
+        """Return the parameters of least χ² near ``start``, some of them held, and that χ²."""
+        free = [k for k in self.free if k not in held]
+        best = np.array(start, dtype=float)
+        if not free:
+            return best, self.chi_squared(best)
+        scale = self.scale[free]
+        lowest = np.full(5, -np.inf)
+        highest = np.full(5, np.inf)
+        lowest[TENSION] = 0.0
+        # Far beyond every interval, and where no exponential overflows.
+        lowest[MODULUS], highest[MODULUS] = start[MODULUS] - 20, start[MODULUS] + 20
+
+        def full(u: Array) -> Array:
+            parameters = best.copy()
+            parameters[free] = u * scale
+            return parameters
+
+        def jacobian(u: Array) -> Array:
+            return self.jacobian(full(u))[:, free] * scale / self.noise
+
+        found = least_squares(
+            lambda u: self.residuals(full(u)),
+            np.clip(best[free], lowest[free], highest[free]) / scale,
+            jacobian,
+            (lowest[free] / scale, highest[free] / scale),
+            method="dogbox",
+            xtol=_TOLERANCE,
+            ftol=_TOLERANCE,
+            gtol=_TOLERANCE,
+        )
+        return full(found.x), 2 * float(found.cost)

@@ -1,0 +1,141 @@
+"""Force against depth under surface tension, interpolated between exact solutions.
+
+Dimensional analysis leaves little to tabulate.  With s = 2τ₀/E* and the force without tension
+P₀(δ), log(P/P₀) is a function of x alone for three of the indenters:
+
+- paraboloid, x = s / √(δR), P₀ = (4/3) E* R^(1/2) δ^(3/2);
+- cone, x = s cot α / δ, P₀ = (2/π) E* tan α δ²;
+- flat punch, x = s / a, P₀ = 2 E* a δ;
+
+and of x = s / √(δR) and δ/R for the sphere, as that of the paraboloid plus (δ/R) times a smooth
+function, tabulated for δ ≤ R.  The nodes are solutions of the axisymmetric equation
+(``master_curve_nodes``); between them runs a spline of degree 5 in t = log(1 + x/SCALE), which is
+linear where tension hardly counts and logarithmic where it rules.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
+
+from pellicle.components import ForceCurve
+
+Array = NDArray[np.float64]
+Correction = Callable[[Array], tuple[Array, Array]]
+"""log(P/P₀) and its derivative in x, at x ≥ 0 of shape (n,)."""
+
+SCALE = 1e-3
+FILE = files("pellicle_plugins.analytic").joinpath("master_curves.json")
+
+
+@cache
+def _table() -> dict[str, Any]:
+    table: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
+    return table
+
+
+def one_variable(nodes: Mapping[str, Sequence[float]]) -> Correction:
+    """Return the interpolant of ``x`` and ``log_ratio``; beyond the last x it is a power law."""
+    t = np.log1p(np.asarray(nodes["x"]) / SCALE)
+    spline = make_interp_spline(t, nodes["log_ratio"], 5)
+    slope = spline.derivative()
+
+    def correction(x: Array) -> tuple[Array, Array]:
+        at = np.log1p(x / SCALE)
+        inside = np.minimum(at, t[-1])
+        rate = slope(inside)
+        return spline(inside) + rate * (at - inside), rate / (x + SCALE)
+
+    return correction
+
+
+@cache
+def _one_variable(name: str) -> Correction:
+    return one_variable(_table()[name])
+
+
+@cache
+def _sphere_coefficients() -> tuple[float, Any, Any]:
+    nodes = _table()["sphere"]
+    t = np.log1p(np.asarray(nodes["x"]) / SCALE)
+    spline = make_interp_spline(t, np.asarray(nodes["coefficients"]), 5)
+    return float(t[-1]), spline, spline.derivative()
+
+
+def paraboloid(radius: float, depth: Array, length: float) -> ForceCurve:
+    """Return P/E* under a paraboloid of R = ``radius`` [m] at s = ``length`` [m]."""
+    touching, d = _touching(depth)
+    x = length / np.sqrt(d * radius)
+    log, rate = _one_variable("paraboloid")(x)
+    force = 4 / 3 * np.sqrt(radius) * d**1.5 * np.exp(log)
+    by_depth = force / d * (1.5 - rate * x / 2)
+    return _spread(touching, force, by_depth, force * rate / np.sqrt(d * radius))
+
+
+def cone(half_angle: float, depth: Array, length: float) -> ForceCurve:
+    """Return P/E* under a cone of α = ``half_angle`` [rad] at s = ``length`` [m]."""
+    touching, d = _touching(depth)
+    tangent = np.tan(half_angle)
+    x = length / (tangent * d)
+    log, rate = _one_variable("cone")(x)
+    force = 2 / np.pi * tangent * d**2 * np.exp(log)
+    by_depth = force / d * (2 - rate * x)
+    return _spread(touching, force, by_depth, force * rate / (tangent * d))
+
+
+def flat_punch(radius: float, depth: Array, length: float) -> ForceCurve:
+    """Return P/E* under a flat punch of a = ``radius`` [m] at s = ``length`` [m]."""
+    touching, d = _touching(depth)
+    log, rate = _one_variable("flat_punch")(np.array([length / radius]))
+    stiffness = 2 * radius * np.exp(log)
+    force = stiffness * d
+    return _spread(touching, force, np.full_like(d, stiffness[0]), force * rate / radius)
+
+
+def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
+    """Return P/E* under a sphere of R = ``radius`` [m] at s = ``length`` [m].
+
+    Exact up to δ = R; beyond it the shape's share of log P is held at its value there.
+    """
+    touching, d = _touching(depth)
+    flat = paraboloid(radius, d, length)
+    last, spline, slope = _sphere_coefficients()
+    root = np.sqrt(d * radius)
+    x = length / root
+    at = np.log1p(x / SCALE)
+    inside = np.minimum(at, last)
+    ratio = np.minimum(d / radius, 1.0)
+    coefficients = spline(inside).T
+    shape = chebyshev.chebval(2 * ratio - 1, coefficients, tensor=False)
+    by_ratio = 2 * chebyshev.chebval(2 * ratio - 1, chebyshev.chebder(coefficients), tensor=False)
+    by_x = np.where(
+        at < last, chebyshev.chebval(2 * ratio - 1, slope(inside).T, tensor=False), 0.0
+    ) / (x + SCALE)
+    factor = np.exp(ratio * shape)
+    force = flat.force * factor
+    grows = np.where(d < radius, (shape + ratio * by_ratio) / radius, 0.0)
+    by_depth = flat.by_depth * factor + force * (grows - ratio * by_x * x / (2 * d))
+    by_length = flat.by_length * factor + force * ratio * by_x / root
+    return _spread(touching, force, by_depth, by_length)
+
+
+def _touching(depth: Array) -> tuple[NDArray[np.bool_], Array]:
+    """Return where there is contact, and the depths there."""
+    touching = depth > 0
+    # Powers of a depth at the end of the range of floats would overflow.
+    return touching, np.maximum(depth[touching], 1e-60)
+
+
+def _spread(touching: NDArray[np.bool_], *values: Array) -> ForceCurve:
+    """Return values known in contact as a curve that is 0 elsewhere."""
+    out = np.zeros((3, touching.size))
+    out[:, touching] = values
+    return ForceCurve(*out)

@@ -1,0 +1,89 @@
+"""The interpolated force curves against the axisymmetric equation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import pellicle as pl
+from pellicle.components import HasForceCurve
+from pellicle_plugins.analytic.axisymmetric import indent
+from pellicle_plugins.analytic.axisymmetric_indenters import Cone, Paraboloid, Sphere
+from pellicle_plugins.analytic.tensed_punch import punch
+
+Array = NDArray[np.float64]
+ACCURACY = 1e-6
+RADIUS = 3e-6
+ANGLE = 1.2
+
+# Off the nodes, and past both ends of the table: s over the contact radius, and a over R.
+_random = np.random.default_rng(7)
+RATIOS = [0.0, 1e-7, *10 ** _random.uniform(-4, 5, 12), 1e7]
+SPHERES = [
+    (0.01, 1e-5),
+    (0.3, 0.2),
+    (0.8, 0.02),
+    (0.45, 3.0),
+    (0.5, 50.0),
+    (0.15, 700.0),
+    (0.81, 0.0),
+]
+
+
+def _curve(type_: str, depth: float, length: float) -> tuple[float, float, float]:
+    fields = {"half_angle": ANGLE} if type_ == "cone" else {"radius": RADIUS}
+    indenter = pl.indenter(type_, **fields)
+    assert isinstance(indenter, HasForceCurve)
+    return tuple(float(value[0]) for value in indenter.force_curve(np.array([depth]), length))  # type: ignore[return-value]
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_one_variable_curves_solve_the_equation(ratio: float) -> None:
+    """Paraboloid, cone and punch agree with the equation to 1e-6 at any s/a."""
+    a = 0.4e-6
+    for type_, shape in (("paraboloid", Paraboloid(RADIUS)), ("cone", Cone(ANGLE))):
+        exact = indent(shape, 1.0, ratio * a / 2, contact_radius=a)
+        assert _curve(type_, exact.depth, ratio * a)[0] == pytest.approx(exact.force, rel=ACCURACY)
+    exact_punch = punch(RADIUS, 1.0, ratio * RADIUS / 2, depth=a)
+    assert _curve("flat_punch", a, ratio * RADIUS)[0] == pytest.approx(
+        exact_punch.force, rel=ACCURACY
+    )
+
+
+@pytest.mark.parametrize(("contact", "ratio"), SPHERES)
+def test_sphere_solves_the_equation(contact: float, ratio: float) -> None:
+    """The sphere agrees up to depths of R."""
+    exact = indent(
+        Sphere(RADIUS), 1.0, ratio * contact * RADIUS / 2, contact_radius=contact * RADIUS
+    )
+    force = _curve("sphere", exact.depth, ratio * contact * RADIUS)[0]
+    assert force == pytest.approx(exact.force, rel=ACCURACY)
+
+
+@pytest.mark.parametrize("type_", ["paraboloid", "sphere", "cone", "flat_punch"])
+def test_curves_rise_smoothly(type_: str) -> None:
+    """Force rises in depth and in length; the sensitivities are its derivatives."""
+    lengths = RADIUS * np.concatenate([[0.0], np.geomspace(1e-5, 1e4, 60)])
+    depths = RADIUS * np.geomspace(1e-6, 0.95, 80)
+    for length in lengths:
+        for depth in depths[::5]:
+            _, by_depth, by_length = _curve(type_, depth, length)
+            step = 1e-4 * depth
+            up, down = (_curve(type_, depth + d, length)[0] for d in (step, -step))
+            assert by_depth > 0
+            assert (up - down) / (2 * step) == pytest.approx(by_depth, rel=1e-5)
+            assert by_length > 0
+            step = 1e-4 * max(length, 1e-5 * RADIUS)
+            here, up = (_curve(type_, depth, length + d)[0] for d in (0.0, step))
+            if length:
+                down = _curve(type_, depth, length - step)[0]
+                noise = 1e-13 * here / step / by_length
+                assert (up - down) / (2 * step) == pytest.approx(by_length, rel=1e-4 + noise)
+
+
+def test_no_force_before_contact() -> None:
+    """At depths of 0 and less force and sensitivities are 0."""
+    curve = pl.indenter("sphere", radius=RADIUS).force_curve(np.array([-1e-6, 0.0, 1e-9]), 1e-7)  # type: ignore[attr-defined]
+    assert np.all(np.array(curve)[:, :2] == 0)
+    assert np.all(np.array(curve)[:, 2] > 0)
