@@ -18,10 +18,14 @@ from typer.core import TyperGroup
 from .errors import ConfigError, PellicleError, PluginError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import xarray as xr
 
     from .config import Run
-    from .fitting.fit import Fit
+    from .fitting.fit import Estimate, Fit
+    from .fitting.pooled import PooledFit
+    from .fitting.sources import Source
     from .result import Result
     from .study_config import Study
 
@@ -145,14 +149,20 @@ def _run_study(
 
 @app.command()
 def fit(
-    curve: Annotated[
-        Path,
-        typer.Argument(help="CSV or TSV with a header such as position [um],force [nN]; HDF5."),
+    curves: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Files, or a folder of them: tables with a header such as position [um],force "
+            "[nN]; HDF5; formats of instruments. Or a table file,radius [um] that lists files."
+        ),
     ],
     indenter: Annotated[
         str, typer.Option("--indenter", "-i", help="paraboloid, sphere, cone, flat_punch.")
     ],
-    radius: Annotated[str | None, typer.Option(help='Radius with its unit: "5 um".')] = None,
+    radius: Annotated[
+        list[str] | None,
+        typer.Option(help='Radius with its unit: "5 um"; repeat it to give one for each file.'),
+    ] = None,
     half_angle: Annotated[
         str | None, typer.Option(help='Angle between axis and side of a cone: "70 degree".')
     ] = None,
@@ -167,27 +177,60 @@ def fit(
         str, typer.Option(help="Fitted of the force before contact: none, offset, slope.")
     ] = "none",
     segment: Annotated[str, typer.Option(help="Pass to fit: approach, retract.")] = "approach",
+    spring_constant: Annotated[
+        str | None, typer.Option(help='Of the cantilever, to subtract its bending: "0.05 N/m".')
+    ] = None,
+    sensitivity: Annotated[
+        str | None, typer.Option(help='Deflection over the signal in volts: "50 nm/V".')
+    ] = None,
+    pool: Annotated[
+        bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
+    ] = False,
+    executor: Annotated[
+        str, typer.Option(help="What carries out many fits: serial, processes, dask.")
+    ] = "serial",
     directory: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for JSON and a figure.")
+        Path | None, typer.Option("-o", "--output", help="Folder for JSON, table and figure.")
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Fit reduced modulus, tension and contact point to a measured curve, with intervals."""
-    from .fitting.fit import fit as fit_curve
-    from .fitting.read import read
+    """Fit reduced modulus, tension and contact point to measured curves, with intervals.
 
-    measured = read(curve)
-    fields = {"radius": radius, "half_angle": half_angle}
-    made = fit_curve(
-        measured.position,
-        measured.force,
-        depth=measured.depth,
-        indenter={"type": indenter} | {k: v for k, v in fields.items() if v is not None},
-        poissons_ratio=poissons_ratio,
-        fix=dict(map(_assignment, fix or ())),
-        baseline=baseline,  # type: ignore[arg-type]
-        segment=segment,  # type: ignore[arg-type]
-    )
+    Exit code 0 only if every curve was fitted.
+    """
+    from .fitting.sources import gather
+
+    fields = {
+        "radius": radius[0] if radius and len(radius) == 1 else radius,
+        "half_angle": half_angle,
+        "spring_constant": spring_constant,
+        "sensitivity": sensitivity,
+    }
+    given = {name: value for name, value in fields.items() if value is not None}
+    options = {
+        "poissons_ratio": poissons_ratio,
+        "fix": dict(map(_assignment, fix or ())),
+        "baseline": baseline,
+        "segment": segment,
+    }
+    if pool:
+        _fit_pooled(curves, indenter, options | given, directory, json=json)
+        return
+    sources = gather(curves, segment, given)
+    if [source.name for source in sources] == [str(curves[0])]:
+        _fit_one(sources[0], indenter, options, directory, json=json)
+    else:
+        _fit_many(sources, indenter, options, executor, directory, json=json)
+
+
+def _fit_one(
+    source: Source, indenter: str, options: dict[str, Any], directory: Path | None, *, json: bool
+) -> None:
+    from .fitting.many import fit_measured
+
+    if isinstance(source.curve, PellicleError):
+        raise source.curve
+    made = fit_measured(source.curve, indenter={"type": indenter, **source.fields}, **options)
     if json:
         _print_json(made.to_dict())
     else:
@@ -195,8 +238,63 @@ def fit(
     if directory is not None:
         from .fitting.drawing import save_figure
 
-        name = f"{curve.stem}-fit"
+        name = f"{Path(source.name).stem}-fit"
         files = made.save(directory / f"{name}.json"), save_figure(made, directory / f"{name}.png")
+        for path in files:
+            typer.echo(f"wrote {path}", err=json)
+
+
+def _fit_many(
+    sources: list[Source],
+    indenter: str,
+    options: dict[str, Any],
+    executor: str,
+    directory: Path | None,
+    *,
+    json: bool,
+) -> None:
+    from .fitting.many import carry_out
+    from .toml import parse_override
+
+    _, chosen = parse_override(f"executor={executor}")
+    try:
+        done = carry_out(sources, indenter, options, chosen, directory, progress=True)
+    except KeyboardInterrupt:
+        kept = f"; what was finished is in {directory}, and the same command goes on"
+        typer.echo(f"interrupted{kept if directory else ''}", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    if json:
+        _print_json({"curves": done.rows})
+    else:
+        _print_fits(done.rows)
+    if done.taken:
+        typer.echo(f"{done.taken} of {len(sources)} fits were done before", err=json)
+    for path in done.files:
+        typer.echo(f"wrote {path}", err=json)
+    if done.failed:
+        typer.echo(f"{done.failed} of {len(sources)} curves could not be fitted", err=True)
+        raise typer.Exit(NOT_CONVERGED)
+
+
+def _fit_pooled(
+    curves: list[Path],
+    indenter: str,
+    options: dict[str, Any],
+    directory: Path | None,
+    *,
+    json: bool,
+) -> None:
+    from .fitting.pooled import fit_pooled
+
+    made = fit_pooled(curves, indenter=indenter, **options)
+    if json:
+        _print_json(made.to_dict())
+    else:
+        _print_pooled(made)
+    if directory is not None:
+        from .fitting.pooled_drawing import save_figure
+
+        files = made.save(directory / "pool.json"), save_figure(made, directory / "pool.png")
         for path in files:
             typer.echo(f"wrote {path}", err=json)
 
@@ -376,21 +474,67 @@ def _assignment(text: str) -> tuple[str, str | float]:
 
 
 def _print_fit(fit: Fit) -> None:
-    rows = []
-    for name, estimate in fit.estimates().items():
-        low, high = (
-            "open" if end is None else f"{end:.4g}" for end in (estimate.low, estimate.high)
-        )
-        interval = "held" if estimate.held else f"{low} to {high}"
-        value = f"{estimate.value:.4g}"
-        rows.append({"": name, "value": value, "95 % interval": interval, "unit": estimate.unit})
-    _print_table(["", "value", "95 % interval", "unit"], rows)
+    _print_estimates(fit.estimates())
     typer.echo(f"noise: {fit.noise:.3g} N, from {fit.noise_from}; {fit.points} points")
     for line in (fit.comparison, fit.advice):
         if line:
             typer.echo(line)
     for message in fit.messages:
         typer.echo(f"note: {message}", err=True)
+
+
+def _print_pooled(fit: PooledFit) -> None:
+    _print_estimates(fit.estimates())
+    rows = [
+        {
+            "curve": curve.name,
+            "contact_point [m]": f"{curve.contact_point.value:.6g}",
+            "noise [N]": f"{curve.noise:.3g}",
+            "points": str(curve.points),
+            "chi_squared": f"{curve.chi_squared:.5g}",
+            "alone: reduced_modulus [Pa]": f"{curve.reduced_modulus_alone:.4g}",
+            "tension [N/m]": f"{curve.tension_alone:.4g}",
+        }
+        for curve in fit.curves
+    ]
+    _print_table(list(rows[0]), rows)
+    for line in (fit.comparison, fit.agreement, fit.advice):
+        typer.echo(line)
+    for message in fit.messages:
+        typer.echo(f"note: {message}", err=True)
+    for curve in fit.curves:
+        for message in curve.messages:
+            typer.echo(f"note: {curve.name}: {message}", err=True)
+
+
+def _print_estimates(estimates: Mapping[str, Estimate]) -> None:
+    rows = []
+    for name, estimate in estimates.items():
+        interval = "held" if estimate.held else _interval(estimate.low, estimate.high)
+        value = f"{estimate.value:.4g}"
+        rows.append({"": name, "value": value, "95 % interval": interval, "unit": estimate.unit})
+    _print_table(["", "value", "95 % interval", "unit"], rows)
+
+
+def _interval(low: float | None, high: float | None) -> str:
+    ends = ("open" if end is None else f"{end:.4g}" for end in (low, high))
+    return " to ".join(ends)
+
+
+def _print_fits(rows: list[dict[str, Any]]) -> None:
+    """Print a line for each curve; what the fits themselves say is in the table that is kept."""
+    names = {"reduced_modulus": "Pa", "tension": "N/m", "contact_point": "m"}
+    shown = []
+    for row in rows:
+        line = {"curve": row["curve"]}
+        for name, unit in names.items():
+            found = row.get(name, {})
+            line[f"{name} [{unit}]"] = f"{found['value']:.4g}" if found else ""
+            if name != "contact_point":
+                told = found and not found["held"]
+                line[f"95 % of {name}"] = _interval(found["low"], found["high"]) if told else ""
+        shown.append(line | {"notes": str(len(row.get("messages", ()))), "status": row["status"]})
+    _print_table(list(shown[0]), shown)
 
 
 def _write_starter(path: Path) -> None:

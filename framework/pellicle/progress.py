@@ -120,10 +120,11 @@ class StudyProgress:
     """Shows a bar for a study and one for each run at work; without a terminal, a line a run.
 
     Ctrl-C takes effect when a run next says something. Nothing is shown when not ``enabled``.
+    ``what`` is what is counted.
     """
 
-    def __init__(self, total: int, done: int, enabled: bool) -> None:
-        self._total, self._done, self._failed = total, done, 0
+    def __init__(self, total: int, done: int, enabled: bool, what: str = "runs") -> None:
+        self._total, self._done, self._failed, self._what = total, done, 0, what
         self._console = _stderr() if enabled else None
         is_terminal = self._console is not None and self._console.is_terminal
         self._bar = _make_bar(self._console) if self._console and is_terminal else None
@@ -185,7 +186,8 @@ class StudyProgress:
 
     def _count(self) -> str:
         left = self._total - self._done
-        return f"{self._done - self._failed} runs done, {self._failed} failed, {left} left"
+        done = self._done - self._failed
+        return f"{done} {self._what} done, {self._failed} failed, {left} left"
 
 
 def _monitor(index: int, steps: int, tell: Callable[[Said], None]) -> Monitor:

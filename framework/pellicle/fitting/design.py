@@ -66,8 +66,8 @@ def advice(likelihood: Likelihood, parameters: Array) -> str:
     """Return in words which experiment would tighten modulus and tension."""
     now, others = designs(likelihood, parameters)
     reached = (
-        f"no unbiased fit of this curve could beat ± {_percent(now.modulus)} of the modulus and "
-        f"± {_percent(now.tension)} of the tension (Cramér–Rao bound, one standard deviation)"
+        f"no unbiased fit of this curve could beat ± {percent(now.modulus)} of the modulus and "
+        f"± {percent(now.tension)} of the tension (Cramér–Rao bound, one standard deviation)"
     )
     if not decidable(now, others):
         return (
@@ -79,7 +79,7 @@ def advice(likelihood: Likelihood, parameters: Array) -> str:
     best = others[0]
     return (
         f"{reached}; {best.words} at the same noise relative to the largest force would bring "
-        f"± {_percent(best.modulus)} and ± {_percent(best.tension)}"
+        f"± {percent(best.modulus)} and ± {percent(best.tension)}"
     )
 
 
@@ -112,5 +112,6 @@ def _metres(value: float) -> str:
     return f"{value / 1e-9:.3g} nm"
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
+    """Return a share as a message shows it."""
     return f"{100 * share:.2g} %" if share < 10 else "more than 1000 %"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,7 +16,6 @@ from pellicle.errors import ConfigError
 from pellicle.model import nearest
 from pellicle.operators import Array
 from pellicle.plugins import registry
-from pellicle.storage import reported
 from pellicle.units import Quantity
 
 from .curve import Curve, Segment, clean
@@ -25,6 +23,7 @@ from .design import advice, decidable, designs
 from .interval import Better, Minimum, interval
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood
 from .start import starts
+from .written import write_json
 
 Baseline = Literal["none", "offset", "slope"]
 
@@ -76,6 +75,19 @@ class Estimate:
             "bound": bound,
             "held": self.held,
         }
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked of a curve."""
+
+    indenter: Any
+    """It has a force curve."""
+    held: Array
+    """Parameters, in the order of `likelihood`; of the free ones, anything."""
+    free: tuple[int, ...]
+    segment: Segment
+    poissons_ratio: float | None
 
 
 @dataclass(frozen=True)
@@ -135,12 +147,7 @@ class Fit:
         StorageError
             The file cannot be written.
         """
-        path = Path(path)
-        with reported(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            text = json.dumps(self.to_dict(), indent=2, ensure_ascii=False)
-            path.write_text(f"{text}\n", encoding="utf-8")
-        return path
+        return write_json(self.to_dict(), Path(path))
 
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold."""
@@ -198,8 +205,42 @@ def fit(
     ConfigError
         The curve cannot be fitted, or an argument is not allowed.
     """
+    asked = question(
+        indenter,
+        fields,
+        is_depth=depth is not None,
+        poissons_ratio=poissons_ratio,
+        fix=fix,
+        baseline=baseline,
+        segment=segment,
+    )
+    if (position is None) == (depth is None):
+        raise ConfigError("give either position or depth")
+    if force is None:
+        raise ConfigError("is missing; give the force [N] at each position", "force")
+    curve = clean(depth if position is None else position, force, segment)  # type: ignore[arg-type]
+    return _fitted(curve, asked)
+
+
+def question(
+    indenter: str | Mapping[str, Any] | Indenter,
+    fields: Mapping[str, Any],
+    *,
+    is_depth: bool,
+    poissons_ratio: float | None = None,
+    fix: Mapping[str, Any] | None = None,
+    baseline: Baseline = "none",
+    segment: Segment = "approach",
+) -> Question:
+    """Return what the arguments of `fit` ask.
+
+    Raises
+    ------
+    ConfigError
+        One of them is not allowed.
+    """
     shape = _indenter(indenter, fields)
-    held = _held(fix or {}, depth is not None)
+    held = _held(fix or {}, is_depth)
     free = tuple(k for k in range(3) if k not in held)
     if segment not in ("approach", "retract"):
         raise ConfigError(f"{segment!r} is not allowed; give approach or retract", "segment")
@@ -209,16 +250,11 @@ def fit(
         )
     if not {MODULUS, TENSION} & set(free):
         raise ConfigError("holds both modulus and tension; leave one of them to the fit", "fix")
-    free += _BASELINES[baseline]
-    if (position is None) == (depth is None):
-        raise ConfigError("give either position or depth")
-    if force is None:
-        raise ConfigError("is missing; give the force [N] at each position", "force")
-    curve = clean(depth if position is None else position, force, segment)  # type: ignore[arg-type]
     values = np.zeros(5)
     for k, value in held.items():
         values[k] = value
-    return _fitted(curve, shape, values, free, _ratio(poissons_ratio))
+    free += _BASELINES[baseline]
+    return Question(shape, values, free, segment, _ratio(poissons_ratio))
 
 
 def _indenter(given: str | Mapping[str, Any] | Indenter, fields: Mapping[str, Any]) -> Any:
@@ -267,22 +303,46 @@ def _ratio(given: float | None) -> float | None:
         raise ConfigError(str(error), "poissons_ratio") from None
 
 
-def _fitted(
-    curve: Curve, indenter: Any, held: Array, free: tuple[int, ...], poissons_ratio: float | None
-) -> Fit:
+@dataclass(frozen=True)
+class Explained:
+    """A curve on its own: its likelihood with its noise, and the best parameters."""
+
+    likelihood: Likelihood
+    parameters: Array
+    freedom: float
+    """Degrees of freedom of the noise."""
+    noise_from: str
+    messages: tuple[str, ...]
+
+
+def explain(curve: Curve, asked: Question) -> Explained:
+    """Return the best parameters of a curve and its noise.
+
+    Raises
+    ------
+    ConfigError
+        Nothing explains the curve.
+    """
     messages = list(curve.messages)
     largest = float(np.max(np.abs(curve.force)))
-    rough = Likelihood(curve.position, curve.force, indenter, largest, free)
-    minimum = _best([rough.minimise(start) for start in _starts(rough, held)])
+    rough = Likelihood(curve.position, curve.force, asked.indenter, largest, asked.free)
+    minimum = _best([rough.minimise(start) for start in _starts(rough, asked.held)])
     noise, freedom, source = _noise(rough, minimum.parameters, messages)
-    likelihood = replace(rough, noise=noise)
-    rise = float(stdtrit(freedom, (1 + CONFIDENCE) / 2) ** 2)
-    best, ends = _profiled(likelihood, minimum.parameters, rise)
+    return Explained(
+        replace(rough, noise=noise), minimum.parameters, freedom, source, tuple(messages)
+    )
+
+
+def _fitted(curve: Curve, asked: Question) -> Fit:
+    alone = explain(curve, asked)
+    likelihood, free, messages = alone.likelihood, asked.free, list(alone.messages)
+    rise = allowed_rise(alone.freedom)
+    best, ends = _profiled(likelihood, alone.parameters, rise)
     without = _without_tension(likelihood, best)
     point, log_modulus = best.parameters[POINT], best.parameters[MODULUS]
     bound = likelihood.deviations(best.parameters)
     modulus = float(np.exp(log_modulus))
-    _plausible(curve, indenter, point, modulus, float(best.parameters[TENSION]), messages)
+    plausible(curve, asked.indenter, point, modulus, float(best.parameters[TENSION]), messages)
 
     def estimate(which: int, unit: str) -> Estimate:
         value = float(best.parameters[which])
@@ -291,7 +351,7 @@ def _fitted(
         return Estimate(value, *ends[which], unit, float(bound[which]))
 
     log = estimate(MODULUS, "Pa")
-    reduced = Estimate(modulus, _exp(log.low), _exp(log.high), "Pa", log.bound * modulus, log.held)
+    reduced = of_log(log)
     tension = estimate(TENSION, "N/m")
     gain = without.chi_squared - best.chi_squared
     _open(reduced, tension, likelihood, best.parameters, messages)
@@ -301,13 +361,13 @@ def _fitted(
         contact_point=estimate(POINT, "m"),
         offset=estimate(OFFSET, "N"),
         slope=estimate(SLOPE, "N/m"),
-        youngs_modulus=None if poissons_ratio is None else _times(reduced, 1 - poissons_ratio**2),
-        noise=noise,
-        noise_from=source,
+        youngs_modulus=youngs_modulus(reduced, asked.poissons_ratio),
+        noise=likelihood.noise,
+        noise_from=alone.noise_from,
         points=curve.force.size,
         chi_squared=best.chi_squared,
         chi_squared_without_tension=without.chi_squared,
-        comparison=_comparison(tension, gain),
+        comparison=comparison(tension, gain),
         advice=_advice(likelihood, best.parameters, tension),
         messages=tuple(messages),
         likelihood=likelihood,
@@ -315,6 +375,16 @@ def _fitted(
         parameters_without_tension=without.parameters,
         rise=rise,
     )
+
+
+def allowed_rise(freedom: float) -> float:
+    """Return the rise of χ² at the ends of an interval, with the noise known that well."""
+    return float(stdtrit(freedom, (1 + CONFIDENCE) / 2) ** 2)
+
+
+def youngs_modulus(reduced: Estimate, poissons_ratio: float | None) -> Estimate | None:
+    """Return E = (1 − ν²) E*, if ν was given."""
+    return None if poissons_ratio is None else _times(reduced, 1 - poissons_ratio**2)
 
 
 def _starts(likelihood: Likelihood, held: Array) -> list[Array]:
@@ -401,8 +471,11 @@ def _without_tension(likelihood: Likelihood, best: Minimum) -> Minimum:
     return _best(found)
 
 
-def _exp(log: float | None) -> float | None:
-    return None if log is None else float(np.exp(log))
+def of_log(log: Estimate) -> Estimate:
+    """Return the modulus whose logarithm is estimated."""
+    value = float(np.exp(log.value))
+    low, high = (None if end is None else float(np.exp(end)) for end in (log.low, log.high))
+    return replace(log, value=value, low=low, high=high, bound=log.bound * value)
 
 
 def _times(estimate: Estimate, factor: float) -> Estimate:
@@ -412,7 +485,8 @@ def _times(estimate: Estimate, factor: float) -> Estimate:
     )
 
 
-def _comparison(tension: Estimate, gain: float) -> str:
+def comparison(tension: Estimate, gain: float) -> str:
+    """Return in words whether tension is needed; ``gain`` is how much it lowers χ²."""
     figures = f"Δχ² = {gain:.3g}, ΔAIC = {gain - 2:.3g}"
     if tension.held and not tension.value:
         return "tension is held at 0, so whether it is needed was not asked"
@@ -467,7 +541,7 @@ def _open(
         messages.append(text)
 
 
-def _plausible(
+def plausible(
     curve: Curve, indenter: Any, point: float, modulus: float, tension: float, messages: list[str]
 ) -> None:
     """Refuse or warn of what a wrong unit or radius would give."""

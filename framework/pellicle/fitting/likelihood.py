@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,8 +20,83 @@ REACH = np.log(100.0)
 _TOLERANCE = 1e-10
 
 
+class ChiSquared(ABC):
+    """χ² over parameters of which `POINT`, `MODULUS` and `TENSION` come first."""
+
+    free: tuple[int, ...]
+    """The parameters that are not held."""
+
+    @cached_property
+    @abstractmethod
+    def scale(self) -> Array:
+        """What each parameter moves by, about."""
+
+    @abstractmethod
+    def residuals(self, parameters: Array) -> Array:
+        """Return residuals over the noise; their squares add up to χ²."""
+
+    @abstractmethod
+    def slopes(self, parameters: Array) -> Array:
+        """Return the derivatives of the residuals in each parameter, a column for each."""
+
+    def chi_squared(self, parameters: Array) -> float:
+        """Return the sum of squared residuals."""
+        residuals = self.residuals(parameters)
+        return float(residuals @ residuals)
+
+    def information(self, parameters: Array, free: Sequence[int]) -> Array:
+        """Return the Fisher information of some parameters, in units of `scale`."""
+        jacobian = self.slopes(parameters)[:, free] * self.scale[list(free)]
+        return jacobian.T @ jacobian
+
+    def deviations(self, parameters: Array) -> Array:
+        """Return the Cramér–Rao bound of each parameter, as a standard deviation; 0 if held."""
+        bound = np.zeros(parameters.size)
+        information = self.information(parameters, self.free)
+        try:
+            variances = np.diag(np.linalg.inv(information))
+        except np.linalg.LinAlgError:
+            variances = np.full(len(self.free), np.inf)
+        variances = np.where(variances > 0, variances, np.inf)
+        bound[list(self.free)] = np.sqrt(variances) * self.scale[list(self.free)]
+        return bound
+
+    def minimise(self, start: Array, held: Sequence[int] = ()) -> tuple[Array, float]:
+        """Return the parameters of least χ² near ``start``, some of them held, and that χ²."""
+        free = [k for k in self.free if k not in held]
+        best = np.array(start, dtype=float)
+        if not free:
+            return best, self.chi_squared(best)
+        scale = self.scale[free]
+        lowest = np.full(best.size, -np.inf)
+        highest = np.full(best.size, np.inf)
+        lowest[TENSION] = 0.0
+        # Far beyond every interval, and where no exponential overflows.
+        lowest[MODULUS], highest[MODULUS] = start[MODULUS] - 20, start[MODULUS] + 20
+
+        def full(u: Array) -> Array:
+            parameters = best.copy()
+            parameters[free] = u * scale
+            return parameters
+
+        def jacobian(u: Array) -> Array:
+            return self.slopes(full(u))[:, free] * scale
+
+        found = least_squares(
+            lambda u: self.residuals(full(u)),
+            np.clip(best[free], lowest[free], highest[free]) / scale,
+            jacobian,
+            (lowest[free] / scale, highest[free] / scale),
+            method="dogbox",
+            xtol=_TOLERANCE,
+            ftol=_TOLERANCE,
+            gtol=_TOLERANCE,
+        )
+        return full(found.x), 2 * float(found.cost)
+
+
 @dataclass(frozen=True)
-class Likelihood:
+class Likelihood(ChiSquared):
     """χ² of a curve under normal noise in the force, equal at all points."""
 
     position: Array
@@ -28,7 +104,6 @@ class Likelihood:
     indenter: HasForceCurve
     noise: float
     free: tuple[int, ...]
-    """The parameters that are not held."""
 
     @cached_property
     def scale(self) -> Array:
@@ -66,57 +141,6 @@ class Likelihood:
         """Return (model − force) / noise."""
         return (self.model(parameters) - self.force) / self.noise
 
-    def chi_squared(self, parameters: Array) -> float:
-        """Return the sum of squared residuals."""
-        residuals = self.residuals(parameters)
-        return float(residuals @ residuals)
-
-    def information(self, parameters: Array, free: Sequence[int]) -> Array:
-        """Return the Fisher information of some parameters, in units of `scale`."""
-        jacobian = self.jacobian(parameters)[:, free] * self.scale[list(free)] / self.noise
-        return jacobian.T @ jacobian
-
-    def deviations(self, parameters: Array) -> Array:
-        """Return the Cramér–Rao bound of each parameter, as a standard deviation; 0 if held."""
-        bound = np.zeros(5)
-        information = self.information(parameters, self.free)
-        try:
-            variances = np.diag(np.linalg.inv(information))
-        except np.linalg.LinAlgError:
-            variances = np.full(len(self.free), np.inf)
-        variances = np.where(variances > 0, variances, np.inf)
-        bound[list(self.free)] = np.sqrt(variances) * self.scale[list(self.free)]
-        return bound
-
-    def minimise(self, start: Array, held: Sequence[int] = ()) -> tuple[Array, float]:
-        """Return the parameters of least χ² near ``start``, some of them held, and that χ²."""
-        free = [k for k in self.free if k not in held]
-        best = np.array(start, dtype=float)
-        if not free:
-            return best, self.chi_squared(best)
-        scale = self.scale[free]
-        lowest = np.full(5, -np.inf)
-        highest = np.full(5, np.inf)
-        lowest[TENSION] = 0.0
-        # Far beyond every interval, and where no exponential overflows.
-        lowest[MODULUS], highest[MODULUS] = start[MODULUS] - 20, start[MODULUS] + 20
-
-        def full(u: Array) -> Array:
-            parameters = best.copy()
-            parameters[free] = u * scale
-            return parameters
-
-        def jacobian(u: Array) -> Array:
-            return self.jacobian(full(u))[:, free] * scale / self.noise
-
-        found = least_squares(
-            lambda u: self.residuals(full(u)),
-            np.clip(best[free], lowest[free], highest[free]) / scale,
-            jacobian,
-            (lowest[free] / scale, highest[free] / scale),
-            method="dogbox",
-            xtol=_TOLERANCE,
-            ftol=_TOLERANCE,
-            gtol=_TOLERANCE,
-        )
-        return full(found.x), 2 * float(found.cost)
+    def slopes(self, parameters: Array) -> Array:
+        """Return the derivatives of the residuals, shape (n, 5)."""
+        return self.jacobian(parameters) / self.noise
