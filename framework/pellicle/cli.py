@@ -533,7 +533,10 @@ def _print_fits(rows: list[dict[str, Any]]) -> None:
             if name != "contact_point":
                 told = found and not found["held"]
                 line[f"95 % of {name}"] = _interval(found["low"], found["high"]) if told else ""
-        shown.append(line | {"notes": str(len(row.get("messages", ()))), "status": row["status"]})
+        verdict, _, reason = row["status"].partition(": ")
+        shown.append(line | {"notes": str(len(row.get("messages", ()))), "status": verdict})
+        if reason:
+            typer.echo(f"{row['curve']}: {reason}", err=True)
     _print_table(list(shown[0]), shown)
 
 

@@ -46,10 +46,10 @@ def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Measur
     StorageError
         The file cannot be read, or afmformats is not installed.
     """
-    try:
-        from afmformats.formats import get_recipe
-    except ImportError:
-        raise StorageError(f"{path}: is the file of an instrument; {INSTALL}") from None
+    if not installed():
+        raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
+    from afmformats.formats import get_recipe
+
     given = {
         name: value
         for name, value in (

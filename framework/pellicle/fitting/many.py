@@ -161,7 +161,7 @@ def carry_out(
     for place, source in enumerate(sources):
         made = _task(place, source, indenter, options)
         if isinstance(made, PellicleError):
-            rows[place]["status"] = _why(made)
+            rows[place]["status"] = _why(made).replace(f"{source.name}: ", "", 1)
         elif (done := _done(made, directory)) is not None:
             rows[place] |= done | {"status": FITTED}
             taken += 1

@@ -17,6 +17,7 @@ _PLACES = {
     "height": "height of the cantilever's base, falling on approach",
     "extension": "extension of the piezo, growing on approach",
 }
+_SIGNALS = {"force", "deflection"}
 NAMES = (*_PLACES, "force", "deflection")
 """Columns that are known."""
 _OF_BASE = ("height", "extension")
@@ -89,6 +90,11 @@ class Calibration:
         return self.spring_constant
 
 
+def is_curve(columns: Mapping[str, Column]) -> bool:
+    """Return whether there is a signal and a place."""
+    return bool(_SIGNALS & columns.keys()) and bool(_PLACES.keys() & columns.keys())
+
+
 def from_columns(columns: Mapping[str, Column], calibration: Calibration) -> Measured:
     """Return the curve that columns of these names hold.
 
@@ -101,7 +107,7 @@ def from_columns(columns: Mapping[str, Column], calibration: Calibration) -> Mea
     ConfigError
         A column, a unit or a calibration is missing, or measures something else.
     """
-    if not {"force", "deflection"} & columns.keys():
+    if not _SIGNALS & columns.keys():
         raise ConfigError(
             f"has no column force (columns: {', '.join(columns) or 'none that is known'}); give a "
             f"header such as {EXAMPLE!r}"

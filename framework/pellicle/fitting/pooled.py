@@ -33,7 +33,7 @@ from .interval import Better, Minimum, interval
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
 from .pool import Pool
 from .sources import Curves, gather
-from .start import KEPT, starts
+from .start import KEPT
 from .written import write_json
 
 _SHARED = [MODULUS, TENSION]
@@ -318,21 +318,17 @@ def _profiled(
 
 
 def _without_tension(pool: Pool, best: Minimum) -> Minimum:
+    """Return the least χ² without tension, near the pool's and near each curve's by itself."""
     held = pool.without_tension()
     parts = pool.parts(best.parameters)
     for part in parts:
         part[TENSION] = 0.0
-    found = [Minimum(*held.minimise(held.joined(parts)))]
-    free = tuple(k for k in (POINT, MODULUS, OFFSET, SLOPE) if k in pool.free)
-    scanned = [
-        starts(replace(member, free=free), part)[:1]
+    own = [
+        member.minimise(part, (TENSION,))[0]
         for member, part in zip(pool.members, parts, strict=True)
     ]
-    if all(scanned):
-        begun = [each for (each,) in scanned]
-        shared = np.median([each[_SHARED] for each in begun], axis=0)
-        found.append(_from(held, begun, shared))
-    return _least(found)
+    shared = np.median([each[_SHARED] for each in own], axis=0)
+    return _least([Minimum(*held.minimise(held.joined(parts))), _from(held, own, shared)])
 
 
 def _agreement(curves: Sequence[PooledCurve], spread: float, degrees: int, widened: float) -> str:

@@ -27,18 +27,15 @@ _OPEN = 3.0
 
 
 def curves(fit: PooledFit, axes: Axes) -> None:
-    """Draw data and fit of each curve over the depth, each over its largest force."""
-    scale, _ = _depth_unit(fit)
+    """Draw data and fit of each curve, depth and force each over its largest."""
     for number, (member, part) in enumerate(_each(fit)):
-        depth = (member.position - part[POINT]) * scale
-        moved = member.position - member.position[0]
-        baseline = part[OFFSET] + part[SLOPE] * moved
+        baseline = part[OFFSET] + part[SLOPE] * (member.position - member.position[0])
         model = member.model(part) - baseline
         largest = float(np.max(np.abs(model)))
-        axes.plot(
-            depth, (member.force - baseline) / largest, ".", color=f"C{number}", alpha=0.3, ms=2
-        )
-        axes.plot(depth, model / largest, color=f"C{number}", label=fit.curves[number].name)
+        data = (member.force - baseline) / largest
+        depth, colour = _depth(member, part), f"C{number}"
+        axes.plot(depth, data, ".", color=colour, alpha=0.3, markersize=2)
+        axes.plot(depth, model / largest, color=colour, label=fit.curves[number].name)
     axes.set_ylabel("force / its largest")
     if len(fit.curves) <= _NAMED:
         axes.legend(fontsize="small")
@@ -46,13 +43,11 @@ def curves(fit: PooledFit, axes: Axes) -> None:
 
 def residuals(fit: PooledFit, axes: Axes) -> None:
     """Draw what is left of the force of each curve, over its noise."""
-    scale, name = _depth_unit(fit)
     for number, (member, part) in enumerate(_each(fit)):
-        depth = (member.position - part[POINT]) * scale
         left = -member.residuals(part)
-        axes.plot(depth, left, ".", color=f"C{number}", markersize=2, alpha=0.5)
+        axes.plot(_depth(member, part), left, ".", color=f"C{number}", markersize=2, alpha=0.5)
     axes.axhline(0, color="0.3", linewidth=0.8)
-    axes.set(xlabel=f"depth [{name}]", ylabel="residual / noise")
+    axes.set(xlabel="depth / its largest", ylabel="residual / noise")
 
 
 def profile(fit: PooledFit, which: int, axes: Axes) -> None:
@@ -106,9 +101,10 @@ def _each(fit: PooledFit) -> list[tuple[Likelihood, Array]]:
     return list(zip(fit.pool.members, fit.pool.parts(fit.parameters), strict=True))
 
 
-def _depth_unit(fit: PooledFit) -> tuple[float, str]:
-    deepest = [member.position[-1] - part[POINT] for member, part in _each(fit)]
-    return axis_unit(np.array(deepest), "m")
+def _depth(member: Likelihood, part: Array) -> Array:
+    depth: Array = member.position - part[POINT]
+    depth /= depth[-1]
+    return depth
 
 
 def _values(value: float, low: float | None, high: float | None, bound: float) -> Array:

@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.errors import ConfigError, PellicleError, StorageError
 
 from . import afm
-from .measured import EXAMPLE, NAMES, Calibration, Column, Measured, from_columns
+from .measured import EXAMPLE, NAMES, Calibration, Column, Measured, from_columns, is_curve
 
 _HEADER = re.compile(r"\s*([^\[(]*?)\s*(?:[\[(]([^\])]*)[\])])?\s*")
 _HDF5 = (".h5", ".hdf5", ".nc")
@@ -47,7 +47,7 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
         return afm.read(path, calibration, segment)
     found = _hdf5(path) if path.suffix.lower() in _HDF5 else _table(path)
     hint = ""
-    if not any(found.values()):
+    if not any(map(is_curve, found.values())):
         try:
             return afm.read(path, calibration, segment)
         except StorageError:
