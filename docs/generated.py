@@ -13,7 +13,7 @@ from pydantic.fields import FieldInfo
 import pellicle as pl
 from pellicle.dataset import DESCRIPTIONS
 from pellicle.model import Model
-from pellicle.units import Quantity
+from pellicle.units import Quantity, quantity_of
 
 _HEADINGS = {
     "kernel": "Kernels",
@@ -132,10 +132,8 @@ def default(info: FieldInfo, quote: str = "") -> str:
 
 def _accepts(info: FieldInfo) -> str:
     """Return what a field takes: unit and bounds of a quantity, or its kind of value."""
-    for found in _metadata(info):
-        quantity = found if isinstance(found, Quantity) else getattr(found, "quantity", None)
-        if isinstance(quantity, Quantity):
-            return _range(quantity)
+    if quantity := quantity_of(info):
+        return _range(quantity)
     kind = _kind(info.annotation)
     bounds = [f"{sign} {bound}" for sign, bound in _bounds(info)]
     return ", ".join([kind, *bounds])
@@ -151,18 +149,6 @@ def _bounds(info: FieldInfo) -> Iterator[tuple[str, Any]]:
 def _range(quantity: Quantity) -> str:
     unit = "number" if quantity.unit == "1" else quantity.unit
     return ", ".join([unit, *quantity.bounds])
-
-
-def _metadata(info: FieldInfo) -> Iterator[object]:
-    yield from info.metadata
-    yield from _within(info.annotation)
-
-
-def _within(annotation: Any) -> Iterator[object]:
-    if get_origin(annotation) is Annotated:
-        yield from annotation.__metadata__
-    for inner in get_args(annotation):
-        yield from _within(inner)
 
 
 def _kind(annotation: Any) -> str:

@@ -18,7 +18,7 @@ from typer.core import TyperGroup
 from .errors import ConfigError, PellicleError, PluginError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     import xarray as xr
 
@@ -157,7 +157,7 @@ def fit(
         ),
     ],
     indenter: Annotated[
-        str, typer.Option("--indenter", "-i", help="paraboloid, sphere, cone, flat_punch.")
+        str, typer.Option("--indenter", "-i", help="Type: paraboloid, sphere, cone, flat_punch, …")
     ],
     radius: Annotated[
         list[str] | None,
@@ -187,78 +187,119 @@ def fit(
         bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
     ] = False,
     executor: Annotated[
-        str, typer.Option(help="What carries out many fits: serial, processes, dask.")
-    ] = "serial",
+        str | None,
+        typer.Option(help="What carries out many fits, and runs: serial, processes, dask."),
+    ] = None,
+    kernel: Annotated[
+        str | None, typer.Option(help="Type of the solid, if it is no half-space: coated, …")
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help='Further fields: --set indenter.radius_x="5 um", --set executor.type=processes',
+        ),
+    ] = None,
+    grid_points: Annotated[
+        int | None, typer.Option(help="Cells along each grid, where contacts are simulated.")
+    ] = None,
+    cache: Annotated[
+        Path | None, typer.Option(help="Folder that keeps simulated force curves.")
+    ] = None,
     directory: Annotated[
         Path | None, typer.Option("-o", "--output", help="Folder for JSON, table and figure.")
     ] = None,
+    report: Annotated[
+        bool, typer.Option("--report", help="Leave a web page, there or in the current folder.")
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Fit reduced modulus, tension and contact point to measured curves, with intervals.
 
     Exit code 0 only if every curve was fitted.
     """
+    from .fitting.simulation import GRID_POINTS
     from .fitting.sources import gather
+    from .study_config import DEFAULT_EXECUTOR
 
-    fields = {
-        "radius": radius[0] if radius and len(radius) == 1 else radius,
+    shape = {"radius": radius[0] if radius and len(radius) == 1 else radius}
+    fields = shape | {
         "half_angle": half_angle,
         "spring_constant": spring_constant,
         "sensitivity": sensitivity,
     }
     given = {name: value for name, value in fields.items() if value is not None}
+    tables = _tables(
+        {
+            "indenter": {"type": indenter},
+            "kernel": {} if kernel is None else {"type": kernel},
+            "executor": {"type": executor or DEFAULT_EXECUTOR},
+        },
+        set_ or (),
+    )
     options = {
+        "kernel": tables["kernel"] or None,
         "poissons_ratio": poissons_ratio,
         "fix": dict(map(_assignment, fix or ())),
         "baseline": baseline,
         "segment": segment,
     }
+    study = {
+        "cache": cache,
+        "executor": tables["executor"],
+        "grid_points": GRID_POINTS if grid_points is None else grid_points,
+    }
     if pool:
-        _fit_pooled(curves, indenter, options | given, directory, json=json)
+        _only_one(report)
+        _fit_pooled(curves, tables["indenter"], options | given, study, directory, json=json)
         return
     sources = gather(curves, segment, given)
     if [source.name for source in sources] == [str(curves[0])]:
-        _fit_one(sources[0], indenter, options, directory, json=json)
+        made = _fit_one(sources[0], tables["indenter"], options, study)
+        if json:
+            _print_json(made.to_dict())
+        else:
+            _print_fit(made)
+        for path in _fit_files(made, curves[0].stem, directory, report=report):
+            typer.echo(f"wrote {path}", err=json)
     else:
-        _fit_many(sources, indenter, options, executor, directory, json=json)
+        _only_one(report)
+        _fit_many(sources, tables["indenter"], options, study, directory, json=json)
+
+
+def _only_one(report: bool) -> None:
+    if report:
+        raise ConfigError("is of one curve; fit that one alone, or leave it out", "--report")
 
 
 def _fit_one(
-    source: Source, indenter: str, options: dict[str, Any], directory: Path | None, *, json: bool
-) -> None:
-    from .fitting.many import fit_measured
+    source: Source, indenter: dict[str, Any], options: dict[str, Any], study: dict[str, Any]
+) -> Fit:
+    from .fitting.fit import cleaned, fitted, modelled, question
 
-    if isinstance(source.curve, PellicleError):
-        raise source.curve
-    made = fit_measured(source.curve, indenter={"type": indenter, **source.fields}, **options)
-    if json:
-        _print_json(made.to_dict())
-    else:
-        _print_fit(made)
-    if directory is not None:
-        from .fitting.drawing import save_figure
-
-        name = f"{Path(source.name).stem}-fit"
-        files = made.save(directory / f"{name}.json"), save_figure(made, directory / f"{name}.png")
-        for path in files:
-            typer.echo(f"wrote {path}", err=json)
+    measured = source.curve
+    if isinstance(measured, PellicleError):
+        raise measured
+    is_depth = measured.depth is not None
+    asked = question(indenter, source.fields, is_depth=is_depth, **options)
+    curve = cleaned(measured, asked.segment)
+    return fitted(curve, modelled(asked, curve, progress=sys.stderr.isatty(), **study))
 
 
 def _fit_many(
     sources: list[Source],
-    indenter: str,
+    indenter: dict[str, Any],
     options: dict[str, Any],
-    executor: str,
+    study: dict[str, Any],
     directory: Path | None,
     *,
     json: bool,
 ) -> None:
     from .fitting.many import carry_out
-    from .toml import parse_override
 
-    _, chosen = parse_override(f"executor={executor}")
     try:
-        done = carry_out(sources, indenter, options, chosen, directory, progress=True)
+        done = carry_out(sources, indenter, options, directory=directory, progress=True, **study)
     except KeyboardInterrupt:
         kept = f"; what was finished is in {directory}, and the same command goes on"
         typer.echo(f"interrupted{kept if directory else ''}", err=True)
@@ -278,15 +319,16 @@ def _fit_many(
 
 def _fit_pooled(
     curves: list[Path],
-    indenter: str,
+    indenter: dict[str, Any],
     options: dict[str, Any],
+    study: dict[str, Any],
     directory: Path | None,
     *,
     json: bool,
 ) -> None:
     from .fitting.pooled import fit_pooled
 
-    made = fit_pooled(curves, indenter=indenter, **options)
+    made = fit_pooled(curves, indenter=indenter, progress=sys.stderr.isatty(), **options, **study)
     if json:
         _print_json(made.to_dict())
     else:
@@ -471,6 +513,34 @@ def _assignment(text: str) -> tuple[str, str | float]:
         return name.strip(), float(value)
     except ValueError:
         return name.strip(), value.strip()
+
+
+def _fit_files(fit: Fit, stem: str, directory: Path | None, *, report: bool) -> Iterator[Path]:
+    """Write what is asked for of a fit, and yield each file."""
+    name = f"{stem}-fit"
+    if directory is not None:
+        from .fitting.drawing import save_figure
+
+        yield fit.save(directory / f"{name}.json")
+        yield save_figure(fit, directory / f"{name}.png")
+    if report:
+        from .fitting.report import save_report
+
+        yield save_report(fit, (directory or Path()) / f"{name}.html", stem)
+
+
+def _tables(tables: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
+    """Return tables of components with what ``--set`` says put in."""
+    from .model import nearest, replaced
+    from .toml import parse_override
+
+    for text in overrides:
+        key, value = parse_override(text)
+        table, _, field = key.partition(".")
+        if table not in tables or not field:
+            raise ConfigError(f"--set {text!r}: {table} is no table here; {nearest(table, tables)}")
+        tables = replaced(tables, key, value)
+    return tables
 
 
 def _print_fit(fit: Fit) -> None:

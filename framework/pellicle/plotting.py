@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import partial
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -203,13 +205,8 @@ def save_figure(
     StorageError
         A file cannot be written.
     """
-    import matplotlib.style
-    from matplotlib.figure import Figure
-
     files = []
-    with matplotlib.style.context("default"):
-        figure = Figure(figsize=size, dpi=150, layout="constrained")
-        draw(figure)
+    with _figure(draw, size) as figure:
         for format_ in formats:
             path = stem.with_name(f"{stem.name}.{format_}")
             with reported(path):
@@ -217,6 +214,28 @@ def save_figure(
                 figure.savefig(path)
             files.append(path)
     return tuple(files)
+
+
+def svg(draw: Callable[[Figure], None], size: tuple[float, float] = (5.4, 4.2)) -> bytes:
+    """Let ``draw`` fill a figure of ``size`` [inch], and return it as SVG, the same every time."""
+    import matplotlib as mpl
+
+    with mpl.rc_context(), _figure(draw, size) as figure:
+        mpl.rcParams["svg.hashsalt"] = "pellicle"
+        buffer = BytesIO()
+        figure.savefig(buffer, format="svg", metadata={"Date": None})
+    return buffer.getvalue()
+
+
+@contextmanager
+def _figure(draw: Callable[[Figure], None], size: tuple[float, float]) -> Iterator[Figure]:
+    import matplotlib.style
+    from matplotlib.figure import Figure
+
+    with matplotlib.style.context("default"):
+        figure = Figure(figsize=size, dpi=150, layout="constrained")
+        draw(figure)
+        yield figure
 
 
 def _each(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Dataset]:

@@ -286,11 +286,8 @@ def is_table(path: Path) -> bool:
 def rows(made: xr.Dataset) -> list[dict[str, str]]:
     """Return a line for each run of a table: parameters, last step, and how it ended."""
     found = []
-    for row in _runs(made):
-        statuses = [str(status) for status in row["status"].values if status]
-        verdicts = [table.verdict(status) for status in statuses]
-        worst = next((w for w in ("failed", table.NOT_RUN, "NOT CONVERGED") if w in verdicts), "")
-        done = sum(verdict in ("converged", "NOT CONVERGED") for verdict in verdicts)
+    for row in each_run(made):
+        done, wanted, verdict = standing(row)
         last = {
             name: f"{row[name].values[done - 1]:.6g}" if done and name in row else ""
             for name in ("depth", "force", "contact_area", "contact_fraction")
@@ -299,17 +296,25 @@ def rows(made: xr.Dataset) -> list[dict[str, str]]:
             {
                 "run": str(row["run"].item()),
                 **{str(key): _text(row[key].item()) for key in row.coords if key != "step"},
-                "steps": f"{done}/{len(statuses)}",
+                "steps": f"{done}/{wanted}",
                 **last,
-                "status": worst or "converged",
+                "status": verdict,
             }
         )
     return found
 
 
+def standing(row: xr.Dataset) -> tuple[int, int, str]:
+    """Return the steps that a run of a table has, those that it should have, and its worst end."""
+    verdicts = [table.verdict(str(status)) for status in row["status"].values if status]
+    worst = next((w for w in ("failed", table.NOT_RUN, "NOT CONVERGED") if w in verdicts), "")
+    done = sum(verdict in ("converged", "NOT CONVERGED") for verdict in verdicts)
+    return done, len(verdicts), worst or "converged"
+
+
 def reasons(made: xr.Dataset) -> Iterator[str]:
     """Yield a line for each run of a table that is not as it should be: which, and why."""
-    for row in _runs(made):
+    for row in each_run(made):
         bad = [s for s in map(str, row["status"].values) if s not in ("", "converged")]
         if bad and bad[0] != table.NOT_RUN:
             names = (name for name in row.coords if name != "step")
@@ -317,7 +322,7 @@ def reasons(made: xr.Dataset) -> Iterator[str]:
             yield f"{row['run'].item()} ({where}): {bad[0]}"
 
 
-def _runs(made: xr.Dataset) -> Iterator[xr.Dataset]:
+def each_run(made: xr.Dataset) -> Iterator[xr.Dataset]:
     """Yield the part of a table that is one run's."""
     sizes = made["run"].sizes
     for index in np.ndindex(*sizes.values()):

@@ -7,7 +7,7 @@ import json
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, Self, get_args
+from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
@@ -23,7 +23,7 @@ from .fields import FromRegistry, json_schema
 from .model import Model, paths_relative_to, replaced
 from .plugins import registry
 from .toml import toml_lines
-from .units import Quantity
+from .units import quantity_of
 
 DEFAULT_EXECUTOR = "serial"
 _BYTES_PER_RUN = 40_000
@@ -452,16 +452,5 @@ def _unit_of(run: Run, key: str) -> str | None:
         last = path.pop()
     owner = _reach(run, ".".join(path)) if path else run
     info = type(owner).model_fields.get(last) if isinstance(owner, Model) else None
-    if info is None:
-        return None
-    found = [*info.metadata, *_annotations(info.annotation)]
-    quantities = (getattr(each, "quantity", each) for each in found)
-    units = [quantity.unit for quantity in quantities if isinstance(quantity, Quantity)]
-    return units[0] if units else None
-
-
-def _annotations(annotation: Any) -> Iterator[Any]:
-    """Yield what annotates the types inside a type."""
-    yield from getattr(annotation, "__metadata__", ())
-    for inner in get_args(annotation):
-        yield from _annotations(inner)
+    quantity = quantity_of(info) if info else None
+    return quantity.unit if quantity else None

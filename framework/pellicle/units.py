@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, get_args
 
 from pydantic_core import core_schema
 
@@ -20,6 +21,7 @@ from .errors import shown
 if TYPE_CHECKING:
     import pint
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+    from pydantic.fields import FieldInfo
     from pydantic.json_schema import JsonSchemaValue
 
 _EXAMPLES = {
@@ -140,6 +142,12 @@ class Quantity:
     def _dimension(self) -> str:
         return str(_registry().Unit(self.unit).dimensionality)
 
+    def powers(self) -> tuple[int, int]:
+        """Return the powers of Pa and of m that make the unit, whatever it has of seconds."""
+        dimensions: Mapping[str, Any] = _registry().Unit(self.unit).dimensionality
+        pressure = int(dimensions.get("[mass]", 0))
+        return pressure, int(dimensions.get("[length]", 0)) + pressure
+
     def _within(self, number: float) -> bool:
         return not (
             (self.above is not None and number <= self.above)
@@ -189,6 +197,22 @@ class Quantity:
         if self.unit in _EXAMPLES:
             text["examples"] = [_EXAMPLES[self.unit]]  # type: ignore[assignment]
         return {"anyOf": [number, text], "unit": self.unit}
+
+
+def quantity_of(info: FieldInfo) -> Quantity | None:
+    """Return the quantity that a field of a model holds, one or several; None if it is none."""
+    for found in (*info.metadata, *_annotations(info.annotation)):
+        quantity = getattr(found, "quantity", found)
+        if isinstance(quantity, Quantity):
+            return quantity
+    return None
+
+
+def _annotations(annotation: Any) -> Iterator[Any]:
+    """Yield what annotates the types inside a type."""
+    yield from getattr(annotation, "__metadata__", ())
+    for inner in get_args(annotation):
+        yield from _annotations(inner)
 
 
 Length = Annotated[float, Quantity("m", above=0)]

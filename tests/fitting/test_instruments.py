@@ -11,7 +11,6 @@ import pytest
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle.fitting.many import fit_measured
 from pellicle.fitting.measured import Calibration, Measured
 from pellicle.fitting.read import read
 
@@ -77,7 +76,8 @@ def test_approach_of_an_unlabelled_file_is_fitted(
 ) -> None:
     """A file of both passes is fitted by its approach, and the truth is found."""
     instruments.ibw(tmp_path / "curve.ibw", recording)
-    fit = fit_measured(only(tmp_path / "curve.ibw"), indenter=BEAD)
+    measured = only(tmp_path / "curve.ibw")
+    fit = pl.fit(measured.position, measured.force, indenter=BEAD)
     assert fit.points == pytest.approx(300, abs=2)
     for found, truth in ((fit.reduced_modulus, MODULUS), (fit.tension, MODULUS * LENGTH / 2)):
         assert found.low is not None

@@ -17,6 +17,7 @@ from .likelihood import MODULUS, TENSION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _JOINT = (2.30, 5.99)
 """Rises of χ² that two parameters together exceed by chance in 32 % and 5 % of curves."""
@@ -108,6 +109,26 @@ def _rises(fit: Fit) -> tuple[Array, Array, Array]:
     return np.repeat(moduli[:, None], _STEPS, axis=1), tensions, rise
 
 
+def size(fit: Fit) -> tuple[float, float]:
+    """Return the size of the figure [inch]."""
+    return (10.4 if _both(fit) else 5.4, 4.6)
+
+
+def fill(fit: Fit, figure: Figure) -> None:
+    """Draw all that the figure of a fit has."""
+    both = _both(fit)
+    cells = figure.add_gridspec(2, 1 + both, height_ratios=(3, 1))
+    upper = figure.add_subplot(cells[0, 0])
+    curve(fit, upper)
+    residuals(fit, figure.add_subplot(cells[1, 0], sharex=upper))
+    if both:
+        likelihood_map(fit, figure.add_subplot(cells[:, 1]))
+
+
+def _both(fit: Fit) -> bool:
+    return not (fit.reduced_modulus.held or fit.tension.held)
+
+
 def save_figure(fit: Fit, path: Path) -> Path:
     """Write the figure of a fit and return its file.
 
@@ -119,15 +140,9 @@ def save_figure(fit: Fit, path: Path) -> Path:
     import matplotlib.style
     from matplotlib.figure import Figure
 
-    both = not (fit.reduced_modulus.held or fit.tension.held)
     with matplotlib.style.context("default"):
-        figure = Figure(figsize=(10.4 if both else 5.4, 4.6), dpi=150, layout="constrained")
-        cells = figure.add_gridspec(2, 1 + both, height_ratios=(3, 1))
-        upper = figure.add_subplot(cells[0, 0])
-        curve(fit, upper)
-        residuals(fit, figure.add_subplot(cells[1, 0], sharex=upper))
-        if both:
-            likelihood_map(fit, figure.add_subplot(cells[:, 1]))
+        figure = Figure(figsize=size(fit), dpi=150, layout="constrained")
+        fill(fit, figure)
         with reported(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             figure.savefig(path)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import fdtrc, stdtrit
 
-from pellicle.components import HasForceCurve, Indenter
+from pellicle.components import Component, Executor, HasForceCurve, Indenter
 from pellicle.errors import ConfigError
 from pellicle.model import nearest
 from pellicle.operators import Array
@@ -21,9 +21,13 @@ from pellicle.units import Quantity
 from .curve import Curve, Segment, clean
 from .design import advice, decidable, designs
 from .interval import Better, Minimum, interval
-from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood
-from .start import starts
-from .written import write_json
+from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, ChiSquared, Likelihood
+from .measured import Measured
+from .simulated import SimulatedCurve
+from .simulation import GRID_POINTS, simulate
+from .solid import DEFAULT_KERNEL, Solid, lengths, solid
+from .start import BEFORE, starts
+from .written import as_json, write_json
 
 Baseline = Literal["none", "offset", "slope"]
 
@@ -42,8 +46,6 @@ _QUIET = 20
 """Points before contact that the noise can be taken from."""
 _CHANCE = 1e-3
 """A misfit less likely than this is no chance."""
-_MODEL_ACCURACY = 1e-6
-"""Of the master curves, relative to the largest force; less noise than this cannot be told."""
 _PLAUSIBLE_DEPTH = (1e-3, 1.0)
 _PLAUSIBLE_MODULUS = (1.0, 1e12)
 _PLAUSIBLE_TENSION = 10.0
@@ -82,7 +84,9 @@ class Question:
     """What is asked of a curve."""
 
     indenter: Any
-    """It has a force curve."""
+    """It has a force curve, or is pressed into `material`."""
+    material: Solid | None
+    """What is to be simulated; None if nothing is."""
     held: Array
     """Parameters, in the order of `likelihood`; of the free ones, anything."""
     free: tuple[int, ...]
@@ -149,6 +153,10 @@ class Fit:
         """
         return write_json(self.to_dict(), Path(path))
 
+    def to_json(self) -> str:
+        """Return what `to_dict` returns as JSON."""
+        return as_json(self.to_dict())
+
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold."""
         gain = self.chi_squared_without_tension - self.chi_squared
@@ -169,17 +177,27 @@ def fit(
     force: ArrayLike | None = None,
     *,
     depth: ArrayLike | None = None,
-    indenter: str | Mapping[str, Any] | Indenter,
+    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
+    kernel: str | Mapping[str, Any] | None = None,
     poissons_ratio: float | None = None,
     fix: Mapping[str, Any] | None = None,
     baseline: Baseline = "none",
     segment: Segment = "approach",
+    cache: str | Path | None = None,
+    executor: str | Mapping[str, Any] | Executor = "serial",
+    grid_points: int = GRID_POINTS,
+    progress: bool = False,
     **fields: Any,
 ) -> Fit:
     """Fit reduced modulus, tension and contact point to one measured curve.
 
-    The solid is a half-space, the contact frictionless and without adhesion.  Errors of the force
-    are taken as normal, independent and equal at all points; the intervals hold 95 %.
+    The solid is a half-space under tension unless a kernel is given, the contact frictionless and
+    without adhesion.  Errors of the force are taken as normal, independent and equal at all points;
+    the intervals hold 95 %.
+
+    An indenter that has a force curve of its own (paraboloid, sphere, cone, flat_punch) is fitted
+    at once.  Any other, or any on another kernel, needs a study of some 150 runs first, which is
+    kept in ``cache`` and serves all curves of the same proportions.
 
     Parameters
     ----------
@@ -188,10 +206,12 @@ def fit(
     depth
         Depth [m] instead of position: the contact point is then held at 0.
     indenter
-        An indenter that has a force curve (paraboloid, sphere, cone, flat_punch), its table, or
-        its type, with the fields that the type needs: ``indenter="paraboloid", radius="5 um"``.
+        An indenter, its table, or its type with the fields that the type needs:
+        ``indenter="paraboloid", radius="5 um"``; or anything that has a force curve.
+    kernel
+        Type or table of the kernel, without the modulus and the tension that are sought.
     poissons_ratio
-        ν, to give Young's modulus as well.
+        ν, to give Young's modulus as well; also that of a kernel that needs one and has none.
     fix
         Parameters to hold, e.g. ``{"tension": 0}``: reduced_modulus, tension, contact_point.
     baseline
@@ -199,16 +219,27 @@ def fit(
         ``"slope"``.
     segment
         The pass that is fitted of a curve with two: ``"approach"`` or ``"retract"``.
+    cache
+        Folder that keeps studies; the user's cache folder if None.
+    executor
+        What carries out a study.
+    grid_points
+        Cells of each grid of a study along x and y.
+    progress
+        Show how far a study is.
 
     Raises
     ------
-    ConfigError
+    ConfigError, PluginError
         The curve cannot be fitted, or an argument is not allowed.
+    ConvergenceError, StorageError
+        A study did not come to its end.
     """
     asked = question(
         indenter,
         fields,
         is_depth=depth is not None,
+        kernel=kernel,
         poissons_ratio=poissons_ratio,
         fix=fix,
         baseline=baseline,
@@ -219,14 +250,23 @@ def fit(
     if force is None:
         raise ConfigError("is missing; give the force [N] at each position", "force")
     curve = clean(depth if position is None else position, force, segment)  # type: ignore[arg-type]
-    return _fitted(curve, asked)
+    model = modelled(
+        asked,
+        curve,
+        cache=cache,
+        executor=executor,
+        grid_points=grid_points,
+        progress=progress,
+    )
+    return fitted(curve, model)
 
 
 def question(
-    indenter: str | Mapping[str, Any] | Indenter,
+    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
     fields: Mapping[str, Any],
     *,
     is_depth: bool,
+    kernel: str | Mapping[str, Any] | None = None,
     poissons_ratio: float | None = None,
     fix: Mapping[str, Any] | None = None,
     baseline: Baseline = "none",
@@ -236,10 +276,18 @@ def question(
 
     Raises
     ------
-    ConfigError
+    ConfigError, PluginError
         One of them is not allowed.
     """
     shape = _indenter(indenter, fields)
+    ratio = _ratio(poissons_ratio)
+    if kernel is None and not isinstance(shape, HasForceCurve):
+        kernel = DEFAULT_KERNEL
+    material = None if kernel is None else solid(kernel, ratio)
+    if material is not None:
+        if not isinstance(shape, Indenter):
+            raise ConfigError("is given beside a force curve, which has one already", "kernel")
+        ratio = material.poissons_ratio
     held = _held(fix or {}, is_depth)
     free = tuple(k for k in range(3) if k not in held)
     if segment not in ("approach", "retract"):
@@ -254,30 +302,68 @@ def question(
     for k, value in held.items():
         values[k] = value
     free += _BASELINES[baseline]
-    return Question(shape, values, free, segment, _ratio(poissons_ratio))
+    return Question(shape, material, values, free, segment, ratio)
 
 
-def _indenter(given: str | Mapping[str, Any] | Indenter, fields: Mapping[str, Any]) -> Any:
+def cleaned(measured: Measured, segment: Segment) -> Curve:
+    """Return the rows of a measured curve that are fitted.
+
+    Raises
+    ------
+    ConfigError
+        As for `clean`.
+    """
+    place = measured.position if measured.depth is None else measured.depth
+    made = clean(place, measured.force, segment)  # type: ignore[arg-type]
+    return replace(made, messages=(*measured.messages, *made.messages))
+
+
+def modelled(
+    asked: Question,
+    curve: Curve,
+    *,
+    cache: str | Path | None = None,
+    executor: str | Mapping[str, Any] | Executor = "serial",
+    grid_points: int = GRID_POINTS,
+    progress: bool = False,
+) -> Question:
+    """Return the question with an indenter that has a force curve, simulated if need be.
+
+    Raises
+    ------
+    ConfigError, ConvergenceError, StorageError
+        As for `simulate`.
+    """
+    if asked.material is None:
+        return asked
+    reach = (1 + BEFORE) * float(np.ptp(curve.position))
+    made = simulate(
+        asked.indenter,
+        asked.material,
+        reach if POINT in asked.free else float(curve.position[-1]) - asked.held[POINT],
+        cache=None if cache is None else Path(cache),
+        executor=executor,
+        grid_points=grid_points,
+        progress=progress,
+    )
+    return replace(asked, indenter=made, material=None)
+
+
+def _indenter(
+    given: str | Mapping[str, Any] | Indenter | HasForceCurve, fields: Mapping[str, Any]
+) -> Any:
     if isinstance(given, str):
         given = {"type": given, **fields}
+    elif isinstance(given, Mapping):
+        given = {**given, **fields}
     elif fields:
         raise ConfigError(f"{', '.join(fields)} given beside an indenter that is complete")
+    if isinstance(given, HasForceCurve):
+        return given
     try:
-        made = registry().make(Indenter, given)
+        return registry().make(Indenter, given)
     except ConfigError as error:
         raise error.within("indenter") from None
-    if not isinstance(made, HasForceCurve):
-        able = (
-            name
-            for name, registered in registry().components["indenter"].items()
-            if hasattr(registered.component, "force_curve")
-        )
-        raise ConfigError(
-            f"{made!r} has no force curve, which a fit needs; "
-            f"give one of: {', '.join(sorted(able))}",
-            "indenter",
-        )
-    return made
 
 
 def _held(fix: Mapping[str, Any], is_depth: bool) -> dict[int, float]:
@@ -333,12 +419,19 @@ def explain(curve: Curve, asked: Question) -> Explained:
     )
 
 
-def _fitted(curve: Curve, asked: Question) -> Fit:
+def fitted(curve: Curve, asked: Question) -> Fit:
+    """Return the fit of a curve by an indenter that has a force curve.
+
+    Raises
+    ------
+    ConfigError
+        The curve cannot be fitted.
+    """
     alone = explain(curve, asked)
     likelihood, free, messages = alone.likelihood, asked.free, list(alone.messages)
     rise = allowed_rise(alone.freedom)
-    best, ends = _profiled(likelihood, alone.parameters, rise)
-    without = _without_tension(likelihood, best)
+    best, without, ends = _profiled(likelihood, alone.parameters, rise)
+    ends = widened(ends, likelihood, best, messages)
     point, log_modulus = best.parameters[POINT], best.parameters[MODULUS]
     bound = likelihood.deviations(best.parameters)
     modulus = float(np.exp(log_modulus))
@@ -403,7 +496,7 @@ def _best(found: list[tuple[Array, float]]) -> Minimum:
 def _noise(rough: Likelihood, parameters: Array, messages: list[str]) -> tuple[float, float, str]:
     """Return standard deviation [N], its degrees of freedom, and where it comes from."""
     residuals = rough.residuals(parameters) * rough.noise
-    least = _MODEL_ACCURACY * rough.noise
+    least = rough.accuracy * rough.noise
     span = float(np.ptp(rough.position))
     before = rough.position < parameters[POINT] - 0.01 * span
     baseline = sum(k in rough.free for k in (OFFSET, SLOPE))
@@ -440,26 +533,51 @@ def _noise(rough: Likelihood, parameters: Array, messages: list[str]) -> tuple[f
 
 def _profiled(
     likelihood: Likelihood, start: Array, rise: float
-) -> tuple[Minimum, dict[int, tuple[float | None, float | None]]]:
-    """Return the minimum and the interval of each free parameter."""
+) -> tuple[Minimum, Minimum, dict[int, tuple[float | None, float | None]]]:
+    """Return the minimum, that without tension, and the interval of each free parameter."""
     best = Minimum(*likelihood.minimise(start))
     while True:
-        edge = _on_edge(likelihood, best)
-        best = edge or best
+        without = _without_tension(likelihood, best)
+        if TENSION in likelihood.free and without.chi_squared <= best.chi_squared + 1e-6:
+            # As good, and then exactly on the edge.
+            best = without
         try:
-            return best, {k: interval(likelihood, best, k, rise) for k in likelihood.free}
+            ends = {k: interval(likelihood, best, k, rise) for k in likelihood.free}
         except Better as better:
             best = Minimum(*likelihood.minimise(better.minimum.parameters))
             if best.chi_squared > better.minimum.chi_squared:
                 best = better.minimum
+        else:
+            return best, without, ends
 
 
-def _on_edge(likelihood: Likelihood, best: Minimum) -> Minimum | None:
-    """Return the minimum without tension if it is as good, to be exactly on the edge."""
-    if TENSION not in likelihood.free:
-        return None
-    without = _without_tension(likelihood, best)
-    return without if without.chi_squared <= best.chi_squared + 1e-6 else None
+def widened(
+    ends: dict[int, tuple[float | None, float | None]],
+    likelihood: ChiSquared,
+    best: Minimum,
+    messages: list[str],
+) -> dict[int, tuple[float | None, float | None]]:
+    """Return intervals with what the grids of a simulated curve may have shifted added to them."""
+    coarser = likelihood.coarse()
+    if coarser is None:
+        return ends
+    coarse, _ = coarser.minimise(best.parameters)
+    shift = np.abs(coarse - best.parameters)
+    tension = best.parameters[TENSION]
+    said = [f"the modulus by {100 * np.expm1(shift[MODULUS]):.2g} %"] * (MODULUS in ends)
+    if TENSION in ends and tension:
+        said.append(f"the tension by {100 * shift[TENSION] / tension:.2g} %")
+    messages.append(
+        f"the force curve is simulated, to {100 * likelihood.accuracy:.2g} %; half as many cells "
+        f"change {' and '.join(said)}, and the intervals are widened by that"
+    )
+    wider = {}
+    for which, (low, high) in ends.items():
+        low = None if low is None else low - shift[which]
+        if which == TENSION and low is not None and low <= 0:
+            low = None
+        wider[which] = low, None if high is None else high + shift[which]
+    return wider
 
 
 def _without_tension(likelihood: Likelihood, best: Minimum) -> Minimum:
@@ -546,7 +664,8 @@ def plausible(
 ) -> None:
     """Refuse or warn of what a wrong unit or radius would give."""
     depth = float(curve.position[-1]) - point
-    radius = getattr(indenter, "radius", None)
+    shape = indenter.indenter if isinstance(indenter, SimulatedCurve) else indenter
+    radius = next(iter(lengths(shape)), None) if isinstance(shape, Component) else None
     if depth > indenter.depth_limit:
         raise ConfigError(
             f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at "

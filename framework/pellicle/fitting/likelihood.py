@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,11 +13,15 @@ from scipy.optimize import least_squares
 from pellicle.components import HasForceCurve
 from pellicle.operators import Array
 
+from .simulated import SimulatedCurve
+
 POINT, MODULUS, TENSION, OFFSET, SLOPE = range(5)
 """Parameters: contact point [m], log of E* in Pa, τ₀ [N/m], force offset [N], its slope [N/m]."""
 REACH = np.log(100.0)
 """How far in log E*, and in log τ₀ above, an interval is followed before it is called open."""
 _TOLERANCE = 1e-10
+_ACCURACY = 1e-6
+"""Of the master curves."""
 
 
 class ChiSquared(ABC):
@@ -38,6 +42,15 @@ class ChiSquared(ABC):
     @abstractmethod
     def slopes(self, parameters: Array) -> Array:
         """Return the derivatives of the residuals in each parameter, a column for each."""
+
+    @property
+    @abstractmethod
+    def accuracy(self) -> float:
+        """Of the model, relative to the largest force; less noise than this cannot be told."""
+
+    @abstractmethod
+    def coarse(self) -> ChiSquared | None:
+        """Return the same with force curves of coarser grids; None where none is simulated."""
 
     def chi_squared(self, parameters: Array) -> float:
         """Return the sum of squared residuals."""
@@ -110,6 +123,19 @@ class Likelihood(ChiSquared):
         """What each parameter moves by, about."""
         span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
         return np.array([span, 1.0, height / span, height, height / span])
+
+    @property
+    def accuracy(self) -> float:
+        """Of the model, relative to the largest force."""
+        curve = self.indenter
+        return curve.accuracy if isinstance(curve, SimulatedCurve) else _ACCURACY
+
+    def coarse(self) -> Likelihood | None:
+        """Return the same with the force curve of a coarser grid, if it has one."""
+        curve = self.indenter
+        if not isinstance(curve, SimulatedCurve) or curve.coarse is None:
+            return None
+        return replace(self, indenter=curve.coarse)
 
     def model(self, parameters: Array) -> Array:
         """Return the force [N] at every position."""

@@ -4,24 +4,23 @@ from __future__ import annotations
 
 import hashlib
 import json
+import pickle
 from collections.abc import Mapping
 from contextlib import closing
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
-import numpy as np
-
-from pellicle.components import Executor, Indenter, Say
+from pellicle.components import Component, Executor, HasForceCurve, Indenter, Say
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.plugins import registry
 from pellicle.progress import StudyProgress
 from pellicle.storage import check_writable
 
-from .curve import Segment
-from .fit import Baseline, Fit, fit, question
-from .measured import Measured
+from .curve import Curve, Segment
+from .fit import Baseline, Question, cleaned, fitted, modelled, question
 from .rows import FAILED, FITTED, NOT_RUN, table, write
+from .simulation import GRID_POINTS
 from .sources import Curves, Source, gather
 from .written import write_json
 
@@ -41,26 +40,15 @@ class FitTask:
     name: str
     place: int
     """Its row."""
-    measured: Measured = field(repr=False)
-    options: Mapping[str, Any]
-    """Of `fit`; the indenter is made."""
+    curve: Curve
+    asked: Question
+    path: Path | None
+    """Where the fit is kept."""
 
     @property
     def memory(self) -> int:
         """Memory that the fit takes at its peak [bytes], estimated."""
-        return _BYTES_A_POINT * np.size(self.measured.force)
-
-    @property
-    def identity(self) -> str:
-        """What tells this curve and what is asked of it from all others."""
-        from pellicle import __version__
-
-        options = {**self.options, "indenter": repr(self.options["indenter"])}
-        said = json.dumps([__version__, options], sort_keys=True, default=str)
-        known = hashlib.sha256(said.encode())
-        for values in (self.measured.position, self.measured.depth, self.measured.force):
-            known.update(b"-" if values is None else np.asarray(values, dtype=float).tobytes())
-        return known.hexdigest()
+        return _BYTES_A_POINT * self.curve.force.size
 
 
 class Fitted(NamedTuple):
@@ -81,11 +69,14 @@ class Fitted(NamedTuple):
 def fit_many(
     curves: Curves,
     *,
-    indenter: str | Mapping[str, Any] | Indenter,
+    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
+    kernel: str | Mapping[str, Any] | None = None,
     poissons_ratio: float | None = None,
     fix: Mapping[str, Any] | None = None,
     baseline: Baseline = "none",
     segment: Segment = "approach",
+    cache: str | Path | None = None,
+    grid_points: int = GRID_POINTS,
     executor: str | Mapping[str, Any] | Executor = "serial",
     directory: str | Path | None = None,
     progress: bool = True,
@@ -101,11 +92,12 @@ def fit_many(
         A folder; a file, which may hold several curves; a table that lists files, with a header
         such as ``file,radius [um]``; several of these; or position [m] and force [N] of each curve
         by its name, ``{"first": (position, force)}``.
-    indenter, poissons_ratio, fix, baseline, segment
+    indenter, kernel, poissons_ratio, fix, baseline, segment, cache, grid_points
         As for `fit`.
     executor
-        How the fits are carried out: ``"serial"``, ``"processes"``, ``"dask"``, a table such as
-        ``{"type": "processes", "workers": 2}``, or an executor.
+        How the fits, and the runs of a study that they need, are carried out: ``"serial"``,
+        ``"processes"``, ``"dask"``, a table such as ``{"type": "processes", "workers": 2}``, or an
+        executor.
     directory
         Folder for the table, as ``fits.h5``, ``fits.csv`` and ``fits.json``, and a file for each
         curve in ``curves``. A fit that it holds already is not done again.
@@ -128,45 +120,72 @@ def fit_many(
     StorageError
         The folder cannot be used.
     """
+    sources = gather(curves, segment, fields)
     options = {
+        "kernel": kernel,
         "poissons_ratio": poissons_ratio,
         "fix": fix,
         "baseline": baseline,
         "segment": segment,
     }
-    folder = None if directory is None else Path(directory)
-    sources = gather(curves, segment, fields)
-    return table(carry_out(sources, indenter, options, executor, folder, progress=progress).rows)
+    done = carry_out(
+        sources,
+        indenter,
+        options,
+        executor,
+        None if directory is None else Path(directory),
+        cache=cache,
+        grid_points=grid_points,
+        progress=progress,
+    )
+    return table(done.rows)
 
 
 def carry_out(
     sources: list[Source],
-    indenter: str | Mapping[str, Any] | Indenter,
+    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
     options: Mapping[str, Any],
     executor: str | Mapping[str, Any] | Executor,
     directory: Path | None,
     *,
+    cache: str | Path | None = None,
+    grid_points: int = GRID_POINTS,
     progress: bool,
 ) -> Fitted:
     """Fit each source, but for what is done, and leave the files.
 
-    What is interrupted leaves the table of all that was finished.
+    ``options`` are those of `question`. What is interrupted leaves the table of all that was
+    finished.
     """
     chosen = {"type": executor} if isinstance(executor, str) else executor
     carrier = registry().make(Executor, chosen)
     if directory is not None:
         check_writable(directory / "fits.h5")
     rows: list[dict[str, Any]] = [{"curve": source.name, "status": NOT_RUN} for source in sources]
-    tasks, taken = [], 0
-    for place, source in enumerate(sources):
-        made = _task(place, source, indenter, options)
-        if isinstance(made, PellicleError):
-            rows[place]["status"] = _why(made).replace(f"{source.name}: ", "", 1)
-        elif (done := _done(made, directory)) is not None:
-            rows[place] |= done | {"status": FITTED}
-            taken += 1
-        else:
-            tasks.append(made)
+    questions = [_asked(source, indenter, options) for source in sources]
+    tasks: list[FitTask] = []
+    for place, (source, asked) in enumerate(zip(sources, questions, strict=True)):
+        try:
+            if isinstance(source.curve, PellicleError):
+                raise source.curve
+            assert asked is not None
+            curve = cleaned(source.curve, asked.segment)
+            path = _file(directory, curve, asked, grid_points)
+            if (done := _done(path)) is not None:
+                rows[place] |= done | {"status": FITTED}
+                continue
+            model = modelled(
+                asked,
+                curve,
+                cache=cache,
+                executor=carrier,
+                grid_points=grid_points,
+                progress=progress,
+            )
+            tasks.append(FitTask(source.name, place, curve, model, path))
+        except PellicleError as error:
+            rows[place]["status"] = _why(error).replace(f"{source.name}: ", "", 1)
+    taken = sum(row["status"] == FITTED for row in rows)
     files: tuple[Path, ...] = ()
     try:
         with (
@@ -178,8 +197,8 @@ def carry_out(
                     rows[task.place]["status"] = _why(outcome)
                 else:
                     rows[task.place] |= outcome | {"status": FITTED}
-                    if directory is not None:
-                        write_json(outcome, _file(task, directory))
+                    if task.path is not None:
+                        write_json(outcome, task.path)
                 verdict = str(rows[task.place]["status"])
                 bar.finished(task, verdict, verdict != FITTED)
     finally:
@@ -190,42 +209,55 @@ def carry_out(
 
 def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve where a worker is."""
-    return fit_measured(task.measured, **task.options).to_dict()
+    return fitted(task.curve, task.asked).to_dict()
 
 
-def fit_measured(measured: Measured, **options: Any) -> Fit:
-    """Return the fit of a curve as a reader gave it."""
-    made = fit(measured.position, measured.force, depth=measured.depth, **options)
-    return replace(made, messages=(*measured.messages, *made.messages))
-
-
-def _task(
-    place: int,
+def _asked(
     source: Source,
-    indenter: str | Mapping[str, Any] | Indenter,
+    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
     options: Mapping[str, Any],
-) -> FitTask | PellicleError:
-    """Return the task of a source, or why there is none; raise if it is no fault of the curve."""
+) -> Question | None:
+    """Return what is asked of a source that has a curve; raise if that is not allowed."""
     if isinstance(source.curve, PellicleError):
-        return source.curve
+        return None
     is_depth = source.curve.depth is not None
     try:
-        asked = question(indenter, source.fields, is_depth=is_depth, **options)
+        return question(indenter, source.fields, is_depth=is_depth, **options)
     except ConfigError as error:
         raise ConfigError(f"{source.name}: {error}") from None
-    return FitTask(source.name, place, source.curve, {**options, "indenter": asked.indenter})
 
 
-def _file(task: FitTask, directory: Path) -> Path:
-    return directory / "curves" / f"{task.identity[:16]}.json"
-
-
-def _done(task: FitTask, directory: Path | None) -> dict[str, Any] | None:
-    """Return the fit that a folder holds of a task."""
+def _file(directory: Path | None, curve: Curve, asked: Question, grid_points: int) -> Path | None:
+    """Return where a fit is kept."""
     if directory is None:
         return None
+    return directory / "curves" / f"{_identity(curve, asked, grid_points)[:16]}.json"
+
+
+def _identity(curve: Curve, asked: Question, grid_points: int) -> str:
+    """Return what tells this curve and what is asked of it from all others."""
+    from pellicle import __version__
+
+    known = hashlib.sha256(__version__.encode())
+    kernel = asked.material and asked.material.kernel
+    for part in (asked.indenter, kernel):
+        if isinstance(part, Component):
+            known.update(part.model_dump_json().encode())
+        else:
+            known.update(pickle.dumps(part))
+    said = asked.free, asked.segment, asked.poissons_ratio, grid_points if kernel else None
+    known.update(repr((said, curve.messages)).encode())
+    for values in (asked.held, curve.position, curve.force):
+        known.update(values.tobytes())
+    return known.hexdigest()
+
+
+def _done(path: Path | None) -> dict[str, Any] | None:
+    """Return the fit that a file holds."""
+    if path is None:
+        return None
     try:
-        found = json.loads(_file(task, directory).read_text(encoding="utf-8"))
+        found = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
     return found if isinstance(found, dict) else None

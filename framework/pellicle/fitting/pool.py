@@ -52,6 +52,19 @@ class Pool(ChiSquared):
         """Return the same with the tension held."""
         return Pool(self.members, tuple(k for k in self.free if k != TENSION))
 
+    @property
+    def accuracy(self) -> float:
+        """Of the least exact force curve, relative to the largest force."""
+        return max(member.accuracy for member in self.members)
+
+    def coarse(self) -> Pool | None:
+        """Return the same with force curves of coarser grids, if there are any."""
+        coarser = [member.coarse() for member in self.members]
+        if not any(coarser):
+            return None
+        pairs = zip(coarser, self.members, strict=True)
+        return Pool(tuple(made or member for made, member in pairs), self.free)
+
     def residuals(self, parameters: Array) -> Array:
         """Return residuals of the same squares as all, six for each curve."""
         return np.concatenate([rotated[:, _ALL] for rotated in self._rotated(parameters)])

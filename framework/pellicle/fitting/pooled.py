@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.special import chdtrc
 
-from pellicle.components import Indenter
+from pellicle.components import Executor, HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.operators import Array
 
-from .curve import Curve, Segment, clean
+from .curve import Curve, Segment
 from .design import percent
 from .fit import (
     CONFIDENCE,
@@ -22,16 +22,20 @@ from .fit import (
     Estimate,
     Explained,
     allowed_rise,
+    cleaned,
     comparison,
     explain,
+    modelled,
     of_log,
     plausible,
     question,
+    widened,
     youngs_modulus,
 )
 from .interval import Better, Minimum, interval
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
 from .pool import Pool
+from .simulation import GRID_POINTS
 from .sources import Curves, gather
 from .start import KEPT
 from .written import write_json
@@ -137,11 +141,16 @@ class PooledFit:
 def fit_pooled(
     curves: Curves,
     *,
-    indenter: str | Mapping[str, Any] | Indenter,
+    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
+    kernel: str | Mapping[str, Any] | None = None,
     poissons_ratio: float | None = None,
     fix: Mapping[str, Any] | None = None,
     baseline: Baseline = "none",
     segment: Segment = "approach",
+    cache: str | Path | None = None,
+    executor: str | Mapping[str, Any] | Executor = "serial",
+    grid_points: int = GRID_POINTS,
+    progress: bool = False,
     **fields: Any,
 ) -> PooledFit:
     """Fit one reduced modulus and one tension to several curves together.
@@ -153,7 +162,7 @@ def fit_pooled(
     ----------
     curves
         As for `fit_many`.
-    indenter, poissons_ratio, baseline, segment
+    indenter, kernel, poissons_ratio, baseline, segment, cache, executor, grid_points, progress
         As for `fit`.
     fix
         Parameters to hold, of those that are shared: reduced_modulus, tension.
@@ -175,7 +184,7 @@ def fit_pooled(
     sources = gather(curves, segment, fields)
     if len(sources) < 2:
         raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
-    every, cleaned, ratio = [], [], None
+    rows, every, ratio = [], [], None
     for source in sources:
         measured = source.curve
         if isinstance(measured, PellicleError):
@@ -184,25 +193,31 @@ def fit_pooled(
             indenter,
             source.fields,
             is_depth=measured.depth is not None,
+            kernel=kernel,
             poissons_ratio=poissons_ratio,
             fix=fix,
             baseline=baseline,
             segment=segment,
         )
-        place = measured.position if measured.depth is None else measured.depth
+        ratio = asked.poissons_ratio
         try:
-            assert place is not None
-            cleaned.append(clean(place, measured.force, segment))
-            alone = explain(cleaned[-1], asked)
+            rows.append(cleaned(measured, segment))
+            asked = modelled(
+                asked,
+                rows[-1],
+                cache=cache,
+                executor=executor,
+                grid_points=grid_points,
+                progress=progress,
+            )
+            every.append(explain(rows[-1], asked))
         except ConfigError as error:
             raise ConfigError(f"{source.name}: {error}; leave it out") from None
-        every.append(replace(alone, messages=(*measured.messages, *alone.messages)))
-        ratio = asked.poissons_ratio
-    return _fitted([source.name for source in sources], cleaned, every, ratio)
+    return _fitted([source.name for source in sources], rows, every, ratio)
 
 
 def _fitted(
-    names: list[str], cleaned: list[Curve], every: list[Explained], ratio: float | None
+    names: list[str], rows: list[Curve], every: list[Explained], ratio: float | None
 ) -> PooledFit:
     pool = Pool.of([each.likelihood for each in every])
     begun = _begun(pool, every)
@@ -212,8 +227,10 @@ def _fitted(
     degrees = sum(k in pool.free for k in _SHARED) * (len(every) - 1)
     rise = allowed_rise(sum(each.freedom for each in every))
     spread = max(begun.chi_squared - sum(single.chi_squared for single in singles), 0.0)
-    widened = max(spread / degrees, 1.0) if chdtrc(degrees, spread) < _CHANCE else 1.0
-    best, without, ends = _profiled(pool, begun, rise * widened)
+    factor = max(spread / degrees, 1.0) if chdtrc(degrees, spread) < _CHANCE else 1.0
+    best, without, ends = _profiled(pool, begun, rise * factor)
+    messages: list[str] = []
+    ends = widened(ends, pool, best, messages)
     bound = pool.deviations(best.parameters)
 
     def estimate(which: int, unit: str) -> Estimate:
@@ -226,14 +243,14 @@ def _fitted(
     bounds = pool.parts(bound)
     curves = []
     for number, part in enumerate(pool.parts(best.parameters)):
-        member, messages = pool.members[number], list(every[number].messages)
+        member, own = pool.members[number], list(every[number].messages)
         plausible(
-            cleaned[number],
+            rows[number],
             member.indenter,
             float(part[POINT]),
             modulus.value,
             tension.value,
-            messages,
+            own,
         )
         point, held = float(part[POINT]), POINT not in member.free
         end = point if held else None
@@ -249,7 +266,7 @@ def _fitted(
                 chi_squared_alone=singles[number].chi_squared,
                 reduced_modulus_alone=float(np.exp(singles[number].parameters[MODULUS])),
                 tension_alone=float(singles[number].parameters[TENSION]),
-                messages=tuple(messages),
+                messages=tuple(own),
             )
         )
     return PooledFit(
@@ -260,13 +277,13 @@ def _fitted(
         chi_squared=best.chi_squared,
         chi_squared_without_tension=without.chi_squared,
         comparison=comparison(tension, without.chi_squared - best.chi_squared),
-        agreement=_agreement(curves, spread, degrees, widened),
+        agreement=_agreement(curves, spread, degrees, factor),
         advice=_advice(modulus, tension),
-        messages=_open(modulus, tension),
+        messages=(*messages, *_open(modulus, tension)),
         pool=pool,
         parameters=best.parameters,
         parameters_without_tension=without.parameters,
-        rise=rise * widened,
+        rise=rise * factor,
     )
 
 
@@ -331,14 +348,14 @@ def _without_tension(pool: Pool, best: Minimum) -> Minimum:
     return _least([Minimum(*held.minimise(held.joined(parts))), _from(held, own, shared)])
 
 
-def _agreement(curves: Sequence[PooledCurve], spread: float, degrees: int, widened: float) -> str:
+def _agreement(curves: Sequence[PooledCurve], spread: float, degrees: int, factor: float) -> str:
     figures = f"Δχ² = {spread:.3g} for {degrees} degrees of freedom"
-    if widened == 1:
+    if factor == 1:
         return f"the curves agree ({figures} against each on its own)"
     worst = max(curves, key=lambda curve: curve.chi_squared - curve.chi_squared_alone)
     return (
         f"the curves do not agree on what they share ({figures} against each on its own), "
-        f"{worst.name} least of all; the intervals are widened by {np.sqrt(widened):.2g}"
+        f"{worst.name} least of all; the intervals are widened by {np.sqrt(factor):.2g}"
     )
 
 

@@ -13,7 +13,7 @@ _BINS = 200
 _POINTS = 50
 _LENGTHS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0)
 """s over the measured range of positions."""
-_BEFORE = 0.5
+BEFORE = 0.5
 """How far before the first point contact may have begun, over the range."""
 KEPT = 3
 
@@ -26,13 +26,14 @@ def starts(likelihood: Likelihood, held: Array) -> list[Array]:
     """
     z, f = _binned(likelihood.position), _binned(likelihood.force)
     span = float(np.ptp(z))
-    points = np.linspace(z[0] - _BEFORE * span, z[-1] - 0.02 * span, _POINTS)
+    points = np.linspace(z[0] - BEFORE * span, z[-1] - 0.02 * span, _POINTS)
     if POINT not in likelihood.free:
         points = held[POINT : POINT + 1]
+    lengths = _LENGTHS if TENSION in likelihood.free or held[TENSION] else (0.0,)
     found = [
         (misfit, parameters)
         for point in points
-        for length in _LENGTHS
+        for length in lengths
         if (tried := _solved(likelihood, held, z, f, point, length * span)) is not None
         for misfit, parameters in [tried]
     ]
@@ -52,10 +53,6 @@ def _solved(
     likelihood: Likelihood, held: Array, z: Array, f: Array, point: float, length: float
 ) -> tuple[float, Array] | None:
     """Return misfit and parameters at a contact point and length; None if force would pull."""
-    if TENSION not in likelihood.free and MODULUS not in likelihood.free:
-        length = 2 * held[TENSION] / np.exp(held[MODULUS])
-    elif TENSION not in likelihood.free and held[TENSION] == 0:
-        length = 0.0
     shape = _force(likelihood.indenter, z - point, length)
     moved = z - likelihood.position[0]
     columns = {MODULUS: shape, OFFSET: np.ones_like(z), SLOPE: moved}

@@ -8,6 +8,11 @@ from pathlib import Path
 from pellicle.storage import aside
 
 
+def as_json(value: object) -> str:
+    """Return JSON for people."""
+    return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+
+
 def write_json(value: object, path: Path) -> Path:
     """Write ``value`` to a file, in place of an old one, and return its name.
 
@@ -17,6 +22,5 @@ def write_json(value: object, path: Path) -> Path:
         The file cannot be written.
     """
     with aside(path) as part:
-        text = json.dumps(value, indent=2, ensure_ascii=False)
-        part.write_text(f"{text}\n", encoding="utf-8")
+        part.write_text(as_json(value), encoding="utf-8")
     return path
