@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +19,7 @@ from .likelihood import MODULUS, TENSION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import FigureBase
 
 _JOINT = (2.30, 5.99)
 """Rises of χ² that two parameters together exceed by chance in 32 % and 5 % of curves."""
@@ -29,6 +31,8 @@ _OPEN = 10.0
 """How far an open interval of the modulus is drawn, as a factor."""
 _LEVELS = np.linspace(0, 4, 17)
 _WITHOUT = "without tension"
+SIZE = (5.2, 4.6)
+"""Of a picture [inch]."""
 
 
 def curve(fit: Fit, axes: Axes) -> None:
@@ -109,24 +113,21 @@ def _rises(fit: Fit) -> tuple[Array, Array, Array]:
     return np.repeat(moduli[:, None], _STEPS, axis=1), tensions, rise
 
 
-def size(fit: Fit) -> tuple[float, float]:
-    """Return the size of the figure [inch]."""
-    return (10.4 if _both(fit) else 5.4, 4.6)
+def pictures(fit: Fit) -> list[Callable[[FigureBase], None]]:
+    """Return what draws the pictures of a fit: the curve, and the map if there is one."""
+    both = not (fit.reduced_modulus.held or fit.tension.held)
+    return [partial(_left, fit), *([partial(_right, fit)] * both)]
 
 
-def fill(fit: Fit, figure: Figure) -> None:
-    """Draw all that the figure of a fit has."""
-    both = _both(fit)
-    cells = figure.add_gridspec(2, 1 + both, height_ratios=(3, 1))
-    upper = figure.add_subplot(cells[0, 0])
+def _left(fit: Fit, figure: FigureBase) -> None:
+    cells = figure.add_gridspec(2, 1, height_ratios=(3, 1))
+    upper = figure.add_subplot(cells[0])
     curve(fit, upper)
-    residuals(fit, figure.add_subplot(cells[1, 0], sharex=upper))
-    if both:
-        likelihood_map(fit, figure.add_subplot(cells[:, 1]))
+    residuals(fit, figure.add_subplot(cells[1], sharex=upper))
 
 
-def _both(fit: Fit) -> bool:
-    return not (fit.reduced_modulus.held or fit.tension.held)
+def _right(fit: Fit, figure: FigureBase) -> None:
+    likelihood_map(fit, figure.add_subplot())
 
 
 def save_figure(fit: Fit, path: Path) -> Path:
@@ -141,8 +142,13 @@ def save_figure(fit: Fit, path: Path) -> Path:
     from matplotlib.figure import Figure
 
     with matplotlib.style.context("default"):
-        figure = Figure(figsize=size(fit), dpi=150, layout="constrained")
-        fill(fit, figure)
+        drawn = pictures(fit)
+        size = SIZE[0] * len(drawn), SIZE[1]
+        figure = Figure(figsize=size, dpi=150, layout="constrained")
+        for draw, part in zip(
+            drawn, figure.subfigures(1, len(drawn), squeeze=False)[0], strict=True
+        ):
+            draw(part)
         with reported(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             figure.savefig(path)

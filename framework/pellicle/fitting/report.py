@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from datetime import UTC, datetime
-from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -19,9 +18,9 @@ from . import drawing
 from .fit import CONFIDENCE, Estimate, Fit
 from .simulated import SimulatedCurve
 
-_CAPTION = (
-    "Left: data, fit, and the fit without tension; below, what each leaves. Right: the pairs of "
-    "modulus and tension that explain the curve."
+_CAPTIONS = (
+    "Data, fit, and the fit without tension; below, what each leaves.",
+    "The pairs of modulus and tension that explain the curve.",
 )
 
 
@@ -37,8 +36,8 @@ def save_report(fit: Fit, path: Path, title: str) -> Path:
         title,
         [
             Section("Result", [*_said(fit), _estimates(fit)]),
-            Section("Figure", [_picture(fit)]),
-            Section("What would tell more", [Text(fit.advice)] if fit.advice else []),
+            Section("Figures", _pictures(fit)),
+            Section("What would tell more", [Text(_sentence(fit.advice))] if fit.advice else []),
             Section("Inputs", [_model(fit), _facts(fit)]),
             Section("As JSON", [Code(fit.to_json(), "All numbers, SI.", f"{path.stem}.json")]),
         ],
@@ -53,10 +52,14 @@ def save_report(fit: Fit, path: Path, title: str) -> Path:
 
 
 def _said(fit: Fit) -> list[Notice]:
-    said = [Notice(f"{fit.comparison[:1].upper()}{fit.comparison[1:]}.", good=True)]
+    said = [Notice(_sentence(fit.comparison), good=True)]
     if fit.messages:
         said.append(Notice("To be careful of:", good=False, details=fit.messages))
     return said
+
+
+def _sentence(words: str) -> str:
+    return f"{words[:1].upper()}{words[1:]}."
 
 
 def _estimates(fit: Fit) -> Table:
@@ -87,9 +90,9 @@ def _row(estimate: Estimate) -> list[str]:
     return [value, *ends, unit, bound]
 
 
-def _picture(fit: Fit) -> Picture:
-    drawn = svg(partial(drawing.fill, fit), drawing.size(fit))
-    return Picture(drawn, _CAPTION, "Force against position with fit, and likelihood map")
+def _pictures(fit: Fit) -> list[Picture]:
+    drawn = (svg(draw, drawing.SIZE) for draw in drawing.pictures(fit))
+    return [Picture(each, said, said) for each, said in zip(drawn, _CAPTIONS, strict=False)]
 
 
 def _model(fit: Fit) -> Table:
