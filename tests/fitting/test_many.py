@@ -182,6 +182,24 @@ def test_tasks_travel(tmp_path: Path) -> None:
     xr.testing.assert_identical(there, here)
 
 
+def test_simulated_once_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What has to be simulated is so before the fits, by the same executor; tasks take it along."""
+    asked = []
+
+    def simulate(indenter: pl.Indenter, solid: object, deepest: float, **settings: Any) -> Any:
+        asked.append(settings["executor"])
+        return indenter
+
+    monkeypatch.setattr("pellicle.fitting.fit.simulate", simulate)
+    curves = {str(seed): curve(seed) for seed in range(2)}
+    common: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "fix": {"tension": 0}}
+    there = pl.fit_many(
+        curves, kernel="tensed_membrane", executor=Keeps(), progress=False, **common
+    )
+    assert asked == [Keeps(), Keeps()]
+    xr.testing.assert_identical(there, pl.fit_many(curves, progress=False, **common))
+
+
 def test_labelled_curves(cli: Cli) -> None:
     """Rows of a table that differ in the column curve are different curves."""
     parts = [curve(seed) for seed in (1, 2)]
