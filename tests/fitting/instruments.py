@@ -37,11 +37,15 @@ class Recording:
         return self.force / self.spring_constant / self.sensitivity
 
 
-def record(position: Array, force: Array, spring_constant: float) -> Recording:
-    """Return what is seen of a curve, and of the way back with some adhesion."""
+def record(position: Array, force: Array, noise: Array, spring_constant: float) -> Recording:
+    """Return what is seen of a curve, and of the way back with some adhesion.
+
+    Position and force are those of the tip; the noise [N] is that of the deflection.
+    """
     both = np.concatenate([force, force[::-1] - 0.1 * force.max()])
     tip = -np.concatenate([position, position[::-1]])
-    return Recording(tip - both / spring_constant, both, spring_constant)
+    seen = both + np.concatenate([noise, noise[::-1]])
+    return Recording(tip - both / spring_constant, seen, spring_constant)
 
 
 def hdf5(path: Path, *recordings: Recording) -> None:

@@ -116,16 +116,17 @@ def _curve(
                 name.replace(" ", "_"),
             )
     force = np.asarray(data["force"], dtype=float)
+    stiffness = metadata.get(_SPRING, given.get(_SPRING))
     if _TIP in data:
         tip = np.asarray(data[_TIP], dtype=float)
     else:
         height = next((name for name in _HEIGHTS if name in data), None)
         if height is None:
             raise ConfigError(f"{path}: has no height over the sample (has {', '.join(data)})")
-        stiffness = Calibration(metadata.get(_SPRING, given.get(_SPRING))).stiffness()
-        tip = np.asarray(data[height], dtype=float) + force / stiffness
+        bending = force / Calibration(stiffness).stiffness()
+        tip = np.asarray(data[height], dtype=float) + bending
     rows = _rows(np.asarray(data["segment"]), segment) if "segment" in data else slice(None)
-    return Measured(force[rows], -tip[rows])
+    return Measured(force[rows], -tip[rows], stiffness=stiffness)
 
 
 def _rows(segments: Any, segment: str) -> Any:

@@ -30,6 +30,8 @@ class Curve:
     force: Array
     messages: tuple[str, ...] = ()
     """What was left out, and what to be careful of."""
+    stiffness: float | None = None
+    """Of the cantilever [N/m], if its deflection was subtracted to get the position."""
 
 
 def clean(position: ArrayLike, force: ArrayLike, segment: Segment = "approach") -> Curve:
@@ -150,11 +152,11 @@ def _turns(z: Array, least: float) -> list[int]:
         if here < z[low]:
             low = row
         if direction >= 0 and z[high] - here >= least:
-            if direction or high:
+            if direction:
                 turns.append(high)
             direction, low = -1, row
         elif direction <= 0 and here - z[low] >= least:
-            if direction or low:
+            if direction:
                 turns.append(low)
             direction, high = 1, row
         if direction > 0 and here >= z[high]:

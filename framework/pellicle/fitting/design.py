@@ -102,7 +102,8 @@ def _other_radius(likelihood: Likelihood, parameters: Array, factor: float) -> L
 def _measured(other: Likelihood, likelihood: Likelihood, parameters: Array) -> Likelihood:
     """Return an experiment with the same noise relative to its largest force."""
     share = likelihood.noise / np.max(np.abs(likelihood.model(parameters)))
-    return replace(other, noise=share * float(np.max(np.abs(other.model(parameters)))))
+    force = other.model(parameters)
+    return replace(other, force=force, noise=share * float(np.max(np.abs(force))))
 
 
 def _metres(value: float) -> str:

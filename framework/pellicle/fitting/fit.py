@@ -22,7 +22,7 @@ from .curve import Curve, Segment, clean
 from .design import advice, decidable, designs
 from .interval import Better, Minimum, interval
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, ChiSquared, Likelihood
-from .measured import Measured
+from .measured import Calibration, Measured
 from .simulated import SimulatedCurve
 from .simulation import GRID_POINTS, simulate
 from .solid import DEFAULT_KERNEL, Solid, lengths, solid
@@ -183,6 +183,7 @@ def fit(
     fix: Mapping[str, Any] | None = None,
     baseline: Baseline = "none",
     segment: Segment = "approach",
+    spring_constant: float | str | None = None,
     cache: str | Path | None = None,
     executor: str | Mapping[str, Any] | Executor = "serial",
     grid_points: int = GRID_POINTS,
@@ -219,6 +220,9 @@ def fit(
         ``"slope"``.
     segment
         The pass that is fitted of a curve with two: ``"approach"`` or ``"retract"``.
+    spring_constant
+        Of the cantilever [N/m], if position is that of its base less its deflection: noise of the
+        deflection is then in both, position and force, and is reckoned with.
     cache
         Folder that keeps studies; the user's cache folder if None.
     executor
@@ -249,7 +253,8 @@ def fit(
         raise ConfigError("give either position or depth")
     if force is None:
         raise ConfigError("is missing; give the force [N] at each position", "force")
-    curve = clean(depth if position is None else position, force, segment)  # type: ignore[arg-type]
+    stiffness = Calibration.of(spring_constant).spring_constant
+    curve = cleaned(Measured(force, position, depth, stiffness=stiffness), segment)  # type: ignore[arg-type]
     model = modelled(
         asked,
         curve,
@@ -315,7 +320,8 @@ def cleaned(measured: Measured, segment: Segment) -> Curve:
     """
     place = measured.position if measured.depth is None else measured.depth
     made = clean(place, measured.force, segment)  # type: ignore[arg-type]
-    return replace(made, messages=(*measured.messages, *made.messages))
+    messages = *measured.messages, *made.messages
+    return replace(made, messages=messages, stiffness=measured.stiffness)
 
 
 def modelled(
@@ -411,7 +417,9 @@ def explain(curve: Curve, asked: Question) -> Explained:
     """
     messages = list(curve.messages)
     largest = float(np.max(np.abs(curve.force)))
-    rough = Likelihood(curve.position, curve.force, asked.indenter, largest, asked.free)
+    rough = Likelihood(
+        curve.position, curve.force, asked.indenter, largest, asked.free, curve.stiffness
+    )
     minimum = _best([rough.minimise(start) for start in _starts(rough, asked.held)])
     noise, freedom, source = _noise(rough, minimum.parameters, messages)
     return Explained(

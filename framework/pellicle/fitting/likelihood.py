@@ -22,6 +22,8 @@ REACH = np.log(100.0)
 _TOLERANCE = 1e-10
 _ACCURACY = 1e-6
 """Of the master curves."""
+_BALANCED = 1e-9
+"""To which cantilever and solid balance, relative to the range of the force."""
 
 
 class ChiSquared(ABC):
@@ -117,6 +119,9 @@ class Likelihood(ChiSquared):
     indenter: HasForceCurve
     noise: float
     free: tuple[int, ...]
+    stiffness: float | None = None
+    """Of the cantilever [N/m] whose deflection was subtracted to get the position; noise of the
+    force is then in the position too, and what is exact is the position of its base."""
 
     @cached_property
     def scale(self) -> Array:
@@ -139,13 +144,13 @@ class Likelihood(ChiSquared):
 
     def model(self, parameters: Array) -> Array:
         """Return the force [N] at every position."""
-        return self._model(parameters)[0]
+        return self._model(self.position, parameters)[0]
 
-    def _model(self, parameters: Array) -> tuple[Array, Array]:
+    def _model(self, position: Array, parameters: Array) -> tuple[Array, Array]:
         point, log_modulus, tension, offset, slope = parameters
         modulus = np.exp(log_modulus)
         length = 2 * tension / modulus
-        curve = self.indenter.force_curve(self.position - point, length)
+        curve = self.indenter.force_curve(position - point, length)
         moved = self.position - self.position[0]
         force = modulus * curve.force + offset + slope * moved
         jacobian = np.column_stack(
@@ -161,12 +166,32 @@ class Likelihood(ChiSquared):
 
     def jacobian(self, parameters: Array) -> Array:
         """Return the derivatives of the force, shape (n, 5)."""
-        return self._model(parameters)[1]
+        return self._model(self.position, parameters)[1]
 
     def residuals(self, parameters: Array) -> Array:
         """Return (model − force) / noise."""
-        return (self.model(parameters) - self.force) / self.noise
+        return (self._balanced(parameters)[0] - self.force) / self.noise
 
     def slopes(self, parameters: Array) -> Array:
         """Return the derivatives of the residuals, shape (n, 5)."""
-        return self.jacobian(parameters) / self.noise
+        return self._balanced(parameters)[1] / self.noise
+
+    def _balanced(self, parameters: Array) -> tuple[Array, Array]:
+        """Return force and derivatives where the base of the cantilever is, not its tip.
+
+        There the force F solves F = P(z − F/k). P grows ever faster, so that Newton's steps are
+        monotonic after the first.
+        """
+        if self.stiffness is None:
+            return self._model(self.position, parameters)
+        base = self.position + self.force / self.stiffness
+        force = self.force.copy()
+        enough = _BALANCED * float(np.ptp(self.force))
+        while True:
+            there, jacobian = self._model(base - force / self.stiffness, parameters)
+            give = 1 - jacobian[:, POINT] / self.stiffness
+            step = (there - force) / give
+            force += step
+            # Written so that NaN ends it.
+            if not np.max(np.abs(step)) > enough:
+                return force, jacobian / give[:, None]

@@ -246,7 +246,7 @@ def _identity(curve: Curve, asked: Question, grid_points: int) -> str:
         else:
             known.update(pickle.dumps(part))
     said = asked.free, asked.segment, asked.poissons_ratio, grid_points if kernel else None
-    known.update(repr((said, curve.messages)).encode())
+    known.update(repr((said, curve.messages, curve.stiffness)).encode())
     for values in (asked.held, curve.position, curve.force):
         known.update(values.tobytes())
     return known.hexdigest()

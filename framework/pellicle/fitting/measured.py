@@ -46,6 +46,8 @@ class Measured:
     depth: Array | None = None
     messages: tuple[str, ...] = ()
     """What the reader thinks strange."""
+    stiffness: float | None = None
+    """Of the cantilever [N/m] whose deflection the position is without, if known."""
 
 
 @dataclass(frozen=True)
@@ -124,14 +126,18 @@ def from_columns(columns: Mapping[str, Column], calibration: Calibration) -> Mea
         if "force" in columns
         else calibration.stiffness() * _deflection(columns["deflection"], calibration)
     )
-    if name not in _OF_BASE:
-        return Measured(force, depth=place) if name == "depth" else Measured(force, place)
+    stiffness = calibration.spring_constant
+    if name == "depth":
+        return Measured(force, depth=place, stiffness=stiffness)
+    if name == "position":
+        return Measured(force, place, stiffness=stiffness)
     deflection = (
         _deflection(columns["deflection"], calibration)
         if "deflection" in columns
         else force / _base_stiffness(name, calibration)
     )
-    return Measured(force, (place if name == "extension" else -place) - deflection)
+    base = place if name == "extension" else -place
+    return Measured(force, base - deflection, stiffness=stiffness)
 
 
 def _base_stiffness(name: str, calibration: Calibration) -> float:

@@ -57,7 +57,7 @@ def gather(curves: Curves, segment: str, fields: Mapping[str, Any]) -> list[Sour
         try:
             calibration = Calibration.of(*(merged.pop(name, None) for name in _CALIBRATION))
             found: Found = (
-                {"": _arrays(*curves[of])}
+                {"": _arrays(*curves[of], calibration)}
                 if isinstance(curves, Mapping)
                 else read(of, calibration, segment)
             )
@@ -100,6 +100,8 @@ def _each(fields: Mapping[str, Any], count: int) -> list[dict[str, Any]]:
     ]
 
 
-def _arrays(position: ArrayLike, force: ArrayLike) -> Measured:
+def _arrays(position: ArrayLike, force: ArrayLike, calibration: Calibration) -> Measured:
     # `clean` says what is wrong with it.
-    return Measured(cast("Array", force), cast("Array", position))
+    return Measured(
+        cast("Array", force), cast("Array", position), stiffness=calibration.spring_constant
+    )
