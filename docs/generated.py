@@ -165,7 +165,14 @@ def _kind(annotation: Any) -> str:
         return f"list of {' and '.join(sorted(kinds))}"
     if origin is dict or (isinstance(annotation, type) and issubclass(annotation, Model)):
         return "table"
-    names = {int: "whole number", float: "number", str: "text", Path: "file", Any: "array"}
+    names = {
+        bool: "true or false",
+        int: "whole number",
+        float: "number",
+        str: "text",
+        Path: "file",
+        Any: "array",
+    }
     return names[annotation]
 
 

@@ -6,6 +6,7 @@ Heavy imports are inside the commands, so that ``pellicle --help`` is there at o
 from __future__ import annotations
 
 import sys
+import warnings
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -32,12 +33,18 @@ if TYPE_CHECKING:
 NOT_CONVERGED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 
+def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    typer.echo(f"warning: {message}", err=True)
+
+
 class _Group(TyperGroup):
     """Turns errors into one message and an exit code: no traceback reaches a user."""
 
     def invoke(self, ctx: Any) -> Any:
         try:
-            return super().invoke(ctx)
+            with warnings.catch_warnings():
+                warnings.showwarning = _show_warning
+                return super().invoke(ctx)
         except PellicleError as error:
             for line in str(error).splitlines():
                 typer.echo(f"error: {line}", err=True)
@@ -74,7 +81,9 @@ def run(
         list[str] | None,
         typer.Option("--set", help='Replace a value: --set kernel.tension="5 mN/m".'),
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")
+    ] = False,
     threads: Annotated[
         int | None, typer.Option(min=1, help="Threads of the Fourier transforms; all cores.")
     ] = None,

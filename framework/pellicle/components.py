@@ -40,6 +40,7 @@ Monitor = Callable[[int, float], None]
 """Called by a solver with its iteration and its residual over the tolerance, to show progress."""
 
 Outcome = TypeVar("Outcome")
+Footprint = Literal["unbounded", "domain"]
 
 
 class Component(Model):
@@ -67,21 +68,27 @@ class Kernel(Component):
 class Indenter(Component):
     """The rigid body that is pressed in.
 
-    One that knows its force on a half-space under tension, as `HasForceCurve` says, can be fitted
-    to measured curves.
+    One that knows its force on a half-space under tension, as `HasForceCurve` says, is fitted to
+    measured curves at once; for any other the force is simulated first.
     """
 
     family: ClassVar[str] = "indenter"
 
-    footprint: ClassVar[Literal["unbounded", "domain"]] = "unbounded"
-    """``"domain"`` if the indenter ends where the domain does, so that contact may reach there."""
+    @property
+    def footprint(self) -> Footprint:
+        """``"domain"`` if the indenter ends where the domain does, so that contact may reach there.
+
+        A class whose answer is always the same says ``footprint: ClassVar[Footprint] = "domain"``.
+        """
+        return "unbounded"
 
     @abstractmethod
     def profile(self, x: Array, y: Array) -> Array:
         """Return f(x, y) [m]: 0 at the lowest point, negative elsewhere, −inf where there is none.
 
         ``x`` of shape (nx, 1) and ``y`` of shape (1, ny) are cell centres [m] seen from the centre
-        of the domain; the result is of shape (nx, ny).
+        of the domain; the result is of shape (nx, ny). An unbounded indenter that is turned is
+        asked for points ``x`` and ``y`` that are both of shape (nx, ny).
 
         Raises
         ------
@@ -103,7 +110,7 @@ class ForceCurve(NamedTuple):
 
 @runtime_checkable
 class HasForceCurve(Protocol):
-    """An indenter that knows its force on a half-space under tension; `pellicle.fit` needs it."""
+    """An indenter that knows its force on a half-space under tension; `pellicle.fit` uses it."""
 
     @property
     def depth_limit(self) -> float:

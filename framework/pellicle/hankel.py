@@ -17,15 +17,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 from scipy.special import gamma, rgamma
 
 from .errors import ConfigError
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 Array = NDArray[np.float64]
 Symbol = Callable[[Array], Array]
@@ -179,6 +181,9 @@ def _without_power_law(x: Array, g: Array) -> tuple[_PowerLaw, Array]:
 
 def _transform(x: Array, g: Array, f: Array, reach: Array) -> tuple[CubicSpline, CubicSpline]:
     """Return r G(r) and P(r)/r of the part f of the samples g, as splines of log r."""
+    # Its import takes as long as all the others of a worker, most kernels have a closed form.
+    from scipy.interpolate import CubicSpline
+
     step = (x[-1] - x[0]) / (x.size - 1)
     one = round(1 / step)
     # What is left without a power law may be nothing, at small q or everywhere.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import os
-from pathlib import Path
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
 
 from .errors import ConfigError, shown
 from .grid import Grid
@@ -14,6 +15,10 @@ from .grid import Grid
 _PADDED_ARRAYS = 4
 _CELL_ARRAYS = 9
 _ARRAYS_PER_STEP = 9
+
+# Files of a control group: its limit, its usage, and the line of memory.stat with its file cache.
+_VERSION_2 = "memory.max", "memory.current", "inactive_file"
+_VERSION_1 = "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"
 
 
 def estimate(grid: Grid, steps: int) -> float:
@@ -26,17 +31,59 @@ def estimate(grid: Grid, steps: int) -> float:
     return 8 * (_PADDED_ARRAYS * padded + (_CELL_ARRAYS + _ARRAYS_PER_STEP * steps) * cells)
 
 
-def available() -> float | None:
-    """Return the memory [bytes] that this machine can still give, or None if it does not say."""
-    meminfo = Path("/proc/meminfo")
-    if meminfo.is_file():
-        for line in meminfo.read_text(encoding="ascii").splitlines():
-            if line.startswith("MemAvailable:"):
-                return float(line.split()[1]) * 1024
+def available(root: Path = Path("/")) -> float | None:
+    """Return the memory [bytes] that we can still have here, or None if the system does not say.
+
+    That of the machine, or of the control groups of this process (containers, batch systems) where
+    they leave less. ``root`` is the root of the file system.
+    """
+    return min(
+        (there for there in (_of_machine(root), *_of_groups(root)) if there is not None),
+        default=None,
+    )
+
+
+def _of_machine(root: Path) -> float | None:
+    for line in _lines(root / "proc/meminfo"):
+        if line.startswith("MemAvailable:"):
+            return float(line.split()[1]) * 1024
     try:
         return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):
         return None
+
+
+def _of_groups(root: Path) -> Iterator[float | None]:
+    """Yield what each control group that holds this process leaves, of version 2 and of 1."""
+    for line in _lines(root / "proc/self/cgroup"):
+        _, controllers, group = line.split(":", 2)
+        if controllers == "":
+            mount, names = root / "sys/fs/cgroup", _VERSION_2
+        elif "memory" in controllers.split(","):
+            mount, names = root / "sys/fs/cgroup/memory", _VERSION_1
+        else:
+            continue
+        # A container may see its own group as the root, under the name that it has outside.
+        inner = PurePosixPath(group.strip("/"))
+        for folder in (inner, *inner.parents):
+            yield _left(mount / folder, *names)
+
+
+def _left(folder: Path, limit: str, usage: str, cache: str) -> float | None:
+    """Return the limit of a group less what it uses, but for file cache that would be given up."""
+    try:
+        most, used = (float((folder / name).read_text()) for name in (limit, usage))
+    except (OSError, ValueError):  # not there, not ours to read, or "max"
+        return None
+    kept = dict(line.split() for line in _lines(folder / "memory.stat"))
+    return max(0.0, most - used + float(kept.get(cache, 0)))
+
+
+def _lines(path: Path) -> list[str]:
+    try:
+        return path.read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return []
 
 
 def require(grid: Grid, steps: int) -> None:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_MOST_NAMED = 10
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f"}
 
 
@@ -156,9 +157,12 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     scale, name = _unit_near_one(table[variable])
     x_scale, x_name = _unit_near_one(table[against])
     stacked = [d for d in table["status"].dims if d not in (along, *compared)]
+    many = table.sizes[compared[0]] if compared else 1
     for number, part in enumerate(_each(table, compared)):
-        colour = _colour(number, table.sizes[compared[0]] if compared else 1)
-        label = _label(part, compared[0]) if compared else ""
+        colour = _colour(number, many)
+        # Of many values some are named: the colours go evenly from one to the other.
+        named = compared and number % -(-many // _MOST_NAMED) == 0
+        label = _label(part, compared[0]) if named else ""
         for line in _each(part, stacked):
             x, y = line[against].values * x_scale, line[variable].values * scale
             axes.plot(x, y, "o-", color=colour, label=label, markersize=4, mfc="white")
@@ -173,7 +177,8 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     axes.set_ylim(bottom=0.0)
     axes.grid(alpha=0.3)
     if compared:
-        axes.legend(fontsize="small")
+        # Where there is much to look at, matplotlib takes long to find the best place.
+        axes.legend(fontsize="small", loc="upper left" if many > _MOST_NAMED else "best")
 
 
 def _save(

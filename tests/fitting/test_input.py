@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -85,6 +86,26 @@ def test_command_leaves_files(cli: Cli) -> None:
     said = json.loads(Path("out/curve-fit.json").read_text(encoding="utf-8"))
     assert said["tension"]["low"] is None
     assert any("does not describe the curve" in message for message in said["messages"])
+
+
+def test_command_leaves_a_page(cli: Cli) -> None:
+    """The page has what was found and what to be careful of, and loads nothing."""
+    position, force = _curve(100)
+    _write(position, force + 3e-9)
+    assert "wrote curve-fit.html" in cli("curve.csv", *OPTIONS, "--report").stdout
+    page = Path("curve-fit.html").read_text(encoding="utf-8")
+    for words in ("reduced modulus", "Cramér–Rao", "baseline", "paraboloid", "data:image/svg+xml"):
+        assert words in page
+    assert not re.search(r"""(?:src|href)=["'](?!data:|#)""", page)
+    cli("curve.csv", *OPTIONS, "--report", "-o", "out", "--fix", "tension=0")
+    assert Path("out/curve-fit.html").is_file()
+
+
+def test_fields_of_any_indenter(cli: Cli) -> None:
+    """Fields that have no option of their own are set by their names."""
+    _write(*_curve())
+    by_name = cli("curve.csv", "-i", "paraboloid", "--set", "indenter.radius=10 um", "--json")
+    assert by_name.stdout == cli("curve.csv", *OPTIONS, "--json").stdout
 
 
 def test_held_parameters(cli: Cli) -> None:
@@ -308,15 +329,12 @@ def test_retract_on_request() -> None:
         (("curve.csv", *OPTIONS, "--baseline", "cubic"), "not allowed"),
         (("curve.csv", *OPTIONS, "--segment", "all"), "not allowed"),
         (("curve.csv", *OPTIONS, "--poissons-ratio", "0.7"), "≤ 0.5"),
+        (("curve.csv", *OPTIONS, "--set", "grid.points=9"), "grid is no table here"),
+        (("curve.csv", *OPTIONS, "--kernel", "winkler"), "kernel: 'winkler' has no field"),
+        (("curve.csv", *OPTIONS, "--kernel", "bonded_layer"), "put it under a skin"),
     ],
 )
 def test_bad_options(cli: Cli, arguments: tuple[str, ...], words: str) -> None:
     """Options that are not allowed say what is."""
     _write(*_curve())
     assert words in cli(*arguments, code=2).stderr
-
-
-def test_indenter_without_curve() -> None:
-    """An indenter that has no force curve names those that have."""
-    with pytest.raises(pl.ConfigError, match="cone, flat_punch, paraboloid, sphere"):
-        pl.fit(*_curve(), indenter={"type": "quadric", "radius_x": 1e-5, "radius_y": 2e-5})

@@ -172,20 +172,21 @@ def test_shallow_curve_leaves_modulus_open() -> None:
     assert "deeper range" in fit.advice or "larger radius" in fit.advice
 
 
-def test_curve_of_the_solver_is_recovered() -> None:
-    """A sphere pressed in on a grid, not by the master curve, is found within the intervals."""
+@pytest.mark.parametrize(("type_", "points", "size"), [("sphere", 96, 14), ("paraboloid", 64, 13)])
+def test_curve_of_the_solver_is_recovered(type_: str, points: int, size: int) -> None:
+    """What was pressed in on a grid, not by the master curve, is found within the intervals."""
     depth = np.linspace(0.1e-6, 1.5e-6, 15)
     run = pl.Run(
-        grid={"points": 96, "size": "14 um", "boundary": "free"},
+        grid={"points": points, "size": f"{size} um", "boundary": "free"},
         kernel={"type": "tensed_membrane", "reduced_modulus": 4e3, "tension": 4e-3},
-        indenter={"type": "sphere", "radius": "5 um"},
+        indenter={"type": type_, "radius": "5 um"},
         loading={"depth": depth.tolist()},
     )
     forces = pl.run(run, progress=False).dataset["force"].values
     position = np.concatenate([np.linspace(-0.5e-6, -0.01e-6, 60), np.repeat(depth, 20)])
     force = np.concatenate([np.zeros(60), np.repeat(forces, 20)])
     force = force + 0.005 * force.max() * np.random.default_rng(2).standard_normal(force.size)
-    fit = pl.fit(position, force, indenter="sphere", radius="5 um")
+    fit = pl.fit(position, force, indenter=type_, radius="5 um")
     for estimate, truth in ((fit.reduced_modulus, 4e3), (fit.tension, 4e-3)):
         assert estimate.low is not None
         assert estimate.high is not None

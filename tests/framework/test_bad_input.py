@@ -126,6 +126,18 @@ KEYS_AND_TYPES = {
         "outputs=[{type='figures', formats=['bmp']}]",
         ["outputs.0.formats.0: 'bmp' is not allowed", "pdf, png, svg"],
     ),
+    "one output twice": (
+        "outputs=[{type='hdf5'}, {type='csv'}, {type='hdf5'}]",
+        ["outputs.2.type: 'hdf5' is there already", "the same files", "leave one out"],
+    ),
+    "two outputs of one name": (
+        "outputs=[{type='maps', name='a'}, {type='maps', name='b'}, {type='maps', name='a'}]",
+        ["outputs.2.name: 'a' is the name of another 'maps'", "give each a name of its own"],
+    ),
+    "two outputs without a name": (
+        "outputs=[{type='maps', field='gap'}, {type='maps', name='maps'}]",
+        ["outputs.1.name: 'maps' is the name of another 'maps'", "the same files"],
+    ),
     "text wanted": ("title=1", ["title: 1 is not allowed; give text in quotes"]),
     "whole number wanted": (
         "solver.max_iterations='many'",

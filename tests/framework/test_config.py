@@ -126,6 +126,17 @@ def test_outputs_absent_or_empty() -> None:
     assert pl.Run.from_json(pl.Run(**BASE, outputs=[]).to_json()).outputs == ()
 
 
+def test_same_output_twice() -> None:
+    """Two outputs of one type and name are refused in a run and in a study, objects or tables."""
+    twice = [registry().make(Output, {"type": "hdf5"}), {"type": "csv"}, {"type": "hdf5"}]
+    with pytest.raises(pl.ConfigError, match=r"^outputs\.2\.type: 'hdf5' is there already"):
+        pl.Run(**BASE, outputs=twice)
+    with pytest.raises(pl.ConfigError, match=r"outputs\.2\.type: 'hdf5' is there already"):
+        pl.Study(run=BASE | {"outputs": twice}, vary={"indenter.radius": [1e-3, 2e-3]})
+    maps = [{"type": "maps", "name": name} for name in ("", "gap")]
+    assert len(pl.Run(**BASE, outputs=[*maps, {"type": "csv"}]).outputs or ()) == 3
+
+
 def test_components_or_tables() -> None:
     """A run of component objects equals the run of tables that describe them."""
     from_tables = pl.Run(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
@@ -53,3 +54,86 @@ def test_available() -> None:
     """What this machine says it has is a sensible amount, if it says anything."""
     there = memory.available()
     assert there is None or 1e6 < there < 1e15
+
+
+MACHINE = 8e9
+V2, V1 = "sys/fs/cgroup", "sys/fs/cgroup/memory"
+
+
+def _system(root: Path, group: str, folders: dict[str, dict[str, str]]) -> Path:
+    """Make the files of a system of 8 GB; ``folders`` has those of its control groups."""
+    files = {
+        "proc/meminfo": {"": "MemTotal: 9000000 kB\nMemAvailable: 7812500 kB\n"},
+        "proc/self/cgroup": {"": group},
+        **folders,
+    }
+    for folder, contents in files.items():
+        for name, text in contents.items():
+            path = root / folder / name if name else root / folder
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+    return root
+
+
+def _v2(limit: object, used: object, cached: int = 0) -> dict[str, str]:
+    stat = f"anon 5\ninactive_file {cached}\nactive_file 7\n"
+    return {"memory.max": f"{limit}\n", "memory.current": f"{used}\n", "memory.stat": stat}
+
+
+def _v1(limit: int, used: int, cached: int = 0) -> dict[str, str]:
+    return {
+        "memory.limit_in_bytes": f"{limit}\n",
+        "memory.usage_in_bytes": f"{used}\n",
+        "memory.stat": f"inactive_file 5\ntotal_inactive_file {cached}\n",
+    }
+
+
+GIGABYTE = 10**9
+GROUPS: dict[str, tuple[str, dict[str, dict[str, str]], float]] = {
+    "no groups": ("", {}, MACHINE),
+    "v2": ("0::/job\n", {f"{V2}/job": _v2(4 * GIGABYTE, GIGABYTE)}, 3e9),
+    "v2, file cache is given up": (
+        "0::/job\n",
+        {f"{V2}/job": _v2(4 * GIGABYTE, 3 * GIGABYTE, 2 * GIGABYTE)},
+        3e9,
+    ),
+    "v2, a group around it has less": (
+        "0::/user/job\n",
+        {f"{V2}/user/job": _v2("max", 1), f"{V2}/user": _v2(2 * GIGABYTE, GIGABYTE)},
+        1e9,
+    ),
+    "v2, seen from inside": ("0::/\n", {V2: _v2(2 * GIGABYTE, GIGABYTE)}, 1e9),
+    "v2, named as seen from outside": (
+        "0::/docker/0123\n",
+        {V2: _v2(2 * GIGABYTE, GIGABYTE)},
+        1e9,
+    ),
+    "v2, no limit": ("0::/job\n", {f"{V2}/job": _v2("max", GIGABYTE)}, MACHINE),
+    "v2, more than the machine has": (
+        "0::/job\n",
+        {f"{V2}/job": _v2(64 * GIGABYTE, GIGABYTE)},
+        MACHINE,
+    ),
+    "v2, nothing left": ("0::/job\n", {f"{V2}/job": _v2(GIGABYTE, GIGABYTE + 5)}, 0.0),
+    "v2, without the controller": ("0::/job\n", {f"{V2}/job": {"cgroup.procs": "1\n"}}, MACHINE),
+    "v1": (
+        "4:cpu,cpuacct:/elsewhere\n3:memory:/job\n1:name=systemd:/\n0::/\n",
+        {f"{V1}/job": _v1(4 * GIGABYTE, 3 * GIGABYTE, GIGABYTE)},
+        2e9,
+    ),
+    "v1, no limit": ("3:memory:/\n", {V1: _v1(9223372036854771712, GIGABYTE)}, MACHINE),
+}
+
+
+@pytest.mark.parametrize("which", GROUPS)
+def test_available_respects_control_groups(which: str, tmp_path: Path) -> None:
+    """Containers and batch systems bound what a process may have of the machine's memory."""
+    group, folders, expected = GROUPS[which]
+    assert memory.available(_system(tmp_path, group, folders)) == pytest.approx(expected)
+
+
+def test_unreadable_groups_are_no_limit(tmp_path: Path) -> None:
+    """A limit that cannot be read, a folder in its place, is passed over."""
+    root = _system(tmp_path, "0::/job\n", {f"{V2}/job": {"memory.current": "5"}})
+    (root / V2 / "job" / "memory.max").mkdir()
+    assert memory.available(root) == pytest.approx(MACHINE)

@@ -4,21 +4,24 @@ The built-in components, which break none, are checked in tests/contracts.
 """
 
 import json
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
+from itertools import count
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 import pytest
-from pydantic import ConfigDict, Field, model_serializer
+from pydantic import ConfigDict, Field, SerializationInfo, model_serializer
 
 import pellicle as pl
 from pellicle import storage, testing
-from pellicle.components import Component
+from pellicle.components import FAMILIES, Component
 from pellicle.plugins import registry
+from pellicle.testing import component as component_rules
 from pellicle.units import Length
 
 
@@ -113,6 +116,31 @@ class Forgetful(Paraboloid):
         return {"type": "forgetful", "radius": 2 * self.radius}
 
 
+class Holey(Paraboloid):
+    """Paraboloid with a list that TOML cannot hold."""
+
+    type: Literal["holey"] = "holey"
+    marks: Annotated[tuple[int | None, ...], Field(description="numbers, or none")] = (1, None)
+
+
+class Hospitable(Paraboloid):
+    """Paraboloid whose schema has room for more than it takes."""
+
+    model_config = ConfigDict(json_schema_extra={"additionalProperties": True})
+    type: Literal["hospitable"] = "hospitable"
+
+
+class TwoFaced(Paraboloid):
+    """Paraboloid that is another as a Python table than as JSON."""
+
+    type: Literal["two_faced"] = "two_faced"
+
+    @model_serializer
+    def _wrong(self, info: SerializationInfo) -> dict[str, Any]:
+        factor = 2 if info.mode == "python" else 1
+        return {"type": "two_faced", "radius": factor * self.radius}
+
+
 class Welcoming(Paraboloid):
     """Paraboloid that takes any field."""
 
@@ -143,6 +171,8 @@ GENERAL: dict[str, tuple[Callable[[], Any], str]] = {
     "not frozen": (partial(Thawed, radius=1e-3), "is_frozen"),
     "no pickle": (partial(Unpicklable, radius=1e-3), "pickles"),
     "other JSON": (partial(Forgetful, radius=1e-3), "goes_through_json"),
+    "no TOML": (partial(Holey, radius=1e-3), "goes_through_toml"),
+    "other schema": (partial(Hospitable, radius=1e-3), "schema_tells_the_fields"),
     "unknown fields": (partial(Welcoming, radius=1e-3), "unknown_field_is_refused"),
     "not registered": (partial(Stranger, radius=1e-3), "is_registered"),
     "type is taken": (partial(Usurper, radius=1e-3), "is_registered"),
@@ -208,6 +238,23 @@ class Growing(Kernel):
         return super().compliance(q) * (1 + (q * 1e-9) ** 1.1)
 
 
+class Economical(Kernel):
+    """Is content with single precision where there is much to do."""
+
+    def compliance(self, q: Any) -> Any:
+        found = super().compliance(q)
+        return found if q.size < 300 else found.astype(np.float32).astype(np.float64)
+
+
+class Wavering(Kernel):
+    """Sinks by another amount each time that it is asked."""
+
+    _answers: ClassVar[Any] = count(1)
+
+    def mean_compliance(self) -> float:
+        return 1e-6 * next(self._answers)
+
+
 class Half(Kernel):
     """Has one of the two methods of a closed form."""
 
@@ -238,6 +285,13 @@ class WrongForm(Kernel):
         return 1.01 * super().radial_primitive(r)
 
 
+class Hasty(Kernel):
+    """Primitive 0.1 ‰ too large where there are many radii."""
+
+    def radial_primitive(self, r: Any) -> Any:
+        return super().radial_primitive(r) * (1 + 1e-4 * (r.size > 1000))
+
+
 KERNELS = {
     Scalar: "compliance_is_vectorised",
     Coupled: "compliance_is_vectorised",
@@ -246,10 +300,13 @@ KERNELS = {
     Negative: "compliance_is_positive_and_finite",
     Overflowing: "compliance_is_positive_and_finite",
     Growing: "compliance_does_not_grow_for_short_waves",
+    Economical: "periodic_operator_is_the_compliance",
+    Wavering: "uniform_pressure_sinks_by_the_mean_compliance",
     Half: "closed_form_is_whole",
     WrongPrimitive: "primitive_is_the_integral_of_the_closed_form",
     ShiftedPrimitive: "primitive_is_the_integral_of_the_closed_form",
     WrongForm: "closed_form_is_the_transform_of_the_compliance",
+    Hasty: "free_operator_is_the_transform_of_the_compliance",
 }
 
 
@@ -316,6 +373,16 @@ class Relative(Indenter):
         return found - found.max()
 
 
+class Aloof(Indenter):
+    """Ends with the domain, its lowest point a twentieth of its range too high."""
+
+    footprint: ClassVar[Any] = "domain"
+
+    def profile(self, x: Any, y: Any) -> Any:
+        found = super().profile(x, y)
+        return found - 0.05 * np.ptp(found)
+
+
 INDENTERS = {
     Flattened: "profile_has_the_shape_of_the_grid",
     Raised: "profile_is_nowhere_positive",
@@ -324,6 +391,7 @@ INDENTERS = {
     Random: "profile_is_pure",
     Hovering: "lowest_point_is_at_zero",
     Relative: "heights_depend_on_their_own_point",
+    Aloof: "run_converges",
 }
 
 
@@ -498,6 +566,13 @@ class Skewed(Correction):
         return cell * (np.count_nonzero(contact) - 0.1 * switches)
 
 
+class Microscopic(Correction):
+    """Sees nothing of cells wider than 30 µm."""
+
+    def area(self, contact: Any, spacing: Any) -> Any:
+        return super().area(contact, spacing) if spacing[0] < 3e-5 else 0.0
+
+
 CORRECTIONS = {
     Several: "area_is_pure",
     Filling: "area_is_pure",
@@ -506,6 +581,7 @@ CORRECTIONS = {
     Excessive: "area_is_near_the_count",
     Unscaled: "area_scales_with_the_cells",
     Skewed: "area_does_not_depend_on_the_view",
+    Microscopic: "goes_into_the_result",
 }
 
 
@@ -596,6 +672,13 @@ class Optimistic(Output):
         return super().close(place, result)
 
 
+class Resuming(Output):
+    """Goes on from a file that need not be there."""
+
+    def resume(self, place: Any) -> Any:
+        json.loads(place.file(".json").read_text())
+
+
 OUTPUTS = {
     LosesFirst: "loses_no_step",
     LosesLast: "loses_no_step",
@@ -605,6 +688,7 @@ OUTPUTS = {
     Own: "leaves_the_files_it_names",
     Once: "leaves_the_files_it_names",
     Optimistic: "hopeless_folder_is_known_before_computing",
+    Resuming: "works_in_a_run",
 }
 
 
@@ -736,6 +820,16 @@ class Lingering(Executor):
             yield task, future.result()
 
 
+class Halting(Executor):
+    """Carries out nothing more once a worker has died."""
+
+    def map(self, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
+        dead = False
+        for task, outcome in super().map(work, tasks, report):
+            yield task, RuntimeError("no worker is left") if dead else outcome
+            dead = dead or "ended the process" in str(outcome)
+
+
 EXECUTORS = {
     Dropping: "each_task_comes_once_with_its_outcome",
     Repeating: "each_task_comes_once_with_its_outcome",
@@ -750,11 +844,13 @@ EXECUTORS = {
     Confusing: "what_is_said_is_reported",
     Swallowing: "report_that_raises_ends_the_tasks",
     Lingering: "nothing_goes_on_after_closing",
+    Halting: "death_of_a_worker_is_an_outcome",
 }
 
 FIELDS: dict[str, dict[str, Any]] = {
     "kernel": {"reduced_modulus": 1e4},
     "indenter": {"radius": 1e-3},
+    "solver": {"tolerance": 1e-6},
 }
 MUTANTS = [
     (family, mutant, rule)
@@ -768,6 +864,38 @@ MUTANTS = [
     )
     for mutant, rule in mutants.items()
 ]
+
+
+WITHOUT = {"periodic_run_converges", "free_run_converges"}
+"""Whole runs: a kernel that fails in them fails in an operator before, as far as we know."""
+
+
+def test_each_rule_has_a_mutant(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No rule could be dropped, or say yes to everything, without a test that fails."""
+    rules: set[str] = set()
+
+    def collect(component: object, family: str, own: Any, *arguments: Any) -> None:
+        rules.update(rule.__name__ for rule in own)
+
+    modules = [sys.modules[f"pellicle.testing.{family}s"] for family in FAMILIES]
+    for family, module in zip(FAMILIES, modules, strict=True):
+        monkeypatch.setattr(module, "check", collect)
+        getattr(testing, f"check_{family}")(None)
+    rules.update(rule.__name__ for rule in component_rules.RULES)
+    rules |= {"is_an_instance", "is_registered", "goes_through_the_registry"}
+    broken = {rule for _, _, rule in MUTANTS} | {rule for _, rule in GENERAL.values()}
+    assert rules - broken == WITHOUT | {"goes_through_the_registry"}
+
+
+def test_the_registry_makes_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A component that is installed, and another when it has been a table, is caught."""
+    ours = registry()
+    mine = replace(ours.components["indenter"]["paraboloid"], component=TwoFaced, type="two_faced")
+    more = {**ours.components["indenter"], "two_faced": mine}
+    changed = replace(ours, components={**ours.components, "indenter": more})
+    monkeypatch.setattr(component_rules, "registry", lambda: changed)
+    said = complaint("indenter", TwoFaced(radius=1e-3))
+    assert "breaks the rule goes_through_the_registry\n" in said
 
 
 def complaint(family: str, component: Any) -> str:
@@ -802,7 +930,7 @@ def test_general_rule_is_checked(name: str) -> None:
     [
         ("kernel", Kernel(reduced_modulus=1e4)),
         ("indenter", Indenter(radius=1e-3)),
-        ("solver", Solver()),
+        ("solver", Solver(**FIELDS["solver"])),
         ("correction", Correction()),
         ("output", Output()),
         ("executor", Executor()),

@@ -13,8 +13,9 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("framework/pellicle", "plugins/pellicle_plugins")
 DATA = {"pellicle/py.typed", "pellicle/starter.toml", "pellicle_plugins/py.typed"} | {
     path.relative_to(ROOT / "framework").as_posix()
-    for path in (ROOT / "framework/pellicle/templates").rglob("*")
-    if path.is_file()
+    for folder in ("templates", "page")
+    for path in (ROOT / "framework/pellicle" / folder).rglob("*")
+    if path.is_file() and path.suffix != ".py" and path.parent.name != "__pycache__"
 }
 
 pytestmark = pytest.mark.skipif(
@@ -62,8 +63,8 @@ def test_wheel_holds_every_module(wheel: set[str]) -> None:
 
 
 def test_wheel_holds_its_data(wheel: set[str]) -> None:
-    """The starter file, the templates and the markers of typed packages are installed."""
-    assert len(DATA) == 3 + 2 + 6 * 3
+    """What is no module is installed too: starter file, templates, parts of a page, markers."""
+    assert len(DATA) == 3 + 2 + 6 * 3 + 3
     assert wheel >= DATA
 
 

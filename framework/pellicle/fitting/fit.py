@@ -44,6 +44,8 @@ _BASELINES: dict[str, tuple[int, ...]] = {
 }
 _QUIET = 20
 """Points before contact that the noise can be taken from."""
+_OFF = 4.0
+"""Standard errors that the force before contact may be from 0."""
 _CHANCE = 1e-3
 """A misfit less likely than this is no chance."""
 _PLAUSIBLE_DEPTH = (1e-3, 1.0)
@@ -516,16 +518,16 @@ def _noise(rough: Likelihood, parameters: Array, messages: list[str]) -> tuple[f
             "residuals of the fit, and how well the model fits cannot be told; start further out"
         )
         return max(overall, least), freedom, "residuals of the fit"
-    quiet = float(before.sum()) - baseline
-    noise = max(float(np.sqrt(np.sum(residuals[before] ** 2) / quiet)), least)
+    # About their mean: an offset that is not fitted is no noise.
+    mean = 0.0 if baseline else float(np.mean(residuals[before]))
+    quiet = float(before.sum()) - max(baseline, 1)
+    noise = max(float(np.sqrt(np.sum((residuals[before] - mean) ** 2) / quiet)), least)
     source = f"{before.sum()} points before contact"
-    if not baseline:
-        mean = float(np.mean(residuals[before]))
-        if abs(mean) > 5 * noise / np.sqrt(quiet) and abs(mean) > 10 * least:
-            messages.append(
-                f"the force before contact is {-mean:.3g} N, not 0; fit it too, with baseline "
-                "'offset', or 'slope' if it drifts"
-            )
+    if abs(mean) > _OFF * noise / np.sqrt(quiet) and abs(mean) > 10 * least:
+        messages.append(
+            f"the force before contact is {-mean:.3g} N, not 0, and modulus and tension are off by "
+            "it; fit it too, with baseline 'offset', or 'slope' if it drifts"
+        )
     contact = residuals[~before]
     loose = max(contact.size - (len(rough.free) - baseline), 1)
     misfit = float(np.sum(contact**2)) / loose / noise**2

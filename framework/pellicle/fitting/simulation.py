@@ -162,8 +162,12 @@ def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GR
         raise ConfigError(
             f"{grid_points} is not allowed; give an even number ≥ {_FEWEST}", "grid_points"
         )
-    given = lengths(indenter) or lengths(solid.kernel) or [deepest]
-    unit = given[0] if scales(indenter) and scales(solid.kernel) else 1.0
+    given = [*lengths(indenter), *lengths(solid.kernel), deepest]
+    unit = (
+        next(value for value in given if value > 0)
+        if scales(indenter) and scales(solid.kernel)
+        else 1.0
+    )
     try:
         kernel = scaled(solid.kernel, unit, (solid.modulus, solid.tension))
     except ConfigError as error:

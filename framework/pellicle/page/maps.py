@@ -82,6 +82,8 @@ class Maps:
     """What a frame is: ``"load step"``."""
     fields: Sequence[Field]
     frames: Sequence[Frame]
+    begin: int = 0
+    """The frame that is shown at first."""
 
     @property
     def remark(self) -> str:

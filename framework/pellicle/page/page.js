@@ -294,7 +294,7 @@ function makeMaps(figure, data) {
   alone.addEventListener("change", paint);
   addEventListener("resize", draw);
   for (const query of ["print", "(prefers-color-scheme: dark)"]) matchMedia(query).addEventListener("change", draw);
-  show(data.frames.length - 1);
+  show(Number(select.value));
   return show;
 }
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import binary_dilation, binary_erosion
 
 from pellicle.components import AreaCorrection
 
@@ -63,6 +62,9 @@ def full_contact_is_the_domain(correction: AreaCorrection) -> None:
 
 def area_is_near_the_count(correction: AreaCorrection) -> None:
     """A correction moves the area by less than the cells on either side of the boundary."""
+    # Here, not above: the workers of `check_executor` import this package too.
+    from scipy.ndimage import binary_dilation, binary_erosion
+
     contact = _islands()
     least = _CELL * np.count_nonzero(binary_erosion(contact))
     most = _CELL * np.count_nonzero(binary_dilation(contact))

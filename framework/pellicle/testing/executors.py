@@ -7,19 +7,20 @@ import sys
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NamedTuple
+from uuid import uuid4
 
 from pellicle.components import Executor, Say
 
 from .component import check
 from .rules import Rule, require
 
-_TASKS = 7
+_TASKS, _FAILS, _EXITS = 7, 3, 5
 # Of a task that takes a while [s]; long beside what it takes to close an executor's iterator.
 _WHILE = 0.1
 
@@ -37,7 +38,7 @@ def check_executor(executor: Executor) -> None:
     AssertionError
         It does not; says what was asked and what was found.
     """
-    check(executor, "executor", RULES)
+    check(executor, "executor", RULES, Seen(executor))
 
 
 @dataclass(frozen=True)
@@ -68,16 +69,26 @@ def talk(task: Chore, say: Say) -> int:
     return task.number**2
 
 
-def fail_third(task: Chore, say: Say) -> int:
-    """Raise for the third task."""
-    if task.number == 3:
-        raise ValueError("the third task is bad")
+def mark(task: Chore, say: Say) -> int:
+    """Leave a file when the task begins, and one when it ends."""
+    each = uuid4().hex
+    Path(task.folder, f"{task.number} began {each}").touch()
+    time.sleep(_WHILE)
+    Path(task.folder, f"{task.number} ended {each}").touch()
     return task.number**2
 
 
-def exit_third(task: Chore, say: Say) -> int:
-    """Leave the interpreter in the third task, as a bad plugin might."""
-    if task.number == 3:
+def mark_and_talk(task: Chore, say: Say) -> int:
+    """Do as `talk`, and as `mark` where there is a folder."""
+    talk(task, say)
+    return mark(task, say) if task.folder else task.number**2
+
+
+def fail_or_exit(task: Chore, say: Say) -> int:
+    """Raise for the third task, leave the interpreter in the fifth, as a bad plugin might."""
+    if task.number == _FAILS:
+        raise ValueError("the third task is bad")
+    if task.number == _EXITS:
         sys.exit(3)
     return task.number**2
 
@@ -91,14 +102,6 @@ def die_third(task: Chore, say: Say) -> int:
     return task.number**2
 
 
-def mark(task: Chore, say: Say) -> int:
-    """Leave a file when the task begins, which must be the first time, and one when it ends."""
-    with Path(task.folder, f"{task.number} began").open("x"):
-        time.sleep(_WHILE)
-    Path(task.folder, f"{task.number} ended").touch()
-    return task.number**2
-
-
 def _chores(**fields: Any) -> list[Chore]:
     return [Chore(number, **fields) for number in range(1, _TASKS + 1)]
 
@@ -107,17 +110,13 @@ def _silence(task: Chore, said: Any) -> None:
     pass
 
 
-def _outcomes(
-    executor: Executor, work: Callable[[Chore, Say], Any], **fields: Any
-) -> dict[int, Any]:
-    """Return the outcome of each task by its number; each must come once."""
-    tasks = _chores(home=os.getpid(), **fields)
-    pairs = list(executor.map(work, tasks, _silence))
+def _by_number(tasks: list[Chore], pairs: list[tuple[Chore, Any]]) -> dict[int, Any]:
+    """Return the outcome of each task by its number; each must come once, as it was given."""
     came = Counter(task.number for task, _ in pairs)
     for task in tasks:
         require(
             came[task.number] == 1,
-            f"task {task.number} of {_TASKS} is yielded {came[task.number]} times",
+            f"task {task.number} of {len(tasks)} is yielded {came[task.number]} times",
         )
     require(
         {id(task) for task, _ in pairs} == {id(task) for task in tasks},
@@ -131,82 +130,136 @@ def _require_squares(outcomes: dict[int, Any]) -> None:
         require(outcome == number**2, f"task {number} comes with {outcome!r}, not {number**2}")
 
 
-def each_task_comes_once_with_its_outcome(executor: Executor) -> None:
+class Healthy(NamedTuple):
+    """What is seen of tasks that do their work."""
+
+    tasks: list[Chore]
+    equal: list[Chore]
+    """Two more, which hold the same."""
+    pairs: list[tuple[Chore, Any]]
+    said: list[tuple[Chore, Any]]
+    callers: set[tuple[int, int]]
+    """Threads and processes in which report was called."""
+    traces: list[str]
+
+
+class Troubled(NamedTuple):
+    """What is seen of tasks of which one fails and one exits."""
+
+    outcomes: dict[int, Any]
+    exited: bool
+    """Whether map() was left by the one that exits."""
+
+
+class Seen:
+    """What is seen of an executor at work: starting one may take long, so many rules look at it."""
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+
+    @cached_property
+    def healthy(self) -> Healthy:
+        """Of nine tasks, carried out on first use."""
+        said: list[tuple[Chore, Any]] = []
+        callers = set()
+
+        def report(task: Chore, what: Any) -> None:
+            callers.add((threading.get_ident(), os.getpid()))
+            said.append((task, what))
+
+        with TemporaryDirectory() as folder:
+            tasks, equal = _chores(folder=folder), [Chore(8), Chore(8)]
+            pairs = list(self._executor.map(mark_and_talk, [*tasks, *equal], report))
+            return Healthy(tasks, equal, pairs, said, callers, os.listdir(folder))
+
+    @cached_property
+    def troubled(self) -> Troubled:
+        """Of seven tasks, carried out on first use."""
+        outcomes = {}
+        try:
+            for task, outcome in self._executor.map(fail_or_exit, _chores(), _silence):
+                outcomes[task.number] = outcome
+        except SystemExit:
+            return Troubled(outcomes, True)
+        return Troubled(outcomes, False)
+
+
+def each_task_comes_once_with_its_outcome(executor: Executor, seen: Seen) -> None:
     """map() yields each task once, the very object, with what work(task, say) returned."""
-    _require_squares(_outcomes(executor, square))
+    healthy = seen.healthy
+    pairs = [(task, outcome) for task, outcome in healthy.pairs if task not in healthy.equal]
+    _require_squares(_by_number(healthy.tasks, pairs))
 
 
-def each_task_is_carried_out_once(executor: Executor) -> None:
+def each_task_is_carried_out_once(executor: Executor, seen: Seen) -> None:
     """No task is begun twice or left out, and all have ended when map() has."""
-    with TemporaryDirectory() as folder:
-        _require_squares(_outcomes(executor, mark, folder=folder))
-        wanted = {f"{n} {what}" for n in range(1, _TASKS + 1) for what in ("began", "ended")}
-        missing = sorted(wanted - set(os.listdir(folder)))
-        require(not missing, f"of the traces of the tasks these are missing: {missing}")
+    found = Counter(trace.rpartition(" ")[0] for trace in seen.healthy.traces)
+    for number in range(1, _TASKS + 1):
+        for what in ("began", "ended"):
+            times = found[f"{number} {what}"]
+            require(times == 1, f"when map() has ended, task {number} {what} {times} times")
 
 
-def equal_tasks_are_two_tasks(executor: Executor) -> None:
+def equal_tasks_are_two_tasks(executor: Executor, seen: Seen) -> None:
     """Tasks are told apart by their places, not by what they hold."""
-    pairs = list(executor.map(square, [Chore(4), Chore(4)], _silence))
-    require([outcome for _, outcome in pairs] == [16, 16], f"two tasks of 4 give {pairs}")
+    equal = seen.healthy.equal
+    pairs = [(task, outcome) for task, outcome in seen.healthy.pairs if task in equal]
+    require([outcome for _, outcome in pairs] == [64, 64], f"two tasks of 8 give {pairs}")
 
 
-def no_tasks_are_no_trouble(executor: Executor) -> None:
+def no_tasks_are_no_trouble(executor: Executor, seen: Seen) -> None:
     """Without tasks map() yields nothing."""
     none: list[Chore] = []
     pairs = list(executor.map(square, none, _silence))
     require(not pairs, f"{pairs}")
 
 
-def failure_is_an_outcome(executor: Executor) -> None:
+def failure_is_an_outcome(executor: Executor, seen: Seen) -> None:
     """What work raises is yielded as its task's outcome, unchanged, and stops no other task."""
-    outcomes = _outcomes(executor, fail_third)
-    bad = outcomes.pop(3)
+    outcomes, exited = seen.troubled
+    bad = outcomes.get(_FAILS)
     require(
-        isinstance(bad, ValueError) and str(bad) == "the third task is bad",
-        f"for ValueError('the third task is bad') task 3 comes with {bad!r}",
+        (isinstance(bad, ValueError) and str(bad) == "the third task is bad")
+        or (exited and _FAILS not in outcomes),
+        f"for ValueError('the third task is bad') task {_FAILS} comes with {bad!r}",
     )
-    _require_squares(outcomes)
+    _require_squares({n: it for n, it in outcomes.items() if n not in (_FAILS, _EXITS)})
 
 
-def exit_is_an_outcome(executor: Executor) -> None:
+def exit_is_an_outcome(executor: Executor, seen: Seen) -> None:
     """Work that calls sys.exit() ends neither the others nor this process: it has failed."""
-    try:
-        outcomes = _outcomes(executor, exit_third)
-    except SystemExit:
-        raise AssertionError("sys.exit() in a task leaves map()") from None
-    bad = outcomes.pop(3)
-    require(isinstance(bad, Exception), f"task 3 comes with {bad!r}, no Exception")
-    _require_squares(outcomes)
+    outcomes, exited = seen.troubled
+    require(not exited, "sys.exit() in a task leaves map()")
+    bad = outcomes.get(_EXITS)
+    require(isinstance(bad, Exception), f"task {_EXITS} comes with {bad!r}, no Exception")
+    missing = sorted(set(range(1, _TASKS + 1)) - outcomes.keys())
+    require(not missing, f"beside one that fails and one that exits, these do not come: {missing}")
 
 
-def death_of_a_worker_is_an_outcome(executor: Executor) -> None:
+def death_of_a_worker_is_an_outcome(executor: Executor, seen: Seen) -> None:
     """A task that ends its worker process comes with an exception, and stops no other task."""
-    outcomes = _outcomes(executor, die_third)
+    tasks = _chores(home=os.getpid())
+    outcomes = _by_number(tasks, list(executor.map(die_third, tasks, _silence)))
     bad = outcomes.pop(3)
     require(isinstance(bad, Exception), f"task 3 comes with {bad!r}")
     _require_squares(outcomes)
 
 
-def what_is_said_is_reported(executor: Executor) -> None:
+def what_is_said_is_reported(executor: Executor, seen: Seen) -> None:
     """report(task, said) is called in this thread, with what that task's work said, in order."""
+    healthy = seen.healthy
     here = threading.get_ident(), os.getpid()
-    tasks = _chores()
-    heard: dict[int, list[Any]] = {id(task): [] for task in tasks}
-
-    def report(task: Chore, said: Any) -> None:
-        require((threading.get_ident(), os.getpid()) == here, "report is called in another thread")
-        require(id(task) in heard, f"report is called with {task!r}, an object that was not given")
-        heard[id(task)].append(tuple(said))
-
-    list(executor.map(talk, tasks, report))
-    for task in tasks:
+    require(healthy.callers <= {here}, "report is called in another thread")
+    given = {id(task) for task in (*healthy.tasks, *healthy.equal)}
+    for task, _ in healthy.said:
+        require(id(task) in given, f"report is called with {task!r}, an object that was not given")
+    for task in (*healthy.tasks, *healthy.equal):
         said = [("begun", task.number), ("nearly done", task.number)]
-        came = heard[id(task)]
+        came = [tuple(what) for whose, what in healthy.said if whose is task]
         require(came == [each for each in said if each in came], f"{task.name} said {came}")
 
 
-def report_that_raises_ends_the_tasks(executor: Executor) -> None:
+def report_that_raises_ends_the_tasks(executor: Executor, seen: Seen) -> None:
     """An interruption of the caller's own, in report, is not swallowed."""
     heard = []
 
@@ -221,7 +274,7 @@ def report_that_raises_ends_the_tasks(executor: Executor) -> None:
     require(not heard, "KeyboardInterrupt raised by report does not come out of map()")
 
 
-def nothing_goes_on_after_closing(executor: Executor) -> None:
+def nothing_goes_on_after_closing(executor: Executor, seen: Seen) -> None:
     """Where the iterator is closed early, no task goes on or begins afterwards."""
     with TemporaryDirectory() as folder:
         running = executor.map(mark, _chores(folder=folder), _silence)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.integrate import quad
 
 from pellicle.components import Kernel
 from pellicle.grid import Grid
@@ -33,20 +32,7 @@ def check_kernel(kernel: Kernel) -> None:
     AssertionError
         It does not; says what was asked and what was found.
     """
-    rules = [
-        compliance_is_vectorised,
-        compliance_leaves_its_argument,
-        compliance_is_positive_and_finite,
-        compliance_does_not_grow_for_short_waves,
-        periodic_operator_is_the_compliance,
-        periodic_run_converges,
-        uniform_pressure_sinks_by_the_mean_compliance,
-        closed_form_is_whole,
-        *(_OF_A_CLOSED_FORM if isinstance(kernel, HasClosedForm) else []),
-        free_operator_is_the_transform_of_the_compliance,
-        free_run_converges,
-    ]
-    check(kernel, "kernel", rules)
+    check(kernel, "kernel", RULES)
 
 
 def _wavenumbers() -> Array:
@@ -149,8 +135,10 @@ def closed_form_is_whole(kernel: Kernel) -> None:
     require(len(there) != 1, f"only {' '.join(there)}")
 
 
-def primitive_is_the_integral_of_the_closed_form(kernel: HasClosedForm) -> None:
+def primitive_is_the_integral_of_the_closed_form(kernel: Kernel) -> None:
     """radial_primitive starts at 0 and grows by ∫ greens_function r dr."""
+    if not isinstance(kernel, HasClosedForm):
+        return
     radii = np.geomspace(1e-9, 1e2, 45)
     primitive = kernel.radial_primitive(radii.copy())
     nodes, weights = np.polynomial.legendre.leggauss(16)
@@ -174,7 +162,8 @@ def primitive_is_the_integral_of_the_closed_form(kernel: HasClosedForm) -> None:
 
 def closed_form_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
     """The middle of a Gaussian pressure sinks equally by greens_function and by compliance."""
-    assert isinstance(kernel, HasClosedForm)
+    if not isinstance(kernel, HasClosedForm):
+        return
     form = kernel
     middle = _integral(lambda t: float((form.greens_function(t * _WIDTH) * t * _WIDTH)[0]))
     require_close(
@@ -218,6 +207,8 @@ def _middle_by_compliance(kernel: Kernel, cell: float = 0.0) -> float:
 
 def _integral(function: Callable[[Array], float]) -> float:
     """Return ∫ f(t) exp(−t²/2) dt over t > 0."""
+    # Here, not above: the workers of `check_executor` import this package too.
+    from scipy.integrate import quad
 
     def integrand(t: float) -> float:
         return function(np.array([t])) * float(np.exp(-(t**2) / 2))
@@ -226,7 +217,17 @@ def _integral(function: Callable[[Array], float]) -> float:
     return float(quad(integrand, 0, 9, epsabs=0, epsrel=1e-11, limit=200, full_output=1)[0])
 
 
-_OF_A_CLOSED_FORM: list[Rule] = [
+RULES: list[Rule] = [
+    compliance_is_vectorised,
+    compliance_leaves_its_argument,
+    compliance_is_positive_and_finite,
+    compliance_does_not_grow_for_short_waves,
+    periodic_operator_is_the_compliance,
+    periodic_run_converges,
+    uniform_pressure_sinks_by_the_mean_compliance,
+    closed_form_is_whole,
     primitive_is_the_integral_of_the_closed_form,
     closed_form_is_the_transform_of_the_compliance,
+    free_operator_is_the_transform_of_the_compliance,
+    free_run_converges,
 ]

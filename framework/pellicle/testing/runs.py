@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import xarray as xr
+from typing import TYPE_CHECKING, Any
 
 from pellicle.config import Run
 from pellicle.orchestrator import solve
 
 from .rules import require
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def solved(configuration: dict[str, Any]) -> xr.Dataset:

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from pellicle.errors import ConfigError, ConvergenceError
 
@@ -151,4 +150,7 @@ def _radius(indenter: Indenter, s: float, quantity: int, target: float) -> float
     while below > 0:
         high, low = low, low - max(below / 2, 0.1)
         below = excess(low)
+    # Here, not above: outputs load this module, and draw without it.
+    from scipy.optimize import brentq
+
     return float(np.exp(brentq(excess, low, high, xtol=1e-14, rtol=1e-14)))

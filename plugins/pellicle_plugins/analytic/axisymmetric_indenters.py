@@ -15,7 +15,6 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from pellicle.errors import ConfigError
 
@@ -172,6 +171,9 @@ def classical_radius(indenter: Indenter, quantity: int, target: float) -> float:
             )
     if low == high:
         return low
+    # Here, not above: outputs load this module, and draw without it.
+    from scipy.optimize import brentq
+
     root = brentq(
         lambda u: np.log(value(float(np.exp(u))) / target), np.log(low), np.log(high), xtol=1e-15
     )

@@ -5,10 +5,10 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import Field, model_validator
 
 from pellicle import hookimpl
 from pellicle.components import Indenter
@@ -17,15 +17,16 @@ from pellicle.model import InputPath
 from pellicle.operators import Array
 from pellicle.units import Length
 
+from .measured import Measured
 
-class Heights(Indenter):
+
+class Heights(Measured):
     """Rough punch given by its heights at the cell centres; peaks touch first, it ends at the edge.
 
     From the library, ``values`` takes an array instead of a file; the configuration then records
-    its content hash only.
+    its content hash only, that of the heights as float64 in C order.
     """
 
-    footprint: ClassVar[Literal["unbounded", "domain"]] = "domain"
     type: Literal["heights"] = "heights"
     path: Annotated[
         InputPath | None,
@@ -37,14 +38,9 @@ class Heights(Indenter):
     dataset: Annotated[
         str | None, Field(description="name of the array in an HDF5 file that holds several")
     ] = None
-    sha256: Annotated[
-        str | None,
-        Field(description="hash of the heights as float64 in C order; checked if given"),
-    ] = None
     values: Annotated[
         Any, Field(description="array of heights, from the library only", exclude=True, repr=False)
     ] = None
-    _heights: Array = PrivateAttr()
 
     @model_validator(mode="after")
     def _read(self) -> Self:
@@ -59,27 +55,9 @@ class Heights(Indenter):
         field = "values" if self.path is None else "path"
         raw = self.values if self.path is None else _load(self.path, self.dataset)
         heights = _checked(raw, str(self.path or "the array"), field)
-        digest = hashlib.sha256(heights.tobytes()).hexdigest()
-        if self.sha256 is not None and self.sha256 != digest:
-            raise ConfigError(
-                f"{self.sha256} is not the hash {digest} of the heights: they have changed; remove "
-                "sha256 to use them as they are",
-                "sha256",
-            )
-        heights.setflags(write=False)
-        # The model is frozen for its users; this is still its construction.
-        object.__setattr__(self, "sha256", digest)
+        self._keep(heights, hashlib.sha256(heights.tobytes()).hexdigest())
         object.__setattr__(self, "values", None)
-        self._heights = heights
         return self
-
-    def __eq__(self, other: object) -> bool:
-        """Compare the configuration; the hash stands for the heights."""
-        return isinstance(other, Heights) and self.model_dump() == other.model_dump()
-
-    def __hash__(self) -> int:
-        """Return a hash that agrees with equality."""
-        return hash((self.unit, self.sha256))
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return (heights − highest) · unit [m].

@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from pellicle import hookimpl
-from pellicle.components import Indenter
+from pellicle.components import Footprint, Indenter
 from pellicle.errors import ConfigError
 from pellicle.operators import Array
 from pellicle.units import Length, Quantity
+
+from .axis import Axis
 
 # Wavelengths that fit the domain exactly must not be lost to rounding.
 _ROUNDING = 1e-9
@@ -29,7 +31,7 @@ class SelfAffine(Indenter):
     2020, eq. 12), q₀ = 2π/roll_off_wavelength, q_s = 2π/cutoff_wavelength.
     """
 
-    footprint: ClassVar[Literal["unbounded", "domain"]] = "domain"
+    footprint: ClassVar[Footprint] = "domain"
     type: Literal["self_affine"] = "self_affine"
     rms_height: Annotated[Length, Field(description="root mean square of the heights [m]")]
     hurst: Annotated[
@@ -60,8 +62,8 @@ class SelfAffine(Indenter):
         ConfigError
             The spacing cannot resolve the shortest wavelength, or no wavelength fits the domain.
         """
-        axes = _Axis.of(x.ravel()), _Axis.of(y.ravel())
-        coarsest = max(axis.period / axis.number for axis in axes)
+        axes = Axis.of(x.ravel()), Axis.of(y.ravel())
+        coarsest = max(axis.spacing for axis in axes)
         if 2 * coarsest >= self.cutoff_wavelength * (1 - _ROUNDING):
             raise ConfigError(
                 f"{self.cutoff_wavelength:g} m cannot be resolved by cells of {coarsest:g} m; use "
@@ -95,24 +97,6 @@ class SelfAffine(Indenter):
         return _Series(m, n, amplitude * np.exp(1j * _phases(m, n, self.seed)))
 
 
-class _Axis(NamedTuple):
-    """Equally spaced points that sample one period."""
-
-    first: float
-    number: int
-    period: float
-
-    @classmethod
-    def of(cls, points: Array) -> _Axis:
-        if points.size < 2:
-            raise ConfigError("needs a grid of at least 2 points each way", "type")
-        spacing = (points[-1] - points[0]) / (points.size - 1)
-        return cls(float(points[0]), points.size, float(spacing * points.size))
-
-    def finer(self, factor: int) -> _Axis:
-        return self._replace(number=self.number * factor)
-
-
 class _Series(NamedTuple):
     """h(x, y) = 2 Re Σ c exp(2πi(m x/L_x + n y/L_y)), n ≥ 0."""
 
@@ -133,7 +117,7 @@ def _phases(m: NDArray[np.int64], n: NDArray[np.int64], seed: int) -> Array:
     return np.asarray(drawn[place])
 
 
-def _sample(series: _Series, x: _Axis, y: _Axis) -> Array:
+def _sample(series: _Series, x: Axis, y: Axis) -> Array:
     """Return the heights [m] at the points of two axes, shape (x.number, y.number)."""
     shift = np.exp(2j * pi * (series.m * (x.first / x.period) + series.n * (y.first / y.period)))
     modes = np.zeros((x.number, y.number // 2 + 1), dtype=np.complex128)
@@ -145,7 +129,7 @@ def _sample(series: _Series, x: _Axis, y: _Axis) -> Array:
     return np.asarray(heights, dtype=np.float64)
 
 
-def _maximum(series: _Series, x: _Axis, y: _Axis) -> float:
+def _maximum(series: _Series, x: Axis, y: Axis) -> float:
     """Return the maximum [m] of the series itself, not of its samples.
 
     A maximum of the samples would put first touch at a different depth on each grid.
@@ -161,7 +145,7 @@ def _maximum(series: _Series, x: _Axis, y: _Axis) -> float:
     return max(float(heights.max()), *(_climb(series, x, y, point) for point in points))
 
 
-def _climb(series: _Series, x: _Axis, y: _Axis, point: Array) -> float:
+def _climb(series: _Series, x: Axis, y: Axis, point: Array) -> float:
     """Return the height [m] at the maximum next to ``point``, by Newton's method."""
     q = 2 * pi * np.stack([series.m / x.period, series.n / y.period], axis=1)
     for _ in range(4):

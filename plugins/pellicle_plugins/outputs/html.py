@@ -14,6 +14,7 @@ from pydantic import Field
 from pellicle import Grid, Loading, hookimpl, storage
 from pellicle.columns import FIRST_RUN
 from pellicle.components import Output, Place
+from pellicle.errors import StorageError
 from pellicle.inputs import Input, in_words, inputs
 from pellicle.page import (
     Cell,
@@ -136,20 +137,22 @@ class Html(Output):
             label += "" if step["converged"].item() else ", NOT CONVERGED"
             made.append(frame(label, grid, [step[name].values for name in FIELDS], points))
         caption = f"Contact pressure and gap in {_some(len(chosen), steps, 'load step')}."
-        return Maps(caption, "load step", tuple(FIELDS.values()), tuple(made))
+        return Maps(caption, "load step", tuple(FIELDS.values()), made, begin=len(made) - 1)
 
     def _frames_of_runs(self, runs: list[xr.Dataset], folder: Path) -> Iterator[tuple[int, Frame]]:
         """Yield the maps of the last step of runs, by their place among all."""
         there = [index for index, row in enumerate(runs) if standing(row)[0]]
         chosen = self._chosen(len(there))
         points = side(self.points, len(chosen) * len(FIELDS))
-        every = slice(None), slice(None)
         for index in (there[number] for number in chosen):
             row = runs[index]
             path = folder / f"{row['run'].item()}.h5"
             last = standing(row)[0] - 1
-            grid = Grid(**json.loads(storage.attributes(path)["configuration"])["grid"])
-            fields = [storage.field(path, name, last, every) for name in FIELDS]
+            try:
+                attributes, fields = storage.fields(path, tuple(FIELDS), last)
+            except StorageError:
+                continue
+            grid = Grid(**json.loads(attributes["configuration"])["grid"])
             yield index, frame(_named(row), grid, fields, points)
 
     def _chosen(self, count: int) -> list[int]:
@@ -233,13 +236,19 @@ def _table_of_steps(data: xr.Dataset, names: list[str], caption: str) -> Table:
         column, factor = _column(name, data[name])
         columns.append(column)
         style = ".1e" if name.startswith("residual_") else ".6g"
-        numbers = (data[name].values * factor).tolist()
-        texts.append([format(number, style if number else "g") for number in numbers])
+        texts.append([_said(value, factor, style) for value in data[name].values.tolist()])
     rows = [
         [*cells, _verdict(verdict(str(status)))]
         for *cells, status in zip(*texts, data["status"].values, strict=True)
     ]
     return Table(caption, [*columns, Column("status", words=True)], rows)
+
+
+def _said(value: Any, factor: float, style: str = ".6g") -> str:
+    """Return a number in its unit; what counts something, or is a text, as it is."""
+    return (
+        format(value * factor, style if value else "g") if isinstance(value, float) else str(value)
+    )
 
 
 def _verdict(word: str) -> Cell:
@@ -256,11 +265,10 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], shown: dict[int, int]) -> T
     for index, row in enumerate(runs):
         done, wanted, word = standing(row)
         given = [
-            value if isinstance(value := row[name].item(), str) else f"{value * factor:.6g}"
-            for name, (_, factor) in zip(axes, varied, strict=True)
+            _said(row[name].item(), factor) for name, (_, factor) in zip(axes, varied, strict=True)
         ]
         last = [
-            f"{row[name].values[done - 1] * factor:.6g}" if done else ""
+            _said(row[name].values[done - 1].item(), factor) if done else ""
             for name, (_, factor) in zip(found, numbers, strict=True)
         ]
         name = Cell(str(row["run"].item()), frame=shown.get(index))

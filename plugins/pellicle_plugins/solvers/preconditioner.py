@@ -41,7 +41,7 @@ class Preconditioner:
             self._plane = self._padded = _free_shape(grid.shape)
             levels = _halvings(self._padded)
         self._symbol = _stiffness(operator, self._plane)
-        self._orders = _orders(operator, levels + 1)
+        self._orders = stiffness_orders(operator, levels + 1)
 
     def on(self, contact: NDArray[np.bool_]) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""
@@ -62,7 +62,7 @@ class Preconditioner:
             cells=np.flatnonzero(contact),
             places=whole,
             copied=np.concatenate([np.empty(0, dtype=np.int64), *copied]),
-            extension=Extension(known, [min(order, 2.0) for order in self._orders[:-1]]),
+            extension=Extension(known, self._orders[:-1]),
             stiffen=self._stiffen,
             order=self._orders[0],
         )
@@ -132,11 +132,8 @@ def _halvings(shape: tuple[int, int]) -> int:
     return min(_MOST_LEVELS, max(0, min(shape).bit_length() - 2))
 
 
-def _orders(operator: Operator, levels: int) -> list[float]:
-    """Return the order α ≥ 0 of the stiffness, k ~ q^α, at the cells of each level from the finest.
-
-    The extension takes those beyond 2, for which it would have to be smoother, as 2.
-    """
+def stiffness_orders(operator: Operator, levels: int) -> list[float]:
+    """Return α ≥ 0, the stiffness being k ~ q^α at the cells of each level, the finest first."""
     q = np.pi / max(operator.grid.spacing) * 0.5 ** np.arange(levels + 1, dtype=np.float64)
     stiffness = 1 / operator.kernel.compliance(q)
     return [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]

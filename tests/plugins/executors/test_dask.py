@@ -24,6 +24,7 @@ from pellicle.plugins import registry
 # Workers cannot import a module of a folder that is no package.
 cloudpickle.register_pickle_by_value(sys.modules[__name__])
 
+pytestmark = pytest.mark.usefixtures("forked_dask")
 posix = pytest.mark.skipif(sys.platform == "win32", reason="has other signals")
 PATIENCE = 60.0
 
@@ -112,7 +113,9 @@ def test_scheduler_by_address(address: str) -> None:
 def test_task_of_a_killed_worker_runs_elsewhere(tmp_path: Path) -> None:
     """The table is that of an undisturbed study, and no finished task was begun again."""
     jobs = [Job(i, tmp_path) for i in range(6)]
-    found = dict(dask(workers=2).map(die_the_first_time, jobs, silence))
+    # Here as for users: by default dask starts each worker afresh.
+    with configuration.set({"distributed.worker.multiprocessing-method": "spawn"}):
+        found = dict(dask(workers=2).map(die_the_first_time, jobs, silence))
     assert found == {job: job.number for job in jobs}
     assert len(list(tmp_path.glob("1-*"))) == 2
 

@@ -1,0 +1,38 @@
+"""An indenter turned about the vertical."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import cos, sin
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Indenter
+from pellicle.operators import Array
+from pellicle.units import Quantity
+
+from .part import Moved, profile_of
+
+
+class Rotated(Moved):
+    """Another indenter turned about the vertical through the centre of the domain."""
+
+    type: Literal["rotated"] = "rotated"
+    angle: Annotated[
+        float,
+        Quantity("rad"),
+        Field(description="angle [rad] from x towards y, or as '30 degree'"),
+    ]
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return f(x cos α + y sin α, y cos α − x sin α) [m]."""
+        c, s = cos(self.angle), sin(self.angle)
+        return profile_of(self.part, c * x + s * y, c * y - s * x, "part")
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the rotated indenter."""
+    register(Rotated)

@@ -1,0 +1,37 @@
+"""An indenter with its heights multiplied."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Indenter
+from pellicle.operators import Array
+from pellicle.units import Quantity
+
+from .part import Altered, profile_of
+
+
+class Scaled(Altered):
+    """Another indenter with its heights multiplied by a factor."""
+
+    type: Literal["scaled"] = "scaled"
+    factor: Annotated[
+        float, Quantity("1", at_least=0), Field(description="factor of the heights; 0 is flat")
+    ]
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return factor · f [m], and −inf where there is no indenter."""
+        profile = profile_of(self.part, x, y, "part")
+        # −inf · 0 is not a number.
+        return np.multiply(profile, self.factor, out=profile.copy(), where=np.isfinite(profile))
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the scaled indenter."""
+    register(Scaled)

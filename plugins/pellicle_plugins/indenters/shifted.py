@@ -1,0 +1,33 @@
+"""An indenter somewhere else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Indenter
+from pellicle.operators import Array
+from pellicle.units import Quantity
+
+from .part import Moved, profile_of
+
+
+class Shifted(Moved):
+    """Another indenter moved sideways, off the centre of the domain."""
+
+    type: Literal["shifted"] = "shifted"
+    x: Annotated[float, Quantity("m"), Field(description="shift along x [m]")] = 0.0
+    y: Annotated[float, Quantity("m"), Field(description="shift along y [m]")] = 0.0
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return f(x − x₀, y − y₀) [m]."""
+        return profile_of(self.part, x - self.x, y - self.y, "part")
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the shifted indenter."""
+    register(Shifted)

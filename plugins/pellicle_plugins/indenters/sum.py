@@ -1,0 +1,105 @@
+"""Indenters on top of each other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+import numpy as np
+import scipy.optimize
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Footprint, Indenter
+from pellicle.errors import ConfigError
+from pellicle.fields import FromRegistry
+from pellicle.operators import Array
+
+from .part import profile_of
+
+
+class Sum(Indenter):
+    """Heights of several indenters added, such as roughness on a sphere.
+
+    It ends where the domain does if any of its parts does. Depth counts from the lowest point of
+    the sum, not from those of its parts.
+    """
+
+    type: Literal["sum"] = "sum"
+    parts: Annotated[
+        tuple[Annotated[Indenter, FromRegistry()], ...],
+        Field(min_length=1, description="the indenters to add: tables with type"),
+    ]
+
+    @property
+    def footprint(self) -> Footprint:
+        """``"domain"`` if any part ends there."""
+        return "domain" if any(part.footprint == "domain" for part in self.parts) else "unbounded"
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return Σ f_i − its value at the lowest point [m].
+
+        The lowest point of the unbounded parts together is found between the cells. Parts that end
+        with the domain are known at the cells only: what their highest cell lacks to 0 is taken to
+        be what the highest cell of the sum lacks, right to second order in the spacing.
+
+        Raises
+        ------
+        ConfigError
+            A part cannot be put on these points, or nowhere are all parts present.
+        """
+        shape = np.broadcast_shapes(x.shape, y.shape)
+        smooth, rough = np.zeros(shape), np.zeros(shape)
+        hidden = 0.0
+        for index, part in enumerate(self.parts):
+            profile = profile_of(part, x, y, f"parts.{index}")
+            if part.footprint == "domain":
+                rough += profile
+                hidden -= float(profile.max())
+            else:
+                smooth += profile
+        total = smooth + rough
+        at = np.unravel_index(np.argmax(total), shape)
+        top = float(total[at])
+        if not np.isfinite(top):
+            raise ConfigError("are nowhere there together; shift them so that they meet", "parts")
+        hidden += self._summit(x, y, smooth) - float(smooth.max())
+        # Rounding may leave the lowest point above 0.
+        return np.minimum(total - (top + hidden), 0.0)
+
+    def _summit(self, x: Array, y: Array, smooth: Array) -> float:
+        """Return the largest value of the sum of the unbounded parts, anywhere."""
+        unbounded = [part for part in self.parts if part.footprint == "unbounded"]
+
+        def heights(px: float, py: float) -> float:
+            point = np.array([[px]]), np.array([[py]])
+            return float(sum(part.profile(*point).item() for part in unbounded))
+
+        # No part is above 0: all lowest points lie together, at the centre as a rule.
+        if heights(0.0, 0.0) == 0:
+            return 0.0
+        i, j = np.unravel_index(np.argmax(smooth), smooth.shape)
+        xs, ys = np.broadcast_arrays(x, y)
+        start = np.array([xs[i, j], ys[i, j]])
+        length, height = np.ptp(xs) + np.ptp(ys), -float(smooth[i, j])
+        if height == 0:
+            return 0.0
+        found = scipy.optimize.minimize(
+            lambda moved: -heights(*(start + moved * length)) / height,
+            np.zeros(2),
+            method="Nelder-Mead",
+            options={"xatol": 1e-13, "fatol": 1e-15, "initial_simplex": _SIMPLEX},
+        )
+        if not found.success:
+            raise ConfigError(f"have no lowest point that can be found ({found.message})", "parts")
+        return -float(found.fun) * height
+
+
+# In shares of the domain.
+_SIMPLEX = 0.01 * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the sum."""
+    register(Sum)

@@ -1,0 +1,210 @@
+"""A measured topography."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from math import ceil, floor
+from typing import Annotated, Literal, Self, get_args
+
+import numpy as np
+from numpy.polynomial.legendre import legvander
+from numpy.typing import NDArray
+from pydantic import Field, PrivateAttr, model_validator
+from scipy.interpolate import make_interp_spline
+
+from pellicle import hookimpl
+from pellicle.components import Indenter
+from pellicle.errors import ConfigError
+from pellicle.model import InputPath
+from pellicle.operators import Array
+from pellicle.units import Length, Quantity
+
+from .axis import Axis
+from .measured import Measured
+from .scan import library, read_scan, require_memory
+
+_Position = Annotated[float, Quantity("m", at_least=0)]
+_Level = Literal["none", "mean", "tilt", "curvature"]
+_LEVELS: tuple[_Level, ...] = get_args(_Level)
+"""By the degree of the polynomial that is taken away, from −1."""
+# Bytes for each missing point: above what was measured with 10 and 30 % of 2000² missing.
+_PER_FILLED = 900
+
+
+class Topography(Measured):
+    """Rough punch as a microscope or profilometer measured it, in the file's own unit and size.
+
+    The domain lies on the scan, at its middle or about ``centre``, and may be smaller than it; what
+    lies under the domain is filled, levelled and interpolated to the cells.
+    Reading needs the extra ``topography``.
+    """
+
+    type: Literal["topography"] = "topography"
+    path: Annotated[InputPath, Field(description="file that SurfaceTopography can read")]
+    channel: Annotated[
+        str | None, Field(description="name of the data set in a file that holds several")
+    ] = None
+    unit: Annotated[
+        Length | None,
+        Field(description="length that 1 stands for [m], where the file has no unit: '1 um'"),
+    ] = None
+    size: Annotated[
+        tuple[Length, Length] | None,
+        Field(description="edge lengths of the scan [m], where the file does not say them"),
+    ] = None
+    centre: Annotated[
+        tuple[_Position, _Position] | None,
+        Field(
+            description="point of the scan, from its first corner, that lies at the centre of the "
+            "domain [m]; the middle of the scan if absent"
+        ),
+    ] = None
+    level: Annotated[
+        _Level,
+        Field(
+            description="what is taken away by least squares: a mean height, which changes nothing "
+            "as only differences count, a plane or a paraboloid"
+        ),
+    ] = "tilt"
+    fill: Annotated[
+        float,
+        Quantity("1", at_least=0, below=1),
+        Field(
+            description="largest share of missing points to fill in, harmonically from their "
+            "neighbours; 0 refuses any"
+        ),
+    ] = 0.0
+    invert: Annotated[
+        bool, Field(description="true if the valleys of the scan are what touches, not its peaks")
+    ] = False
+    _size: tuple[float, float] = PrivateAttr()
+
+    @model_validator(mode="after")
+    def _read(self) -> Self:
+        scan = read_scan(self.path, self.channel, self.unit, self.size)
+        if min(scan.heights.shape) < 2:
+            raise ConfigError(
+                f"{self.path} has {scan.heights.shape} points; give 2 or more each way", "path"
+            )
+        self._keep(scan.heights, scan.digest)
+        self._size = scan.size
+        return self
+
+    def profile(self, x: Array, y: Array) -> Array:
+        """Return the heights at the cells minus the highest measured one under the domain [m].
+
+        Raises
+        ------
+        ConfigError
+            The domain reaches beyond the scan, or too many points under it are missing.
+
+        Warns
+        -----
+        UserWarning
+            Cells are finer than the points of the scan.
+        """
+        axes = Axis.of(x.ravel()), Axis.of(y.ravel())
+        pitch = [edge / n for edge, n in zip(self._size, self._heights.shape, strict=True)]
+        if any(axis.spacing < 0.99 * step for axis, step in zip(axes, pitch, strict=True)):
+            warnings.warn(
+                f"cells of {axes[0].spacing:.3g} × {axes[1].spacing:.3g} m are finer than the "
+                f"points of {self.path}, {pitch[0]:.3g} × {pitch[1]:.3g} m: between them the "
+                "surface is interpolated, not measured",
+                stacklevel=2,
+            )
+        # Of each axis: the cells seen from the corner of the scan, and the points under the domain.
+        cells = [x.ravel() + self._middle[0], y.ravel() + self._middle[1]]
+        window = tuple(self._under(which, axis, pitch[which]) for which, axis in enumerate(axes))
+        heights = self._prepared(window)
+        points = [
+            (np.arange(s.start, s.stop) + 0.5) * d for s, d in zip(window, pitch, strict=True)
+        ]
+        sampled = heights
+        for axis, (own, wanted) in enumerate(zip(points, cells, strict=True)):
+            spline = make_interp_spline(own, sampled, k=min(3, own.size - 1), axis=axis)
+            sampled = spline(np.clip(wanted, own[0], own[-1]))
+        # A spline may rise above the points that it goes through.
+        return sampled - max(float(heights.max()), float(sampled.max()))
+
+    @property
+    def _middle(self) -> tuple[float, float]:
+        return self.centre or (self._size[0] / 2, self._size[1] / 2)
+
+    def _under(self, which: int, axis: Axis, pitch: float) -> slice:
+        """Return the points of the scan under the domain along one axis."""
+        low = axis.first - axis.spacing / 2 + self._middle[which]
+        high = low + axis.period
+        # Instruments disagree by a point on what the size of a scan is.
+        if low < -0.51 * pitch or high > self._size[which] + 0.51 * pitch:
+            name, centre = "xy"[which], self._middle[which]
+            room = 2 * min(centre, self._size[which] - centre)
+            raise ConfigError(
+                f"the domain reaches along {name} from {low:.6g} m to {high:.6g} m of a scan of "
+                f"{self._size[0]:.9g} × {self._size[1]:.9g} m; make grid.size at most {room:.9g} m "
+                f"along {name}, or move centre",
+                "centre" if self.centre else "path",
+            )
+        first = max(0, floor(low / pitch + 0.01))
+        last = min(self._heights.shape[which], ceil(high / pitch - 0.01))
+        if last - first < 2:
+            raise ConfigError(
+                f"the domain covers {last - first} points of the scan along {'xy'[which]}; enlarge "
+                f"grid.size, whose points are {pitch:.3g} m apart in {self.path}",
+                "path",
+            )
+        return slice(first, last)
+
+    def _prepared(self, window: tuple[slice, ...]) -> Array:
+        """Return what is measured under the domain, filled, levelled and with peaks up [m]."""
+        heights = self._heights[window]
+        missing = np.isnan(heights)
+        if missing.any():
+            share = float(missing.mean())
+            if share > self.fill or missing.all():
+                raise ConfigError(
+                    f"{share:.2%} of the points of {self.path} under the domain are missing, and "
+                    f"fill allows {self.fill:.2%}; raise it, or move or shrink the domain",
+                    "fill",
+                )
+            require_memory(
+                _PER_FILLED * float(missing.sum()),
+                f"filling in {share:.2%} of {heights.shape[0]} × {heights.shape[1]} points",
+                "move or shrink the domain",
+                "fill",
+            )
+            heights = _filled(heights, missing)
+        heights = _levelled(heights, _LEVELS.index(self.level) - 1)
+        return -heights if self.invert else heights
+
+
+def _filled(heights: Array, missing: NDArray[np.bool_]) -> Array:
+    """Return heights whose missing ones solve Laplace's equation among the others."""
+    known = np.ma.masked_array(np.where(missing, 0.0, heights), mask=missing)
+    scan = library().Topography(known, heights.shape)
+    filled = scan.interpolate_undefined_data_with_harmonic_function()
+    return np.asarray(np.ma.getdata(filled.heights()), dtype=np.float64)
+
+
+def _levelled(heights: Array, degree: int) -> Array:
+    """Return heights less the polynomial of that total degree that fits them best.
+
+    The basis is a product of ones along x and y, and so are its scalar products: what a solver of
+    least squares would take twenty times the memory of the heights for.
+    """
+    if degree < 0:
+        return heights
+    along_x, along_y = (legvander(np.linspace(-1, 1, n), degree) for n in heights.shape)
+    i, j = np.nonzero(np.add.outer(*2 * [np.arange(degree + 1)]) <= degree)
+    gram_x, gram_y = along_x.T @ along_x, along_y.T @ along_y
+    products = gram_x[np.ix_(i, i)] * gram_y[np.ix_(j, j)]
+    factors = np.zeros((degree + 1, degree + 1))
+    # Two points do not tell a square from a constant.
+    factors[i, j] = np.linalg.lstsq(products, (along_x.T @ heights @ along_y)[i, j])[0]
+    return np.asarray(heights - along_x @ factors @ along_y.T)
+
+
+@hookimpl
+def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
+    """Register the topography."""
+    register(Topography)

@@ -1,0 +1,93 @@
+"""Inputs are said with their units, and by the names that a file has for them."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+import pellicle as pl
+from pellicle.inputs import Input, in_words, inputs
+
+CONFIGURATION: dict[str, Any] = {
+    "title": "µ",
+    "grid": {"points": [16, 12], "size": ["0.4 mm", "0.3 mm"]},
+    "kernel": {
+        "type": "coated",
+        "tension": "0.2 N/m",
+        "substrate": {
+            "type": "frictionless_layer",
+            "thickness": "0.1 mm",
+            "youngs_modulus": 1e4,
+            "poissons_ratio": 0.3,
+        },
+    },
+    "indenter": {"type": "cone", "half_angle": "70 degree"},
+    "loading": {"depth": {"start": "1 um", "stop": "20 um", "num": 20}},
+    "corrections": [{"type": "yastrebov"}],
+}
+
+
+@pytest.fixture(scope="module")
+def found() -> dict[str, Input]:
+    """Return the inputs of a run by their names."""
+    said = json.loads(pl.Run(**CONFIGURATION).to_json())
+    return {each.name: each for each in inputs(said)}
+
+
+def test_values_have_units(found: dict[str, Input]) -> None:
+    """Of components within components and of lists too; a long list is shortened, and says so."""
+    for name, value in {
+        "grid.points": "16, 12",
+        "grid.size": "400, 300 µm",
+        "grid.boundary": "free",
+        "kernel": "coated",
+        "kernel.tension": "200 mN/m",
+        "kernel.substrate": "frictionless_layer",
+        "kernel.substrate.thickness": "100 µm",
+        "kernel.substrate.youngs_modulus": "10 kPa",
+        "indenter.half_angle": "1.22173 rad",
+        "loading.depth": "1, 2, 3, 4, 5, 6, …, 20 µm (20 values)",
+        "solver.tolerance": "1e-08",
+        "corrections.0": "yastrebov",
+    }.items():
+        assert found[name].value == value
+
+
+def test_inputs_are_explained(found: dict[str, Input]) -> None:
+    """Every one of them says what it means, and components where they come from."""
+    assert all(each.meaning for each in found.values())
+    origin = found["kernel.substrate"].origin
+    assert origin is not None
+    assert origin.entry_point == "kernel.frictionless_layer"
+    assert origin.version == pl.__version__
+    components = {"kernel", "kernel.substrate", "indenter", "solver", "corrections.0"}
+    assert {name for name, each in found.items() if each.origin} == components
+
+
+def test_what_nobody_explains_is_there() -> None:
+    """A component that is not installed here is listed with its bare numbers."""
+    said = {"kernel": {"type": "of_a_stranger", "stiffness": 3.0, "stops": [{"at": 1}]}}
+    assert [(each.name, each.value, each.meaning) for each in inputs(said)] == [
+        ("kernel", "of_a_stranger", ""),
+        ("kernel.stiffness", "3", ""),
+        ("kernel.stops.0.at", "1", ""),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "words"),
+    [
+        (0.0, "m", "0 m"),
+        (True, "1", "True"),
+        ([], "m", ""),
+        ("any text", "m", "any text"),
+        (12345678, "1", "12345678"),
+        ([1e-6, 2e-3], "N", "0.001, 2 mN"),
+        (None, "1", "None"),
+    ],
+)
+def test_in_words(value: Any, unit: str, words: str) -> None:
+    """Numbers get a prefix; what is no number is as it is."""
+    assert in_words(value, unit) == words

@@ -1,0 +1,288 @@
+"""Indenters made of others."""
+
+from __future__ import annotations
+
+import json
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+
+SIZE = 1e-3
+ROUGH = {
+    "type": "self_affine",
+    "rms_height": "2 um",
+    "hurst": 0.7,
+    "cutoff_wavelength": "0.2 mm",
+    "seed": 4,
+}
+QUADRIC = {"type": "quadric", "radius_x": "1 mm", "radius_y": "4 mm"}
+
+
+def grid(points: int = 32) -> pl.Grid:
+    """Return a grid; the centre of an even one is no cell's."""
+    return pl.Grid(points=points, size=SIZE)
+
+
+def _profile(indenter: pl.Indenter, points: int = 32) -> np.ndarray:
+    return indenter.profile(*grid(points).coordinates())
+
+
+def _make(table: dict[str, Any]) -> pl.Indenter:
+    return pl.registry().make(pl.Indenter, table)
+
+
+def _solve(indenter: dict[str, Any], points: int, **loading: object) -> pl.Result:
+    return pl.run(
+        {
+            "grid": {"points": points, "size": SIZE},
+            "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
+            "indenter": indenter,
+            "loading": loading,
+        },
+        progress=False,
+    )
+
+
+@pytest.mark.parametrize("points", [31, 32])
+@pytest.mark.parametrize(
+    "zero",
+    [
+        {"type": "scaled", "factor": 0, "part": ROUGH},
+        {"type": "scaled", "factor": 0, "part": {"type": "paraboloid", "radius": "1 mm"}},
+    ],
+)
+def test_zero_roughness_leaves_the_sphere(points: int, zero: dict[str, Any]) -> None:
+    """A sphere with roughness of no height is the sphere, to the last bit."""
+    sphere = {"type": "sphere", "radius": "1 mm"}
+    both = pl.indenter("sum", parts=[sphere, zero])
+    assert np.array_equal(_profile(both, points), _profile(_make(sphere), points))
+
+
+def test_run_of_sphere_and_zero_roughness_is_that_of_the_sphere() -> None:
+    """Force and pressure are the sphere's own, to the last bit."""
+    sphere = {"type": "sphere", "radius": "1 mm"}
+    flat = {"type": "scaled", "factor": 0, "part": ROUGH}
+    alone = _solve(sphere, 32, depth="20 um").dataset
+    both = _solve({"type": "sum", "parts": [sphere, flat]}, 32, depth="20 um").dataset
+    assert np.array_equal(both["pressure"], alone["pressure"])
+    assert both["force"] == alone["force"]
+
+
+def test_paraboloids_add_their_curvatures() -> None:
+    """Two coaxial paraboloids are one of 1/R = 1/R₁ + 1/R₂, on any grid."""
+    two = pl.indenter(
+        "sum",
+        parts=[{"type": "paraboloid", "radius": 1e-3}, {"type": "paraboloid", "radius": 3e-3}],
+    )
+    one = pl.indenter("paraboloid", radius=0.75e-3)
+    assert two.footprint == "unbounded"
+    for points in (31, 32):
+        assert _profile(two, points) == pytest.approx(_profile(one, points), rel=1e-13)
+
+
+def test_paraboloids_apart_are_one_between_them() -> None:
+    """Of two paraboloids apart the sum is one whose lowest point, no cell, lies between them.
+
+    −((x − a)² + (x + a)²)/2R = −x²/R − a²/R for equal ones; the lowest point is found to rounding.
+    """
+    a = 0.11e-3
+    apart = pl.indenter(
+        "sum",
+        parts=[
+            {
+                "type": "shifted",
+                "x": sign * a + 1e-5,
+                "part": {"type": "paraboloid", "radius": 1e-3},
+            }
+            for sign in (-1, 1)
+        ],
+    )
+    one = pl.indenter("shifted", x=1e-5, part={"type": "paraboloid", "radius": 0.5e-3})
+    # Of heights up to 5e-4 m.
+    assert _profile(apart) == pytest.approx(_profile(one), rel=0, abs=1e-18)
+
+
+def test_cones_apart_have_a_ridge() -> None:
+    """A lowest point with a kink is found too: equal cones apart are lowest all between them."""
+    cone = {"type": "cone", "half_angle": pi / 4}
+    apart = pl.indenter(
+        "sum",
+        parts=[{"type": "shifted", "part": cone, "x": x} for x in (-1e-4, 1e-4)],
+    )
+    x, y = grid().coordinates()
+    exact = 2e-4 - np.hypot(x - 1e-4, y) - np.hypot(x + 1e-4, y)
+    assert _profile(apart) == pytest.approx(exact, rel=0, abs=1e-16)
+
+
+def test_lowest_point_is_off_by_what_cells_hide() -> None:
+    """The lowest point of a rough sphere is that of a fine grid to O(h²), as those of its parts."""
+    both = pl.indenter("sum", parts=[{"type": "sphere", "radius": "1 mm"}, ROUGH])
+    assert both.footprint == "domain"
+    fine = _profile(both, 729)
+    assert -1e-10 < fine.max() <= 0
+    curvature = 2e-6 * (2 * pi / 0.2e-3) ** 2
+    for points in (27, 81, 243):
+        step = 729 // points
+        shared = fine[step // 2 :: step, step // 2 :: step]
+        bound = curvature * (SIZE / points) ** 2 / 8
+        assert abs(_profile(both, points) - shared).max() < bound
+
+
+def test_heights_add_up_to_a_constant() -> None:
+    """A sum has the shape of its parts' heights added."""
+    parts = [{"type": "sphere", "radius": "1 mm"}, ROUGH, QUADRIC]
+    added = sum(_profile(_make(part)) for part in parts)
+    difference = _profile(pl.indenter("sum", parts=parts)) - added
+    assert np.ptp(difference) < 1e-18
+    assert difference.mean() > 0
+
+
+def test_turned_quadric_gives_the_turned_result() -> None:
+    """A quadric turned by 30° gives force and area of the quadric, and its contact turned."""
+    turned = {"type": "rotated", "angle": "30 degree", "part": QUADRIC}
+    plain, other = (_solve(each, 256, depth="20 um").dataset for each in (QUADRIC, turned))
+    assert float(other["force"][0]) == pytest.approx(float(plain["force"][0]), rel=2e-5)
+    areas = [float(each["contact_area"][0]) for each in (plain, other)]
+    # 1 in 18 cells in contact lies at the edge.
+    assert areas[1] == pytest.approx(areas[0], rel=0.01)
+    assert _axis(plain) == pytest.approx(pi / 2, abs=1e-9)
+    assert _axis(other) == pytest.approx(pi / 2 + pi / 6, abs=2e-3)
+
+
+def _axis(data: Any) -> float:
+    """Return the angle of the longer axis of the pressure [rad], by its second moments."""
+    p = data["pressure"][0]
+    x, y = data["x"], data["y"]
+    xx, yy, xy = (float((p * each).sum()) for each in (x * x, y * y, x * y))
+    return np.arctan2(2 * xy, xx - yy) / 2 % pi
+
+
+def test_turning_by_a_right_angle_swaps_the_axes() -> None:
+    """Turned by 90°, the radii of a quadric change places."""
+    turned = pl.indenter("rotated", angle="90 degree", part=QUADRIC)
+    swapped = pl.indenter("quadric", radius_x="4 mm", radius_y="1 mm")
+    assert _profile(turned) == pytest.approx(_profile(swapped), rel=1e-12)
+
+
+def test_shift_moves_the_result() -> None:
+    """A punch moved by whole cells gives the same pressure, moved."""
+    cells = 3
+    moved = {"type": "shifted", "x": cells * SIZE / 32, "part": QUADRIC}
+    plain, other = (_solve(each, 32, depth="10 um").dataset for each in (QUADRIC, moved))
+    expected = np.roll(plain["pressure"].values, cells, axis=1)
+    scale = expected.max()
+    assert other["pressure"].values == pytest.approx(expected, rel=0, abs=1e-6 * scale)
+
+
+def test_scaled_paraboloid() -> None:
+    """Heights times two are those of half the radius; a punch keeps its end."""
+    doubled = pl.indenter("scaled", factor=2, part={"type": "paraboloid", "radius": "1 mm"})
+    half = pl.indenter("paraboloid", radius="0.5 mm")
+    assert _profile(doubled) == pytest.approx(_profile(half), rel=1e-15)
+    punch = pl.indenter("scaled", factor=0, part={"type": "flat_punch", "radius": "0.3 mm"})
+    assert set(np.unique(_profile(punch))) == {-np.inf, 0.0}
+
+
+def _run(indenter: dict[str, Any]) -> pl.Run:
+    return pl.Run(
+        grid={"points": 24, "size": SIZE},
+        kernel={"type": "half_space", "reduced_modulus": 1e4},
+        indenter=indenter,
+        loading={"depth": "1 um"},
+    )
+
+
+@pytest.mark.parametrize(
+    ("indenter", "field", "message"),
+    [
+        ({"type": "sum", "parts": []}, "indenter.parts", "1 or more"),
+        (
+            {"type": "sum", "parts": [{"type": "sphere", "radius": -1}]},
+            "indenter.parts.0.radius",
+            "> 0 m",
+        ),
+        (
+            {"type": "sum", "parts": [QUADRIC, {"type": "scaled", "factor": -1, "part": ROUGH}]},
+            "indenter.parts.1.factor",
+            "≥ 0",
+        ),
+        ({"type": "sum", "parts": [{"type": "shpere"}]}, "indenter.parts.0.type", "'sphere'"),
+        ({"type": "rotated", "angle": 1, "part": ROUGH}, "indenter.part", "ends where the domain"),
+        ({"type": "shifted", "x": 1e-4, "part": ROUGH}, "indenter.part", "ends where the domain"),
+        ({"type": "rotated", "angle": "30 m", "part": QUADRIC}, "indenter.angle", "rad"),
+        ({"type": "shifted", "x": "nan m", "part": QUADRIC}, "indenter.x", "not finite"),
+    ],
+)
+def test_bad_fields_are_named(indenter: dict[str, Any], field: str, message: str) -> None:
+    """A message names the field with its whole path, and what is allowed."""
+    with pytest.raises(pl.ConfigError) as caught:
+        _run(indenter)
+    assert [problem.field for problem in caught.value.problems] == [field]
+    assert message in str(caught.value)
+
+
+def test_part_that_does_not_fit_the_grid_is_named() -> None:
+    """An error on the grid has the path of the part, through every level."""
+    heights = {"type": "scaled", "factor": 2, "part": pl.indenter("heights", values=[[1]], unit=1)}
+    with pytest.raises(pl.ConfigError, match=r"^indenter\.parts\.1\.part\.path: .* shape \(1, 1\)"):
+        pl.run(_run({"type": "sum", "parts": [QUADRIC, heights]}), progress=False)
+
+
+def test_parts_that_do_not_meet_are_refused() -> None:
+    """Two punches side by side have no sum."""
+    punch = {"type": "flat_punch", "radius": "0.1 mm"}
+    parts = [{"type": "shifted", "x": x, "part": punch} for x in ("-0.2 mm", "0.2 mm")]
+    with pytest.raises(pl.ConfigError, match=r"indenter\.parts: are nowhere there together"):
+        pl.run(_run({"type": "sum", "parts": parts}), progress=False)
+
+
+def test_nested_file_is_recorded_in_si(tmp_path: Path) -> None:
+    """Parts of parts take units in a file, and the result records them, defaults included."""
+    path = tmp_path / "nested.toml"
+    path.write_text("""
+        [grid]
+        points = 24
+        size = "1 mm"
+        [kernel]
+        type = "half_space"
+        reduced_modulus = "10 kPa"
+        [indenter]
+        type = "sum"
+        [[indenter.parts]]
+        type = "rotated"
+        angle = "30 degree"
+        part = { type = "quadric", radius_x = "1 mm", radius_y = "4 mm" }
+        [[indenter.parts]]
+        type = "scaled"
+        factor = 0.5
+        [indenter.parts.part]
+        type = "self_affine"
+        rms_height = "400 nm"
+        hurst = 0.7
+        cutoff_wavelength = "0.2 mm"
+        [loading]
+        depth = "1 um"
+        """)
+    result = pl.run(path, progress=False)
+    assert result.converged
+    turned, scaled = json.loads(result.dataset.attrs["configuration"])["indenter"]["parts"]
+    assert turned["angle"] == pytest.approx(pi / 6)
+    assert turned["part"] == {"type": "quadric", "radius_x": 1e-3, "radius_y": 4e-3}
+    assert scaled["part"]["rms_height"] == 4e-7
+    assert scaled["part"]["seed"] == 0
+
+
+def test_file_round_trip() -> None:
+    """A run with nested parts is the same after TOML and JSON."""
+    import tomllib
+
+    turned = {"type": "rotated", "angle": "30 degree", "part": QUADRIC}
+    run = _run({"type": "sum", "parts": [turned, {"type": "scaled", "factor": 0.5, "part": ROUGH}]})
+    assert pl.Run.from_json(run.to_json()) == run
+    assert pl.Run(**tomllib.loads(run.to_toml())) == run
+    assert hash(pl.Run.from_json(run.to_json()).indenter) == hash(run.indenter)

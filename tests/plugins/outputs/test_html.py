@@ -1,0 +1,468 @@
+"""The page of a run and of a study: what it says is what was computed, and a browser shows it."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import shutil
+import tomllib
+import warnings
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pint
+import pytest
+import xarray as xr
+
+import pellicle as pl
+from pellicle import orchestrator
+
+if TYPE_CHECKING:
+    from selenium.webdriver import Chrome
+
+TITLE = '<script>alert("no")</script> µm & 接触 $x_{'
+RUN: dict[str, Any] = {
+    "title": TITLE,
+    "grid": {"points": [24, 18], "size": ["0.4 mm", "0.3 mm"]},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "0.1 N/m"},
+    "indenter": {"type": "paraboloid", "radius": "1 mm"},
+    "loading": {"depth": ["5 um", "10 um"]},
+    "corrections": [{"type": "yastrebov"}],
+    "outputs": [{"type": "html"}],
+}
+VARY = {"indenter.radius": ["0.5 mm", "1 mm"]}
+
+
+class Page(HTMLParser):
+    """The tables of a page by their captions, its headings, code and data."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.tables: dict[str, list[list[str]]] = {}
+        self.texts: dict[str, list[str]] = {}
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self._open: list[str] = []
+        self.feed(path.read_text(encoding="utf-8"))
+        self.tables = {rows[0][0]: rows[1:] for rows in self._rows}
+
+    _rows: list[list[list[str]]]
+
+    def reset(self) -> None:
+        """Begin."""
+        super().reset()
+        self._rows = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Begin a table, a row or a cell where one begins."""
+        self.tags.append((tag, dict(attrs)))
+        self._open.append(tag)
+        if tag == "table":
+            self._rows.append([])
+        elif tag in ("caption", "tr"):
+            self._rows[-1].append([])
+        if tag in ("caption", "th", "td"):
+            self._rows[-1][-1].append("")
+        self.texts.setdefault(tag, []).append("")
+
+    def handle_endtag(self, tag: str) -> None:
+        """Leave a tag."""
+        while self._open.pop() != tag:
+            pass
+
+    def handle_data(self, data: str) -> None:
+        """Put a text where it belongs."""
+        if not self._open:
+            return
+        if {"caption", "th", "td"} & set(self._open):
+            self._rows[-1][-1][-1] += data
+        self.texts[self._open[-1]][-1] += data
+
+    def table(self, caption: str) -> list[dict[str, str]]:
+        """Return the rows of the table whose caption begins so, by the heads of the columns."""
+        (rows,) = (rows for name, rows in self.tables.items() if name.startswith(caption))
+        return [dict(zip(rows[0], row, strict=True)) for row in rows[1:]]
+
+    @property
+    def maps(self) -> dict[str, Any]:
+        """The data of the maps."""
+        (text,) = (text for text in self.texts["script"] if text.startswith("{"))
+        return json.loads(text)  # type: ignore[no-any-return]
+
+    @property
+    def said(self) -> str:
+        """All that is shown."""
+        return " ".join(t for name, ts in self.texts.items() if name != "script" for t in ts)
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
+    """Return the page of a run, and its result."""
+    folder = tmp_path_factory.mktemp("run")
+    result = pl.run(RUN, directory=folder, progress=False, threads=1)
+    (path,) = folder.iterdir()
+    return path, result.dataset
+
+
+@pytest.fixture(scope="module")
+def studied(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
+    """Return the page of a study, and its table."""
+    folder = tmp_path_factory.mktemp("study")
+    study = {**RUN, "study": {"vary": VARY, "derived": {"twice": "2 * force"}}}
+    table = pl.run_study(study, folder, progress=False, threads=1)
+    return folder / "study.html", table
+
+
+def si(text: str, unit: str) -> float:
+    """Return a number of a column in SI."""
+    return float(pint.Quantity(float(text), unit.replace("²", "**2")).to_base_units().magnitude)
+
+
+def agree(row: dict[str, str], numbers: dict[str, float]) -> None:
+    """Check that a row has each of these numbers under its name, in the unit of its head."""
+    for name, expected in numbers.items():
+        (head,) = (h for h in row if h.partition("[")[0].strip() == name.replace("_", " "))
+        unit = head.partition("[")[2].rstrip("]")
+        assert si(row[head], unit) == pytest.approx(expected, rel=1e-5, abs=1e-300), head
+
+
+def test_every_number_is_there_with_its_unit(ran: tuple[Path, xr.Dataset]) -> None:
+    """What a step has in the result is in the row of the step, in the unit of its column."""
+    path, data = ran
+    page = Page(path)
+    found, effort = page.table("What was found"), page.table("How exactly")
+    scalars = [
+        str(name)
+        for name, v in data.data_vars.items()
+        if v.dims == ("step",) and v.dtype.kind in "if"
+    ]
+    assert {"contact_area_yastrebov", "wall_time", "residual_load"} <= set(scalars)
+    for index in range(2):
+        row = {**found[index], **effort[index]}
+        assert row["step"] == str(index + 1)
+        assert row["status"] == "converged"
+        exact = [name for name in scalars if not name.startswith("residual")]
+        agree(row, {name: data[name].values[index] for name in exact})
+        residual = float(row["residual contact"])
+        assert residual == pytest.approx(data["residual_contact"].values[index], rel=0.06)
+    assert any("µm" in head for head in found[0])
+    assert "All 2 load steps converged." in page.said
+
+
+def test_title_is_shown_as_it_is(ran: tuple[Path, xr.Dataset]) -> None:
+    """Markup in it is none of the page's."""
+    page = Page(ran[0])
+    assert page.texts["h1"] == page.texts["title"] == [TITLE]
+    assert sum(tag == "script" for tag, _ in page.tags) == 2
+
+
+def test_inputs_and_provenance(ran: tuple[Path, xr.Dataset]) -> None:
+    """Values with units, versions, the identity and where components come from."""
+    path, data = ran
+    page = Page(path)
+    inputs = {row["field"]: row["value"] for row in page.table("All that decides")}
+    assert inputs["kernel.tension"] == "100 mN/m"
+    assert inputs["indenter.radius"] == "1 mm"
+    assert inputs["loading.depth"] == "5, 10 µm"
+    assert inputs["solver"] == "active_set"
+    facts = {row["what"]: row["value"] for row in page.table("What it was computed with")}
+    assert facts == {name: data.attrs[name] for name in ("versions", "date", "identity")}
+    origins = {row["used as"]: row for row in page.table("Where the components")}
+    assert origins["kernel"]["entry point"] == "kernel.tensed_membrane"
+    assert origins["kernel"]["version"] == pl.__version__
+
+
+def test_it_can_be_reproduced(ran: tuple[Path, xr.Dataset]) -> None:
+    """The TOML on the page is the same run."""
+    path, data = ran
+    toml, command = Page(path).texts["code"]
+    assert pl.Run(**tomllib.loads(toml)).identity == data.attrs["identity"]
+    words = ["pellicle", "run", f"{path.stem}.toml", "-o", path.parent.name]
+    assert shlex.split(command) == words
+
+
+def test_maps_are_the_fields(ran: tuple[Path, xr.Dataset]) -> None:
+    """Each step has its map; the ends of the values are those of the result."""
+    path, data = ran
+    made = Page(path).maps
+    assert [f["label"] for f in made["frames"]] == ["1: depth 5 µm", "2: depth 10 µm"]
+    for index, frame in enumerate(made["frames"]):
+        assert frame["shape"] == [24, 18]
+        assert frame["size"] == pytest.approx([400, 300])
+        assert frame["fields"][0]["high"] == pytest.approx(data["pressure"].values[index].max())
+        assert frame["fields"][1]["high"] == pytest.approx(data["gap"].values[index].max() * 1e6)
+    assert [field["unit"] for field in made["fields"]] == ["Pa", "µm"]
+
+
+def test_study(studied: tuple[Path, xr.Dataset]) -> None:
+    """Each run has its row, a link to its map, and its numbers; the TOML is the same study."""
+    path, table = studied
+    page = Page(path)
+    rows = page.table("The last load step of each run")
+    assert len(rows) == 2
+    flat = [table.isel({"indenter.radius": index, "step": -1}) for index in range(2)]
+    for row, run in zip(rows, flat, strict=True):
+        assert row["run"] == str(run["run"].item())
+        assert (row["steps"], row["status"]) == ("2/2", "converged")
+        names = ("indenter.radius", "depth", "force", "contact_fraction")
+        agree(row, {name: run[name].item() for name in names})
+        # What is derived has no unit that anybody knows.
+        assert float(row["twice"]) == pytest.approx(2 * run["force"].item(), rel=1e-5)
+    links = [attrs["data-frame"] for tag, attrs in page.tags if "data-frame" in attrs]
+    assert links == ["0", "1"]
+    assert page.maps["frames"][1]["label"] == "indenter.radius = 1 mm"
+    inputs = {row["field"]: row["value"] for row in page.table("All that decides")}
+    assert inputs["indenter.radius"] == "0.5, 1 mm"
+    assert inputs["kernel.tension"] == "100 mN/m"
+    assert "runs converged" in page.said
+    again = pl.Study.from_mapping(tomllib.loads(page.texts["code"][0]))
+    assert [p.run.identity[:16] for p in again.points] == [row["run"] for row in rows]
+
+
+def page_of(folder: Path, **changes: Any) -> Page:
+    """Return the page of a run that differs from the one above."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", pl.ConvergenceWarning)
+        pl.run({**RUN, "title": "odd", **changes}, directory=folder, progress=False, threads=1)
+    return Page(folder / "odd.html")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"loading": {"depth": 0}},
+        {"grid": {"points": [1, 8], "size": "0.4 mm"}},
+        {"indenter": {"type": "flat_punch", "radius": "0.1 mm"}},
+    ],
+    ids=["no contact", "one cell across", "infinite gap"],
+)
+def test_odd_results(tmp_path: Path, changes: dict[str, Any]) -> None:
+    """Each has its page, with numbers that JSON and a browser take."""
+    page = page_of(tmp_path, **changes)
+    assert all(np.isfinite([f["low"], f["high"]]).all() for f in page.maps["frames"][0]["fields"])
+    assert page.table("What was found")
+
+
+def test_steps_that_did_not_converge_are_marked(tmp_path: Path) -> None:
+    """In words, each with its reason."""
+    hasty = {"type": "conjugate_gradient", "max_iterations": 2, "tolerance": 1e-12}
+    page = page_of(tmp_path, solver=hasty)
+    assert "2 of 2 load steps did not converge" in page.said
+    assert "Step 2: the surface" in page.said
+    assert [row["status"] for row in page.table("What was found")] == ["NOT CONVERGED"] * 2
+    assert [frame["label"] for frame in page.maps["frames"]][1].endswith("NOT CONVERGED")
+
+
+class Lost(pl.Solver):
+    """Returns no numbers; registered nowhere."""
+
+    type: str = "lost"
+
+    def solve(self, problem: pl.Problem, start: Any, monitor: Any) -> pl.Solution:
+        """Return NaN."""
+        return pl.Solution(np.full(problem.grid.shape, np.nan), 1)
+
+
+def test_values_that_are_not_numbers(tmp_path: Path) -> None:
+    """NaN is said, and leaves the map empty; a component that nobody knows is listed too."""
+    with np.errstate(all="ignore"):
+        page = page_of(tmp_path, solver=Lost())
+    assert "the pressure became NaN" in page.said
+    (force,) = (v for k, v in page.table("What was found")[0].items() if k.startswith("force"))
+    assert force == "nan"
+    inputs = {row["field"]: row["value"] for row in page.table("All that decides")}
+    assert inputs["solver"] == "lost"
+
+
+def test_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page of the steps that are there says that they are not all."""
+    solve, calls = orchestrator._solve, []
+
+    def once(*arguments: Any) -> Any:
+        calls.append(arguments)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return solve(*arguments)
+
+    monkeypatch.setattr(orchestrator, "_solve", once)
+    with pytest.raises(KeyboardInterrupt):
+        page_of(tmp_path)
+    page = Page(tmp_path / "odd.html")
+    assert "The run ended early: 1 of 2 load steps are there." in page.said
+    assert len(page.table("What was found")) == 1
+
+
+def test_what_is_left_out_or_coarser_is_said(tmp_path: Path) -> None:
+    """Fewer maps than steps, and pixels that are not the cells."""
+    loading = {"depth": {"start": "2 um", "stop": "10 um", "num": 5}}
+    outputs = [{"type": "html", "points": 8, "frames": 2}]
+    page = page_of(tmp_path, loading=loading, outputs=outputs)
+    assert [frame["label"][0] for frame in page.maps["frames"]] == ["3", "5"]
+    assert "in 2 of 5 load steps. Each pixel is the mean over 3 × 3 cells." in page.said
+    assert len(page.table("What was found")) == 5
+
+
+def test_study_with_failures(tmp_path: Path) -> None:
+    """A run that does not converge is named with its reason, and keeps its row and map."""
+    hasty = {"type": "conjugate_gradient", "max_iterations": 2, "tolerance": 1e-12}
+    study = {**RUN, "solver": hasty, "study": {"vary": {"solver.max_iterations": [2, 1000]}}}
+    with pytest.warns(pl.ConvergenceWarning):
+        pl.run_study(study, tmp_path, progress=False, threads=1)
+    page = Page(tmp_path / "study.html")
+    assert "of 2 runs 1 did not converge" in page.said
+    assert re.search(r"\w{16} \(solver.max_iterations = 2\): the surface", page.said)
+    statuses = [row["status"] for row in page.table("The last load step")]
+    assert statuses == ["NOT CONVERGED", "converged"]
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
+    """Return a Chromium without a window."""
+    from selenium.webdriver import Chrome, ChromeOptions, ChromeService
+
+    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if chromium is None or driver is None:
+        message = "no browser: apt-get install chromium chromium-driver"
+        if os.environ.get("CI"):
+            pytest.fail(message)
+        pytest.skip(message)
+    options = ChromeOptions()
+    options.binary_location = chromium
+    for switch in (
+        "headless",
+        "no-sandbox",
+        "disable-gpu",
+        "disable-quic",
+        "no-first-run",
+        "disable-background-networking",
+        "disable-component-update",
+        "disable-sync",
+        "window-size=1280,900",
+        f"user-data-dir={tmp_path_factory.mktemp('chromium')}",
+    ):
+        options.add_argument(f"--{switch}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    opened = Chrome(options=options, service=ChromeService(driver))
+    opened.set_script_timeout(20)
+    yield opened
+    opened.quit()
+
+
+def show(browser: Chrome, path: Path) -> None:
+    """Open a page and wait for its maps."""
+    browser.get(path.as_uri())
+    drawn(browser)
+
+
+def drawn(browser: Chrome) -> list[int]:
+    """Return how many colours each map has inside its axes, once it is drawn."""
+    return browser.execute_async_script(  # type: ignore[no-untyped-call,no-any-return]
+        """
+        const done = arguments[0], begun = Date.now();
+        const look = (canvas) => {
+          const { width, height } = canvas;
+          const data = canvas.getContext("2d").getImageData(80, 40, width - 180, height - 90).data;
+          const colours = new Set(new Uint32Array(data.buffer));
+          return colours.size;
+        };
+        const wait = () => {
+          const canvases = [...document.querySelectorAll("canvas")];
+          const counts = canvases.map(look);
+          if (Math.min(...counts) > 2 || Date.now() - begun > 15000) done(counts);
+          else setTimeout(wait, 20);
+        };
+        wait();
+        """
+    )
+
+
+def picture(browser: Chrome, number: int = 0) -> str:
+    """Return a canvas as it is drawn now."""
+    text: str = browser.execute_script(  # type: ignore[no-untyped-call]
+        f"return document.querySelectorAll('canvas')[{number}].toDataURL()"
+    )
+    return text
+
+
+def errors(browser: Chrome) -> list[Any]:
+    """Return what the console says, but for what it says of the looking in `drawn`."""
+    said: list[Any] = browser.get_log("browser")  # type: ignore[no-untyped-call]
+    return [entry for entry in said if "readback operations" not in entry["message"]]
+
+
+def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset], tmp_path: Path) -> None:
+    """Maps are drawn; wheel, keys, mouse and steps change them; the values are the result's."""
+    from selenium.webdriver import ActionChains
+    from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+    from selenium.webdriver.support.wait import WebDriverWait
+
+    path, data = ran
+    show(browser, path)
+    assert browser.title == TITLE
+    assert min(drawn(browser)) > 10
+    canvas, other = browser.find_elements(By.CSS_SELECTOR, "canvas")
+    readout = browser.find_element(By.CSS_SELECTOR, "output")
+    whole = [picture(browser, number) for number in range(2)]
+
+    origin = ScrollOrigin.from_element(canvas)
+    ActionChains(browser, duration=0).scroll_from_origin(origin, 0, -300).perform()
+    found = re.fullmatch(
+        r"x = (\S+) µm, y = (\S+) µm: contact pressure (\S+) Pa, gap (\S+) µm",
+        (ActionChains(browser, duration=0).move_to_element(canvas).perform(), readout.text)[1],
+    )
+    assert found, readout.text
+    x, y, pressure, gap = (float(text.replace("−", "-")) for text in found.groups())
+    here = data.isel(step=1).sel(x=x * 1e-6, y=y * 1e-6, method="nearest")
+    assert pressure == pytest.approx(here["pressure"].item(), rel=1e-3, abs=0.02)
+    assert gap == pytest.approx(here["gap"].item() * 1e6, abs=2e-3)
+    zoomed = [picture(browser, number) for number in range(2)]
+    assert zoomed[0] != whole[0]
+    assert zoomed[1] != whole[1]
+
+    ActionChains(browser, duration=0).double_click(canvas).move_to_element(readout).perform()
+    assert [picture(browser, number) for number in range(2)] == whole
+
+    other.send_keys("+", Keys.ARROW_LEFT)
+    assert picture(browser) != whole[0]
+    assert "contact pressure" in readout.text
+    other.send_keys("0")
+    select = browser.find_element(By.CSS_SELECTOR, "select")
+    assert select.text.splitlines() == ["1: depth 5 µm", "2: depth 10 µm"]
+    before = picture(browser)
+    select.send_keys(Keys.ARROW_UP)
+    WebDriverWait(browser, 20).until(lambda _: picture(browser) != before)
+    browser.find_element(By.CSS_SELECTOR, "input").click()
+    assert errors(browser) == []
+    assert browser.save_screenshot(str(tmp_path / "run.png"))
+
+
+def test_browser_shows_a_study(browser: Chrome, studied: tuple[Path, xr.Dataset]) -> None:
+    """A click on a run shows its map, one on a head sorts the table."""
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.support.wait import WebDriverWait
+
+    path, table = studied
+    show(browser, path)
+    before = picture(browser)
+    browser.find_element(By.CSS_SELECTOR, "a[data-frame='1']").click()
+    WebDriverWait(browser, 20).until(lambda _: picture(browser) != before)
+    select = browser.find_element(By.CSS_SELECTOR, "select")
+    assert select.get_attribute("value") == "1"
+    force = next(
+        button
+        for button in browser.find_elements(By.CSS_SELECTOR, "th button")
+        if button.text.startswith("force")
+    )
+    last = table["force"].isel(step=-1).values.ravel()
+    names = table["run"].values.ravel()
+    for order in (np.argsort(last), np.argsort(-last)):
+        browser.execute_script("arguments[0].click()", force)  # type: ignore[no-untyped-call]
+        links = browser.find_elements(By.CSS_SELECTOR, "tbody a")
+        assert [link.text for link in links] == list(names[order])
+    assert errors(browser) == []
