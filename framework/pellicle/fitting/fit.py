@@ -321,9 +321,8 @@ def cleaned(measured: Measured, segment: Segment) -> Curve:
         As for `clean`.
     """
     place = measured.position if measured.depth is None else measured.depth
-    made = clean(place, measured.force, segment)  # type: ignore[arg-type]
-    messages = *measured.messages, *made.messages
-    return replace(made, messages=messages, stiffness=measured.stiffness)
+    made = clean(place, measured.force, segment, measured.stiffness)  # type: ignore[arg-type]
+    return replace(made, messages=(*measured.messages, *made.messages))
 
 
 def modelled(

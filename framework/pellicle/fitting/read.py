@@ -53,6 +53,11 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
         except StorageError:
             # Not the format of an instrument either, or nobody can tell.
             hint = "" if afm.installed() else f"; if it is of an instrument: {afm.INSTALL}"
+    if not found:
+        raise StorageError(
+            f"{path}: is neither text, nor HDF5, nor of an instrument that can be read{hint}; "
+            f"export it as a table with a header such as {EXAMPLE!r}"
+        )
     curves: Found = {}
     for label, columns in found.items():
         try:
@@ -89,10 +94,10 @@ def manifest(path: Path) -> list[dict[str, str]] | None:
 
 
 def _table(path: Path) -> dict[str, Columns]:
-    """Return the known columns of each curve of a table."""
+    """Return the known columns of each curve of a table; none at all if it is no text."""
     made = _cells(path)
     if made is None:
-        return {"": {}}
+        return {}
     heads, rows, number = made
     names = [name for name, _ in heads]
     places = {name: index for index, name in enumerate(names) if name in NAMES}
