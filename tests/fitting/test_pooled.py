@@ -19,7 +19,6 @@ from pellicle.fitting.interval import Minimum
 from pellicle.fitting.likelihood import MODULUS, TENSION, Likelihood
 from pellicle.fitting.pool import Pool
 from pellicle.fitting.simulated import SimulatedCurve
-from pellicle.fitting.solid import solid
 
 Array = NDArray[np.float64]
 TRUE_MODULUS, TRUE_TENSION = 2e3, 5e-3
@@ -154,7 +153,9 @@ def test_what_is_said(fit: pl.PooledFit) -> None:
     assert [curve.name for curve in fit.curves] == ["5 um", "40 um"]
     assert fit.curves[1].noise > 10 * fit.curves[0].noise
     assert sum(curve.chi_squared for curve in fit.curves) == pytest.approx(fit.chi_squared)
-    assert json.loads(json.dumps(fit.to_dict()))["curves"][0]["contact_point"]["unit"] == "m"
+    said = json.loads(json.dumps(fit.to_dict()))["curves"]
+    assert said[0]["contact_point"]["unit"] == "m"
+    assert [each["model"]["indenter"]["radius"] for each in said] == list(RADII)
 
 
 def test_curves_that_disagree() -> None:
@@ -185,7 +186,6 @@ def test_hertz_and_baseline(measured: dict[str, tuple[Array, Array]]) -> None:
 
 def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> None:
     """What coarser grids would shift is added to the intervals, as for one curve."""
-    solid_ = solid("tensed_membrane")
     depths, ratios = 2.0 ** np.arange(-9, 1), simulation._RATIOS
     bead = pl.indenter("paraboloid", radius=1.0)
     forces = np.array(
@@ -195,7 +195,7 @@ def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> Non
         ]
     )
     coarse = SimulatedCurve(
-        bead, solid_.kernel, depths, ratios, np.log(1.01 * forces), (0.5, 0.0), 1.0
+        bead, {"type": "tensed_membrane"}, depths, ratios, np.log(1.01 * forces), (0.5, 0.0), 1.0
     )
     exact = replace(coarse, log_forces=np.log(forces))
     starts = [

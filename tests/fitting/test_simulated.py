@@ -45,7 +45,7 @@ def exact_nodes() -> SimulatedCurve:
     )
     return SimulatedCurve(
         sphere,
-        material.kernel,
+        material.given,
         planned.depths,
         simulation._RATIOS,
         np.log(forces),
@@ -132,6 +132,7 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         assert estimate.low <= truth <= estimate.high
         assert estimate.high / estimate.low < 1.5
     assert "the force curve is simulated" in fit.messages[-1]
+    assert fit.to_dict()["model"]["kernel"] == {"type": "tensed_membrane"}
     monkeypatch.setattr(simulation, "carry_out", None)
     again = pl.fit(
         depth * 1e3,

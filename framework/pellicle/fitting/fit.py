@@ -159,10 +159,18 @@ class Fit:
         """Return what `to_dict` returns as JSON."""
         return as_json(self.to_dict())
 
+    def model(self) -> dict[str, Any]:
+        """Return indenter and kernel that were fitted with, as JSON has them.
+
+        A kernel is there only if its force curve was simulated, without modulus and tension.
+        """
+        return described(self.likelihood.indenter)
+
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold."""
         gain = self.chi_squared_without_tension - self.chi_squared
         return {name: value.to_dict() for name, value in self.estimates().items()} | {
+            "model": self.model(),
             "confidence": CONFIDENCE,
             "noise": {"value": self.noise, "unit": "N", "from": self.noise_from},
             "points": self.points,
@@ -343,11 +351,14 @@ def modelled(
     """
     if asked.material is None:
         return asked
-    reach = (1 + BEFORE) * float(np.ptp(curve.position))
+    span = float(np.ptp(curve.position))
+    held = POINT not in asked.free
+    reach = float(curve.position[-1]) - asked.held[POINT] if held else (1 + BEFORE) * span
     made = simulate(
         asked.indenter,
         asked.material,
-        reach if POINT in asked.free else float(curve.position[-1]) - asked.held[POINT],
+        # Where nothing reaches contact, the fit itself says so.
+        reach if reach > 0 else span,
         cache=None if cache is None else Path(cache),
         executor=executor,
         grid_points=grid_points,
@@ -477,6 +488,16 @@ def fitted(curve: Curve, asked: Question) -> Fit:
         parameters_without_tension=without.parameters,
         rise=rise,
     )
+
+
+def described(curve: HasForceCurve) -> dict[str, Any]:
+    """Return indenter and, if it was simulated, kernel of a force curve, as JSON has them."""
+    if isinstance(curve, SimulatedCurve):
+        said = {"kernel": dict(curve.kernel), "accuracy": curve.accuracy}
+        return {"indenter": curve.indenter.model_dump(mode="json", exclude_none=True), **said}
+    if isinstance(curve, Component):
+        return {"indenter": curve.model_dump(mode="json", exclude_none=True)}
+    return {"indenter": {"type": type(curve).__name__}}
 
 
 def allowed_rise(freedom: float) -> float:

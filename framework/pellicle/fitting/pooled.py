@@ -24,6 +24,7 @@ from .fit import (
     allowed_rise,
     cleaned,
     comparison,
+    described,
     explain,
     modelled,
     of_log,
@@ -50,6 +51,8 @@ class PooledCurve:
     """What a pooled fit says of one of its curves."""
 
     name: str
+    model: dict[str, Any]
+    """Indenter, and the kernel if it was simulated, as JSON has them."""
     contact_point: Estimate
     """Position of first touch [m]; its interval is not looked for."""
     offset: float
@@ -257,6 +260,7 @@ def _fitted(
         curves.append(
             PooledCurve(
                 name=names[number],
+                model=described(member.indenter),
                 contact_point=Estimate(point, end, end, "m", float(bounds[number][POINT]), held),
                 offset=float(part[OFFSET]),
                 slope=float(part[SLOPE]),

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from pellicle.components import Component
 from pellicle.inputs import inputs
 from pellicle.page import Code, Column, Notice, Picture, Section, Table, Text, page
 from pellicle.plotting import axis_unit, svg
@@ -16,7 +15,6 @@ from pellicle.storage import aside, reported
 
 from . import drawing
 from .fit import CONFIDENCE, Estimate, Fit
-from .simulated import SimulatedCurve
 
 _CAPTIONS = (
     "Data, fit, and the fit without tension; below, what each leaves.",
@@ -96,19 +94,9 @@ def _pictures(fit: Fit) -> list[Picture]:
 
 
 def _model(fit: Fit) -> Table:
-    curve = fit.likelihood.indenter
-    parts = (
-        {"indenter": curve.indenter, "kernel": curve.kernel}
-        if isinstance(curve, SimulatedCurve)
-        else {"indenter": curve}
-    )
-    told = {
-        name: part.model_dump(mode="json", exclude_none=True)
-        for name, part in parts.items()
-        if isinstance(part, Component)
-    }
+    told = {name: part for name, part in fit.model().items() if name != "accuracy"}
     columns = [Column(head, words=True) for head in ("field", "value", "meaning")]
-    caption = "What was pressed in; modulus and tension of a kernel are those that were sought."
+    caption = "What was pressed in, and what was known of the solid."
     return Table(caption, columns, [[i.name, i.value, i.meaning] for i in inputs(told)])
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from pellicle.components import ForceCurve, Indenter, Kernel
+from pellicle.components import ForceCurve, Indenter
 from pellicle.operators import Array
 
 SCALE = 0.1
@@ -30,8 +32,8 @@ class SimulatedCurve:
     """
 
     indenter: Indenter
-    kernel: Kernel
-    """The solid, of E* = 1 Pa and no tension."""
+    kernel: Mapping[str, Any]
+    """The solid: table of a kernel without modulus and tension."""
     depths: Array
     """Nodes δ over the unit, rising, of shape (m,)."""
     ratios: Array

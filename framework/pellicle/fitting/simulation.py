@@ -88,7 +88,7 @@ def simulate(
     made = partial(
         SimulatedCurve,
         indenter,
-        solid.kernel,
+        solid.given,
         planned.depths,
         _RATIOS,
         width=planned.width,

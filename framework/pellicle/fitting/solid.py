@@ -29,6 +29,18 @@ class Solid:
     """Dotted path of the tension in the kernel."""
     poissons_ratio: float | None
 
+    @property
+    def given(self) -> dict[str, Any]:
+        """What is known of the kernel: its table without modulus and tension."""
+        table: dict[str, Any] = self.kernel.model_dump(mode="json", exclude_none=True)
+        for path in (self.modulus, self.tension):
+            at = table
+            *parents, name = path.split(".")
+            for parent in parents:
+                at = at[parent]
+            del at[name]
+        return table
+
 
 def solid(given: str | Mapping[str, Any], poissons_ratio: float | None = None) -> Solid:
     """Return the solid that a kernel describes, all but its reduced modulus and its tension.
