@@ -43,7 +43,7 @@ def test_errors_reach_the_bound_and_intervals_hold() -> None:
 
     A subset of tests/benchmarks/fit_ensemble.py, which has the real sample.
     """
-    found = list(scores(30, seed=5))
+    found = list(scores(30, seed=5, points=600))
     for name in ("modulus", "tension"):
         error = np.sqrt(np.mean([getattr(each, name) ** 2 for each in found]))
         # Three standard deviations of the rms of 30 normal numbers around 1.

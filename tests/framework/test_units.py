@@ -122,3 +122,19 @@ def test_unit_for_a_pure_number() -> None:
     """A pure number takes no unit."""
     with pytest.raises(ValueError, match=r"'0\.3 Pa' has a unit; give a plain number"):
         RATIO("0.3 Pa")
+
+
+@pytest.mark.parametrize(
+    ("unit", "powers"),
+    [
+        ("m", (0, 1)),
+        ("Pa", (1, 0)),
+        ("N/m", (1, 1)),
+        ("N*m", (1, 3)),
+        ("Pa/m", (1, -1)),
+        ("1", (0, 0)),
+    ],
+)
+def test_powers(unit: str, powers: tuple[int, int]) -> None:
+    """A unit is one of pressure and one of length, to some powers."""
+    assert Quantity(unit).powers() == powers
