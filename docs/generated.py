@@ -125,6 +125,8 @@ def default(info: FieldInfo, quote: str = "") -> str:
     value = info.get_default(call_default_factory=True)
     if hasattr(value, "type"):
         return f"{quote}{value.type}{quote}"
+    if isinstance(value, bool):
+        return f"{quote}{str(value).lower() if quote else value}{quote}"
     if value is None or value in ((), ""):
         return "none" if quote else repr(value)
     return f"{quote}{list(value) if quote and isinstance(value, tuple) else value!r}{quote}"

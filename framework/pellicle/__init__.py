@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         Place,
         Solver,
     )
-    from .config import Loading, Run
+    from .config import Run
     from .errors import (
         ConfigError,
         ConvergenceError,
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from .fitting.pooled import PooledCurve, PooledFit, fit_pooled
     from .grid import Grid
     from .hookspecs import hookimpl
+    from .loading import Loading
     from .operators import displacement
     from .orchestrator import run
     from .plugins import registry
@@ -64,7 +65,7 @@ _HOME = {
     "Indenter": "components",
     "IterativeSolver": "components",
     "Kernel": "components",
-    "Loading": "config",
+    "Loading": "loading",
     "Output": "components",
     "PellicleError": "errors",
     "Place": "components",

@@ -10,9 +10,9 @@ from .errors import ConfigError, Problem, shown
 from .units import Quantity, ramp, split
 
 Values = tuple[Any, ...]
-_RANGE = {"start", "stop", "num"}
+RANGE = {"start", "stop", "num"}
 _MOST = 1_000_000
-_SPACINGS = ("linear", "log")
+SPACINGS = ("linear", "log")
 
 
 def expand(given: object) -> dict[str, Values]:
@@ -42,7 +42,7 @@ def expand(given: object) -> dict[str, Values]:
 def _flat(given: Mapping[str, Any], path: str) -> Iterator[tuple[str, object]]:
     """Yield each axis with its dotted key: in TOML a key without quotes makes nested tables."""
     for name, value in given.items():
-        if isinstance(value, Mapping) and value and not _RANGE & value.keys():
+        if isinstance(value, Mapping) and value and not RANGE & value.keys():
             yield from _flat(value, f"{path}{name}.")
         else:
             yield f"{path}{name}", value
@@ -50,7 +50,7 @@ def _flat(given: Mapping[str, Any], path: str) -> Iterator[tuple[str, object]]:
 
 def _values(given: object) -> Values:
     if isinstance(given, Mapping):
-        return _range(given)
+        return ranged(given)
     if hasattr(given, "tolist"):
         given = given.tolist()
     if not isinstance(given, (list, tuple)):
@@ -62,19 +62,30 @@ def _values(given: object) -> Values:
     return tuple(each.item() if hasattr(each, "item") else each for each in given)
 
 
-def _range(given: Mapping[str, Any]) -> Values:
-    if not given.keys() >= _RANGE or not given.keys() <= _RANGE | {"spacing"}:
+def ranged(
+    given: Mapping[str, Any], what: str = "range", options: str = 'spacing = "log"'
+) -> Values:
+    """Return the values of ``{start, stop, num}``, with ``spacing`` if need be.
+
+    Messages call it ``what``, and say that it may have the ``options`` besides.
+
+    Raises
+    ------
+    ConfigError
+        It is none.
+    """
+    if not given.keys() >= RANGE or not given.keys() <= RANGE | {"spacing"}:
         has = ", ".join(map(str, given)) or "nothing"
         raise ConfigError(
-            f"a range that has {has} is not allowed; give start, stop, num and, if you like, "
-            'spacing = "log"'
+            f"a {what} that has {has} is not allowed; give start, stop and num, and {options} if "
+            "need be"
         )
     num, spacing = given["num"], given.get("spacing", "linear")
     if not isinstance(num, int) or isinstance(num, bool) or not 2 <= num <= _MOST:
         raise ConfigError(
             f"{shown(num)} is not allowed; give a whole number of values, 2 to {_MOST}", "num"
         )
-    if spacing not in _SPACINGS:
+    if spacing not in SPACINGS:
         raise ConfigError(f'{shown(spacing)} is not allowed; give "linear" or "log"', "spacing")
     (start, unit), (stop, stop_unit) = (_end(given, end) for end in ("start", "stop"))
     if (stop_unit or unit) != (unit or stop_unit) or bool(unit) != bool(stop_unit):

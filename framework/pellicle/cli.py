@@ -638,7 +638,8 @@ def _write_starter(path: Path) -> None:
 def _print_steps(result: Result) -> None:
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    names = ["depth", "force", *areas, "iterations"]
+    asked = [name for name in ("mean_plane_depth", "contact_radius", "stiffness") if name in data]
+    names = ["depth", "force", *areas, *asked, "iterations"]
     rows = []
     for index in range(data.sizes["step"]):
         step = data.isel(step=index)
@@ -648,6 +649,11 @@ def _print_steps(result: Result) -> None:
     units = {name: data[name].attrs["units"] for name in names}
     heads = {name: f"{name} [{unit}]" if unit != "1" else name for name, unit in units.items()}
     _print_table(["step", *names, "status"], rows, heads)
+    for index, (converged, status) in enumerate(
+        zip(data["converged"], data["status"], strict=True)
+    ):
+        if converged and status != "converged":
+            typer.echo(f"step {index + 1}: {status.item()}", err=True)
 
 
 def _print_origin(data: xr.Dataset) -> None:
@@ -717,8 +723,9 @@ def _exit_by_convergence(result: Result) -> None:
 
 
 def _steps_wanted(result: Result) -> int:
-    loading = result.configuration["loading"]
-    return max(len(values) for values in loading.values())
+    from .loading import Loading
+
+    return len(Loading(**result.configuration["loading"]).values)
 
 
 def _print_table(

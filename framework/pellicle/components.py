@@ -145,6 +145,36 @@ class Solver(Component):
         result afresh; what a solver believes of its accuracy is not used.
         """
 
+    def punch_pressure(
+        self, problem: Problem, contact: NDArray[np.bool_], monitor: Monitor
+    ) -> Array:
+        """Return the pressure per depth [Pa/m] under a flat punch whose footprint is ``contact``.
+
+        It displaces the surface there by 1, to `tolerance`, and is of either sign; elsewhere it is
+        0. What else ``problem`` says of indenter and load does not matter. The framework makes the
+        contact stiffness of it. Here by conjugate gradients (`scipy.sparse.linalg.cg`); a solver
+        that has a preconditioner overrides this.
+        """
+        from scipy.sparse.linalg import LinearOperator, cg
+
+        cells = np.flatnonzero(contact)
+        whole = np.zeros(problem.grid.shape)
+        done = 0
+
+        def displaced(pressure: Array) -> Array:
+            whole.ravel()[cells] = pressure
+            return problem.operator(whole).ravel()[cells]
+
+        def tell(_: Array) -> None:
+            nonlocal done
+            done += 1
+            monitor(done, 1.0)
+
+        operator = LinearOperator((cells.size, cells.size), matvec=displaced, dtype=np.float64)
+        found, _ = cg(operator, np.ones(cells.size), rtol=self.tolerance / 2, callback=tell)
+        whole.ravel()[cells] = found
+        return whole
+
 
 class IterativeSolver(Solver):
     """A solver that is a start, a step and a residual; one loop does the rest."""

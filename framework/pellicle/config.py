@@ -8,140 +8,25 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Collection, Iterable, Mapping, Sized
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar, cast
+from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import Field, model_validator
-from pydantic_core import core_schema
 
 from .components import AreaCorrection, Component, Indenter, Kernel, Output, Solver
-from .errors import ConfigError, Problem, shown
+from .errors import ConfigError
 from .fields import FromRegistry
 from .grid import Grid
+from .loading import Loading
 from .model import Model, paths_relative_to, replaced
 from .plugins import registry
 from .storage import SCHEMA_VERSION
 from .toml import parse_override, read_toml, toml_lines
-from .units import Quantity, ramp
-
-if TYPE_CHECKING:
-    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
-    from pydantic.json_schema import JsonSchemaValue
 
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 DEFAULT_SOLVER = "active_set"
-_MOST_STEPS = 1_000_000
-
-
-@dataclass(frozen=True)
-class _Steps:
-    """Annotation of load steps: one value, a list, or ``{start, stop, num}``."""
-
-    quantity: Quantity
-
-    def __call__(self, given: object) -> tuple[float, ...] | None:
-        if given is None:
-            return None
-        if isinstance(given, Mapping):
-            return self._ramp(given)
-        # Anything with a length but text: lists, tuples, arrays.
-        several = isinstance(given, Sized) and not isinstance(given, str)
-        values = list(cast("Iterable[object]", given)) if several else [given]
-        if not values:
-            raise ValueError("is empty; give at least one load step")
-        return self._all({str(i) if several else "": value for i, value in enumerate(values)})
-
-    def _ramp(self, given: Mapping[Any, Any]) -> tuple[float, ...]:
-        if set(given) != {"start", "stop", "num"}:
-            has = ", ".join(map(str, given)) or "nothing"
-            raise ValueError(f"a ramp that has {has} is not allowed; give start, stop and num")
-        num = given["num"]
-        if not isinstance(num, int) or isinstance(num, bool) or not 2 <= num <= _MOST_STEPS:
-            raise ConfigError(
-                f"{shown(num)} is not allowed; give a whole number of steps, 2 to {_MOST_STEPS}",
-                "num",
-            )
-        start, stop = self._all({end: given[end] for end in ("start", "stop")})
-        return tuple(ramp(start, stop, num))
-
-    def _all(self, given: Mapping[str, object]) -> tuple[float, ...]:
-        """Return every value in SI, or raise with all that are not allowed."""
-        values, problems = [], []
-        for where, value in given.items():
-            try:
-                values.append(self.quantity(value))
-            except ValueError as error:
-                problems.append(Problem(where, str(error)))
-        if problems:
-            raise ConfigError(problems)
-        return tuple(values)
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        return core_schema.no_info_plain_validator_function(self)
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> JsonSchemaValue:
-        one = self.quantity.__get_pydantic_json_schema__(schema, handler)
-        ramp = {
-            "type": "object",
-            "properties": {"start": one, "stop": one, "num": {"type": "integer", "minimum": 2}},
-            "required": ["start", "stop", "num"],
-            "additionalProperties": False,
-        }
-        return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}, ramp]}
-
-
-class Loading(Model):
-    """The load steps: exactly one of depth, force and mean pressure."""
-
-    depth: Annotated[
-        tuple[float, ...] | None,
-        _Steps(Quantity("m", at_least=0)),
-        Field(
-            description="depth of the indenter's lowest point [m] below the undeformed surface, "
-            "or below the mean plane on a periodic grid, unless the kernel is a layer or springs: "
-            "a value, a list or {start, stop, num}"
-        ),
-    ] = None
-    force: Annotated[
-        tuple[float, ...] | None,
-        _Steps(Quantity("N", at_least=0)),
-        Field(description="force on the domain [N]: a value, a list or {start, stop, num}"),
-    ] = None
-    mean_pressure: Annotated[
-        tuple[float, ...] | None,
-        _Steps(Quantity("Pa", at_least=0)),
-        Field(
-            description="force over the area of a periodic domain [Pa]: a value, a list or "
-            "{start, stop, num}"
-        ),
-    ] = None
-
-    @model_validator(mode="after")
-    def _one_prescription(self) -> Self:
-        given = [name for name in Loading.model_fields if getattr(self, name) is not None]
-        if len(given) != 1:
-            what = f"prescribes {' and '.join(given)}" if given else "prescribes nothing"
-            raise ValueError(f"{what}; give exactly one of depth, force, mean_pressure")
-        return self
-
-    @property
-    def prescribed(self) -> Literal["depth", "force", "mean_pressure"]:
-        """The name of what is prescribed."""
-        if self.depth is not None:
-            return "depth"
-        return "force" if self.force is not None else "mean_pressure"
-
-    @property
-    def values(self) -> tuple[float, ...]:
-        """The load steps in order, SI."""
-        return self.depth or self.force or self.mean_pressure or ()
 
 
 class Run(Model):

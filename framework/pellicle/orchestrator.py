@@ -11,26 +11,29 @@ from contextlib import closing
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
 from . import memory
+from .area_search import Reached, reach_area
 from .components import Component, Monitor, Output, Place
 from .config import Run
-from .dataset import step_dataset
+from .dataset import DESCRIPTIONS, step_dataset
 from .errors import ConfigError, ConvergenceWarning
 from .model import Model
 from .operators import Array, Operator, make_operator
 from .plugins import registry
-from .problem import Equilibrium, Problem, measure
+from .problem import Equilibrium, Problem, Stiffness, measure, measure_stiffness
 from .progress import Bar, Progress
-from .result import Result, Solution, Status, Stop
+from .result import Result, Solution, Status
 
 if TYPE_CHECKING:
     import xarray as xr
 
 STANDARD_OUTPUTS = ("hdf5", "csv", "figures")
+# A prescribed contact area that whole cells miss by more than this share is not what was asked.
+_AREA_TOLERANCE = 0.05
 
 
 def run(
@@ -182,12 +185,26 @@ def _problems(run: Run) -> list[Problem]:
     """
     operator = make_operator(run.kernel, run.grid)
     profile = _profile(run)
-    loading = run.loading
-    if loading.prescribed == "depth":
-        _check_depths(loading.values, profile, operator)
-        return [Problem(run.grid, operator, profile, "depth", value) for value in loading.values]
-    area = run.grid.area if loading.prescribed == "mean_pressure" else 1.0
-    return [Problem(run.grid, operator, profile, "force", v * area) for v in loading.values]
+
+    def each(prescribed: Literal["depth", "force"], values: Iterable[float]) -> list[Problem]:
+        return [Problem(run.grid, operator, profile, prescribed, value) for value in values]
+
+    values = run.loading.values
+    match run.loading.prescribed:
+        case "depth":
+            _check_depths(values, profile, operator, "depth")
+            return each("depth", values)
+        case "mean_plane_depth":
+            mean = _mean_plane(run, profile)
+            _check_depths([value - mean for value in values], profile, operator, "mean_plane_depth")
+            return each("depth", [value - mean for value in values])
+        case "force":
+            return each("force", values)
+        case "mean_pressure":
+            return each("force", [value * run.grid.area for value in values])
+    _check_areas(run, profile)
+    # The force is searched for.
+    return each("force", [0.0] * len(values))
 
 
 def _profile(run: Run) -> Array:
@@ -211,19 +228,76 @@ def _profile(run: Run) -> Array:
     return profile
 
 
-def _check_depths(depths: Sequence[float], profile: Array, operator: Operator) -> None:
-    """Refuse a depth against the mean plane that no load reaches."""
-    if operator.fixes_mean:
-        return
-    full = -float(profile.mean())
+def _mean_plane(run: Run, profile: Array) -> float:
+    """Return the height [m] of the indenter's mean plane over its lowest point, ≤ 0."""
+    mean = float(profile.mean())
+    endless = run.grid.boundary == "free" and run.indenter.footprint == "unbounded"
+    if endless or not np.isfinite(mean):
+        raise ConfigError(
+            "is not defined for an indenter that goes on beyond a free domain, or does not fill "
+            "its domain: it has no mean plane; prescribe depth",
+            "loading.mean_plane_depth",
+        )
+    return mean
+
+
+def _check_depths(
+    depths: Sequence[float], profile: Array, operator: Operator, prescribed: str
+) -> None:
+    """Refuse a depth [m] before first touch, or one against the mean plane no load reaches."""
+    mean = float(profile.mean())
+    shift = mean if prescribed == "mean_plane_depth" else 0.0
     for index, depth in enumerate(depths):
-        if depth >= full:
+        field = f"loading.{prescribed}.{index}"
+        if depth < 0:
             raise ConfigError(
-                f"{depth:g} m is beyond full contact: on a periodic grid the depth is measured "
-                f"from the mean plane, and this indenter's is {full:g} m above its lowest point, "
-                "at any load; give less, or prescribe mean_pressure",
-                f"loading.depth.{index}",
+                f"{depth + shift:g} m is before first touch: this indenter's lowest point is "
+                f"{-mean:g} m below its mean plane; give {mean:g} m or more",
+                field,
             )
+        if depth >= -mean and not operator.fixes_mean:
+            raise ConfigError(
+                f"{depth + shift:g} m is beyond full contact: on a periodic grid the depth is "
+                f"measured from the mean plane, and this indenter's is {-mean:g} m above its "
+                "lowest point, at any load; give less, or prescribe mean_pressure",
+                field,
+            )
+
+
+def _areas(run: Run) -> Sequence[float] | None:
+    """Return the contact area [m²] of each load step, None if none is prescribed."""
+    match run.loading.prescribed:
+        case "contact_radius":
+            return [np.pi * radius**2 for radius in run.loading.values]
+        case "contact_area":
+            return run.loading.values
+    return None
+
+
+def _check_areas(run: Run, profile: Array) -> None:
+    """Refuse a contact area that the indenter cannot have on this grid."""
+    cell = run.grid.cell_area
+    there = int(np.count_nonzero(np.isfinite(profile)))
+    first = int(np.count_nonzero(profile == profile.max()))
+    name = run.loading.prescribed
+    unit = DESCRIPTIONS[name][0]
+    for index, (given, area) in enumerate(zip(run.loading.values, _areas(run) or (), strict=True)):
+        whose = "the domain" if there == profile.size else "the indenter"
+        problem = ""
+        if area > (there + 0.5) * cell:
+            problem = f"more than {whose} has, {there * cell:g} m²; give less"
+        elif area > 0 and first == there:
+            problem = (
+                f"not to be had: the indenter is flat, and all its {there * cell:g} m² touch at "
+                "once, under any load; prescribe depth or force"
+            )
+        elif 0 < area < (first - 0.5) * cell:
+            problem = (
+                f"less than the {first} cells of {cell:g} m² that touch first, all at once; give "
+                "more, or use more points"
+            )
+        if problem:
+            raise ConfigError(f"{given:g} {unit} is {problem}", f"loading.{name}.{index}")
 
 
 def _solve_steps(
@@ -237,36 +311,75 @@ def _solve_steps(
         pressure = before["pressure"].values[0]
     for index, problem in enumerate(problems[first:], first):
         started = time.perf_counter()
+        monitor = bar.step(index)
         applied = problem.operator.applications
-        solution = _solve(run, problem, pressure, bar.step(index))
+        step = _solve(run, index, problem, pressure, monitor)
         used = problem.operator.applications - applied
-        pressure = solution.pressure
-        found = measure(problem, pressure)
-        status, message = _judge(run, found, solution.stop, index)
-        areas = {
-            f"contact_area_{correction.type}": correction.area(  # type: ignore[attr-defined]
-                found.contact, run.grid.spacing
-            )
-            for correction in run.corrections
-        }
+        pressure = step.solution.pressure
+        found = measure(step.problem, pressure)
+        stiffness = _stiffness(run, problem, found, monitor)
+        status, message = _judge(run, index, found, step, stiffness)
         scalars = {
-            **areas,
-            "iterations": solution.iterations,
+            **_asked(run, problem, found, step, stiffness),
+            "iterations": step.solution.iterations,
             "operator_applications": used,
-            "converged": status is Status.CONVERGED,
+            "converged": status in (Status.CONVERGED, Status.NEAREST_AREA),
             "status": message,
             "wall_time": time.perf_counter() - started,
         }
         yield step_dataset(run.grid, index, found, scalars).assign_attrs(origin)
 
 
-def _solve(run: Run, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
-    if not problem.touches:
-        return Solution(np.zeros(run.grid.shape), 0)
-    return run.solver.solve(problem, start, monitor)
+def _solve(
+    run: Run, index: int, problem: Problem, start: Array | None, monitor: Monitor
+) -> Reached:
+    areas = _areas(run)
+    if areas and areas[index] > 0:
+        return reach_area(problem, areas[index], run.solver, start, monitor)
+    solution = Solution(np.zeros(run.grid.shape), 0)
+    if problem.touches:
+        solution = run.solver.solve(problem, start, monitor)
+    return Reached(problem, solution, 0.0, "met")
 
 
-def _judge(run: Run, found: Equilibrium, stop: Stop, index: int) -> tuple[Status, str]:
+def _stiffness(
+    run: Run, problem: Problem, found: Equilibrium, monitor: Monitor
+) -> Stiffness | None:
+    """Return the contact stiffness if it is asked for."""
+    if not run.loading.stiffness:
+        return None
+    contact = found.contact
+    if problem.is_rigid(contact):
+        return Stiffness(np.inf, 0.0)
+    punch = np.zeros(run.grid.shape)
+    if contact.any():
+        punch = run.solver.punch_pressure(problem, contact, monitor)
+    return measure_stiffness(problem, contact, punch)
+
+
+def _asked(
+    run: Run, problem: Problem, found: Equilibrium, step: Reached, stiffness: Stiffness | None
+) -> dict[str, float]:
+    """Return the numbers that are there because the run asks for them."""
+    area = np.count_nonzero(found.contact) * run.grid.cell_area
+    loading = {
+        "mean_plane_depth": found.depth + float(problem.profile.mean()),
+        "contact_radius": float(np.sqrt(area / np.pi)),
+        "residual_area": step.missed,
+        "stiffness": stiffness.value if stiffness else np.nan,
+    }
+    corrected = {
+        f"contact_area_{correction.type}": correction.area(  # type: ignore[attr-defined]
+            found.contact, run.grid.spacing
+        )
+        for correction in run.corrections
+    }
+    return corrected | {name: loading[name] for name in loading if name in run.loading.brings}
+
+
+def _judge(
+    run: Run, index: int, found: Equilibrium, step: Reached, stiffness: Stiffness | None
+) -> tuple[Status, str]:
     """Return the status of a step by its measured residuals, and what the user is told."""
     tolerance = run.solver.tolerance
     if not np.isfinite(found.force):
@@ -279,19 +392,26 @@ def _judge(run: Run, found: Equilibrium, stop: Stop, index: int) -> tuple[Status
         (Status.CONTACT_RESIDUAL, found.residual_contact),
         (Status.PENETRATION, found.residual_penetration),
         (Status.COMPLEMENTARITY, found.residual_complementarity),
+        (Status.STIFFNESS, stiffness.residual if stiffness else 0.0),
     ):
         if not residual <= tolerance:
             return status, status.value.format(
-                measure=residual, tolerance=tolerance, remedy=stop.value
+                measure=residual, tolerance=tolerance, remedy=step.solution.stop.value
             )
     if run.indenter.footprint == "unbounded" and _touches_edge(found.contact):
         nx, ny = run.grid.size
-        value = run.loading.values[index]
-        unit = {"depth": "m", "force": "N", "mean_pressure": "Pa"}[run.loading.prescribed]
+        value, name = run.loading.values[index], run.loading.prescribed
         return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
             size=f"{nx:g} × {ny:g} m",
-            prescribed=f"loading.{run.loading.prescribed} = {value:g} {unit}",
+            prescribed=f"loading.{name} = {value:g} {DESCRIPTIONS[name][0]}",
         )
+    if step.how == "not found" or step.missed > _AREA_TOLERANCE:
+        remedy = "use more points" if step.how == "nearest" else "no load was found that brings it"
+        return Status.AREA, Status.AREA.value.format(
+            measure=step.missed, tolerance=_AREA_TOLERANCE, remedy=remedy
+        )
+    if step.how == "nearest":
+        return Status.NEAREST_AREA, Status.NEAREST_AREA.value.format(measure=step.missed)
     return Status.CONVERGED, Status.CONVERGED.value
 
 

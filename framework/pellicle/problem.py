@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import isfinite
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -44,6 +44,10 @@ class Problem:
         With a force prescribed it is that of no mean gap there (Polonsky & Keer 1999).
         """
         return self.value if self.prescribed == "depth" else float(aloft.mean())
+
+    def is_rigid(self, contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> bool:
+        """Whether no force more on ``contact`` makes it sink: full contact that keeps its mean."""
+        return bool(contact.all()) and not self.operator.fixes_mean
 
     def coarsened(self) -> Problem:
         """Return the same problem with half as many cells each way.
@@ -130,3 +134,33 @@ def height_scale(
         return in_contact
     indenter = profile[np.isfinite(profile)]
     return abs(depth) or float(np.ptp(indenter)) or 1.0
+
+
+class Stiffness(NamedTuple):
+    """The stiffness of a contact and how well it is known."""
+
+    value: float
+    """dF/dδ [N/m] at the contact as it is."""
+    residual: float
+    """Root mean square of the displacement missed in contact, over that prescribed."""
+
+
+def measure_stiffness(
+    problem: Problem, contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]], pressure: Array
+) -> Stiffness:
+    """Return the contact stiffness from the pressure per depth [Pa/m] of a flat punch.
+
+    Its footprint is ``contact``: where the contact grows with the depth it does so without
+    pressure, so dF/dδ is that of a flat punch of the same contact (Pharr, Oliver & Brotzen 1992 for
+    axisymmetric indenters). By one fresh application of the operator. The value
+    is 2 Σq − Σq·Aq, which is stationary at the solution: its error is quadratic in that of q.
+    """
+    if not contact.any():
+        return Stiffness(0.0, 0.0)
+    response = problem.operator(pressure)
+    missed = 1.0 - response[contact]
+    total = float(pressure.sum()) + float((pressure[contact] * missed).sum())
+    return Stiffness(
+        value=total * problem.grid.cell_area,
+        residual=float(np.sqrt((missed**2).mean())),
+    )

@@ -113,21 +113,25 @@ class Progress:
 
     def _show(self, said: Said) -> None:
         if self._bar is not None:
-            _update(self._bar, self._task, "", said)
+            self._bar.update(
+                self._task,
+                completed=said.done,
+                description=f"step {said.step + 1}/{said.steps}",
+                said=f"iteration {said.iteration} residual {said.excess:.1e} × tolerance",
+            )
 
 
 class StudyProgress:
     """Shows a bar for a study and one for each run at work; without a terminal, a line a run.
 
     Ctrl-C takes effect when a run next says something. Nothing is shown when not ``enabled``.
-    ``what`` is what is counted.
     """
 
-    def __init__(self, total: int, done: int, enabled: bool, what: str = "runs") -> None:
-        self._total, self._done, self._failed, self._what = total, done, 0, what
+    def __init__(self, total: int, done: int, enabled: bool) -> None:
+        self._total, self._done, self._failed = total, done, 0
         self._console = _stderr() if enabled else None
         is_terminal = self._console is not None and self._console.is_terminal
-        self._bar = _make_bar(self._console) if self._console and is_terminal else None
+        self._bar = _make_study_bar(self._console) if self._console and is_terminal else None
         self._running: dict[str, tuple[rich.progress.TaskID, float]] = {}
         self._interrupt = _Interrupt()
 
@@ -136,7 +140,7 @@ class StudyProgress:
         if self._bar is not None:
             self._bar.start()
             self._all = self._bar.add_task(
-                "study", total=float(self._total), completed=self._done, said=self._count()
+                "runs", total=float(self._total), completed=self._done, said=self._count()
             )
         return self
 
@@ -158,11 +162,12 @@ class StudyProgress:
         if self._bar is None:
             return
         if task.name not in self._running:
-            shown = self._bar.add_task("", total=float(said.steps), said="")
+            shown = self._bar.add_task(f"  {task.name}", total=float(said.steps), said="")
             self._running[task.name] = shown, 0.0
         shown, _ = self._running[task.name]
         self._running[task.name] = shown, said.done / said.steps
-        _update(self._bar, shown, f"  {task.name}: ", said)
+        where = f"step {said.step + 1}/{said.steps} iteration {said.iteration}"
+        self._bar.update(shown, completed=said.done, said=where)
         self._advance()
 
     def finished(self, task: Task, verdict: str, failed: bool) -> None:
@@ -186,8 +191,7 @@ class StudyProgress:
 
     def _count(self) -> str:
         left = self._total - self._done
-        done = self._done - self._failed
-        return f"{done} {self._what} done, {self._failed} failed, {left} left"
+        return f"{self._done - self._failed} done, {self._failed} failed, {left} left"
 
 
 def _monitor(index: int, steps: int, tell: Callable[[Said], None]) -> Monitor:
@@ -239,15 +243,6 @@ class _Interrupt:
             raise KeyboardInterrupt
 
 
-def _update(bar: rich.progress.Progress, task: rich.progress.TaskID, name: str, said: Said) -> None:
-    bar.update(
-        task,
-        completed=said.done,
-        description=f"{name}step {said.step + 1}/{said.steps}",
-        said=f"iteration {said.iteration} residual {said.excess:.1e} × tolerance",
-    )
-
-
 def _stderr() -> rich.console.Console:
     import rich.console
 
@@ -260,23 +255,43 @@ def _terminal() -> rich.console.Console | None:
 
 
 def _make_bar(console: rich.console.Console) -> rich.progress.Progress:
-    from rich.progress import (
-        BarColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
         TextColumn("{task.fields[said]}"),
         TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        *_time_left("left"),
+        console=console,
+        transient=True,
+    )
+
+
+def _make_study_bar(console: rich.console.Console) -> rich.progress.Progress:
+    from rich.progress import BarColumn, Progress, TextColumn
+    from rich.table import Column
+    from rich.text import Text
+
+    class Cut(TextColumn):
+        """Gives way to the other columns where the terminal is too narrow for all."""
+
+        def render(self, task: rich.progress.Task) -> Text:
+            return Text(task.description, no_wrap=True, overflow="ellipsis")
+
+    return Progress(
+        Cut("", table_column=Column(no_wrap=False)),
+        BarColumn(bar_width=12),
+        TextColumn("{task.fields[said]}", markup=False),
+        *_time_left("time left"),
         console=console,
         transient=True,
         # A study's runs take minutes each: a speed of the last half minute means nothing.
         speed_estimate_period=3600,
     )
+
+
+def _time_left(label: str) -> tuple[rich.progress.ProgressColumn, rich.progress.ProgressColumn]:
+    from rich.progress import TextColumn, TimeRemainingColumn
+
+    return TextColumn(label), TimeRemainingColumn()

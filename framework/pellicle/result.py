@@ -21,6 +21,10 @@ class Status(Enum):
     """How a step ended; the value is what the user is told."""
 
     CONVERGED = "converged"
+    NEAREST_AREA = (
+        "converged; the contact area misses the prescribed one by {measure:.1e}, and no load "
+        "brings a nearer number of whole cells: more points do"
+    )
     NOT_FINITE = (
         "the pressure became NaN or infinite; check the kernel's compliance and the profile for "
         "extreme values"
@@ -39,6 +43,13 @@ class Status(Enum):
         "{tolerance:.1e}; {remedy}"
     )
     LOAD = "the force misses the prescribed one by {measure:.1e}, over {tolerance:.1e}; {remedy}"
+    AREA = (
+        "the contact area misses the prescribed one by {measure:.1e}, over {tolerance:g}; {remedy}"
+    )
+    STIFFNESS = (
+        "the contact stiffness is not known: its displacement misses by {measure:.1e}, over the "
+        "tolerance {tolerance:.1e}; loosen solver.tolerance, or leave loading.stiffness out"
+    )
     CONTACT_AT_EDGE = (
         "the contact reaches the edge of the domain, where the indenter does not end, so force "
         "and area are wrong; enlarge grid.size = {size} or prescribe less than {prescribed}"

@@ -4,14 +4,16 @@ A file is never changed in place: each version is written aside, flushed to disk
 that whatever ends the process, every name holds a whole file. Rewriting a file for each step would
 take a time quadratic in the steps, so new ones wait in small files beside it, its tails, until they
 are as many as its own; then, and at the end, they are joined to it. Reading joins them too.
+
+HDF5 writes to memory, and what it made is copied to disk: on a full disk HDF5 ends the process.
 """
 
 from __future__ import annotations
 
 import glob
+import io
 import os
 import re
-import shutil
 import socket
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,6 +21,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from . import netcdf
 from .errors import StorageError
 
 if TYPE_CHECKING:
@@ -39,17 +42,11 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     StorageError
         The file cannot be written.
     """
-    # Fields compress two- to tenfold at the lowest level; higher ones only cost time.
-    packed = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
-    encoding: dict[Any, Any] = {
-        name: packed for name, variable in dataset.data_vars.items() if "x" in variable.dims
-    }
-    # Only what may grow needs a dimension that can: h5netcdf is slow with these.
-    grows = ["step"] if "x" in dataset.dims and path.suffix != ".tail" else []
+    fields = [str(name) for name, each in dataset.data_vars.items() if "x" in each.dims]
+    grows = ["step"] if fields and path.suffix != ".tail" else []
     with aside(path) as part:
-        dataset.assign_attrs(schema_version=SCHEMA_VERSION).to_netcdf(
-            part, engine="h5netcdf", unlimited_dims=grows, encoding=encoding
-        )
+        described = dataset.assign_attrs(schema_version=SCHEMA_VERSION)
+        part.write_bytes(netcdf.image(described, grows=grows, packed=fields))
         # While the old file still has the name: its tails must never continue the new one.
         for tail in _tails(path):
             tail.unlink()
@@ -265,14 +262,15 @@ def _join(path: Path, tails: Sequence[Path], *more: xr.Dataset) -> None:
     import h5py
 
     with aside(path) as part:
-        shutil.copyfile(path, part)
-        with h5py.File(part, "r+") as file:
+        image = io.BytesIO(path.read_bytes())
+        with h5py.File(image, "r+") as file:
             for tail in tails:
                 with _readable(tail), h5py.File(tail) as source:
                     _extend(file, {name: source[name][:] for name in file if _grows(file[name])})
             for dataset in more:
                 values = {str(name): each.values for name, each in dataset.variables.items()}
                 _extend(file, {name: values[name] for name in file if _grows(file[name])})
+        part.write_bytes(image.getbuffer())
     with reported(path):
         for tail in _tails(path):
             tail.unlink()

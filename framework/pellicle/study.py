@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import tempfile
 import time
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
+_SHOWN = ("depth", "force", "contact_area", "contact_fraction")
+"""Numbers of the last step that the list of runs has, besides derived ones."""
 _TABLE_SHARE = 0.05
 
 
@@ -286,11 +289,12 @@ def is_table(path: Path) -> bool:
 def rows(made: xr.Dataset) -> list[dict[str, str]]:
     """Return a line for each run of a table: parameters, last step, and how it ended."""
     found = []
+    derived = json.loads(made.attrs["configuration"])["study"].get("derived", {})
     for row in each_run(made):
         done, wanted, verdict = standing(row)
         last = {
             name: f"{row[name].values[done - 1]:.6g}" if done and name in row else ""
-            for name in ("depth", "force", "contact_area", "contact_fraction")
+            for name in (*_SHOWN, *derived)
         }
         found.append(
             {
@@ -315,7 +319,9 @@ def standing(row: xr.Dataset) -> tuple[int, int, str]:
 def reasons(made: xr.Dataset) -> Iterator[str]:
     """Yield a line for each run of a table that is not as it should be: which, and why."""
     for row in each_run(made):
-        bad = [s for s in map(str, row["status"].values) if s not in ("", "converged")]
+        bad = [
+            s for s in map(str, row["status"].values) if table.verdict(s) not in ("", "converged")
+        ]
         if bad and bad[0] != table.NOT_RUN:
             names = (name for name in row.coords if name != "step")
             where = ", ".join(f"{name} = {_text(row[name].item())}" for name in names)

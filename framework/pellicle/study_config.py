@@ -20,13 +20,15 @@ from .dataset import DESCRIPTIONS
 from .errors import ConfigError, Problem, shown
 from .expression import evaluate
 from .fields import FromRegistry, json_schema
+from .loading import ON_DEMAND
 from .model import Model, paths_relative_to, replaced
 from .plugins import registry
 from .toml import toml_lines
-from .units import quantity_of
+from .units import quantity_of, split
 
 DEFAULT_EXECUTOR = "serial"
 _BYTES_PER_RUN = 40_000
+_IN_PART = "InPart"
 
 Axes = Mapping[str, axes.Values]
 
@@ -63,17 +65,47 @@ def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON schema of a run or study file, with every component that is installed."""
+    """Return the JSON schema of a run or study file, with every component that is installed.
+
+    In a study what varies may be left out, so that nothing but the type of a component is required.
+    """
     run, study = json_schema(Run), json_schema(Study)
-    definitions = run.pop("$defs", {}) | study.pop("$defs", {})
+    definitions = run.pop("$defs") | study.pop("$defs")
     study["properties"].pop("run")
     study["required"] = []
-    run["properties"]["study"] = study
+    file = _in_part(run)
+    file["properties"]["study"] = study
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **run,
-        "$defs": definitions,
+        **file,
+        "if": {"required": ["study"]},
+        "else": run,
+        "$defs": definitions
+        | {f"{name}{_IN_PART}": _in_part(each) for name, each in definitions.items()},
     }
+
+
+def _in_part(schema: Any) -> Any:
+    """Return a schema that also accepts what lacks fields."""
+    if isinstance(schema, list):
+        return [_in_part(each) for each in schema]
+    if not isinstance(schema, dict):
+        return schema
+    made = {name: _in_part(each) for name, each in schema.items() if not _of_presence(each)}
+    if isinstance(required := schema.get("required"), list):
+        made["required"] = [name for name in required if name == "type"]
+    if isinstance(ref := schema.get("$ref"), str):
+        made["$ref"] = f"{ref}{_IN_PART}"
+    return made
+
+
+def _of_presence(choices: Any) -> bool:
+    """Whether these are the choices of fields of which one must be there, as of moduli."""
+    return (
+        isinstance(choices, list)
+        and bool(choices)
+        and all(isinstance(each, dict) and each.keys() == {"required"} for each in choices)
+    )
 
 
 def _as_table(given: object) -> object:
@@ -300,7 +332,8 @@ class Study(Model):
     def _check_derived(self) -> None:
         """Refuse expressions that name what a table will not have, before anything is run."""
         run = self.points[0].run
-        there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - {"status"}
+        absent = {"status"} | (ON_DEMAND - run.loading.brings)
+        there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - absent
         there |= {f"contact_area_{getattr(each, 'type', '')}" for each in run.corrections}
         there |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         problems: list[Problem] = []
@@ -393,6 +426,8 @@ def _short(value: object) -> str:
     if isinstance(value, Mapping):
         return str(value.get("type", "{…}"))
     text = value if isinstance(value, str) else json.dumps(value, default=str)
+    if (found := split(text)) is not None:
+        text = f"{found[0]:.6g} {found[1]}".rstrip()
     return text if len(text) <= 30 else f"{text[:29]}…"
 
 
@@ -453,4 +488,5 @@ def _unit_of(run: Run, key: str) -> str | None:
     owner = _reach(run, ".".join(path)) if path else run
     info = type(owner).model_fields.get(last) if isinstance(owner, Model) else None
     quantity = quantity_of(info) if info else None
-    return quantity.unit if quantity else None
+    # As datasets write areas, not as units are multiplied.
+    return quantity.unit.replace("m**2", "m2") if quantity else None

@@ -13,6 +13,7 @@ from . import storage
 from .columns import FIRST_RUN, derive
 from .dataset import header
 from .orchestrator import now_with
+from .result import Status
 from .study_config import Study
 
 if TYPE_CHECKING:
@@ -95,8 +96,10 @@ def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any,
 
 def verdict(status: str) -> str:
     """Return one word for the status of a step in a table."""
-    words = {"": "", "converged": "converged", NOT_RUN: NOT_RUN}
-    return words.get(status, "failed" if status.startswith(FAILED) else "NOT CONVERGED")
+    if status in ("", NOT_RUN):
+        return status
+    begins = {Status.CONVERGED.value: "converged", FAILED: "failed"}
+    return next((begins[head] for head in begins if status.startswith(head)), "NOT CONVERGED")
 
 
 FAILED = "failed: "

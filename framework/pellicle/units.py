@@ -31,6 +31,7 @@ _EXAMPLES = {
     "N*m": "1 pN*m",
     "Pa/m": "1 kPa/mm",
     "N": "2 uN",
+    "m**2": "0.01 mm**2",
     "rad": "70 degree",
 }
 _NUMBER_AND_UNIT = re.compile(

@@ -173,6 +173,9 @@ def test_component_of_another_family() -> None:
         (np.array([1.0, 2.0]), [1.0, 2.0]),
         ({"start": 0, "stop": "1 m", "num": 5}, [0.0, 0.25, 0.5, 0.75, 1.0]),
         ({"start": 1, "stop": 0, "num": 2}, [1.0, 0.0]),
+        ({"start": 1, "stop": "100 m", "num": 3, "spacing": "log"}, [1.0, 10.0, 100.0]),
+        ({"start": 0, "stop": 2, "num": 3, "back": True}, [0.0, 1.0, 2.0, 1.0, 0.0]),
+        ({"start": 0, "stop": 2, "num": 3, "back": False}, [0.0, 1.0, 2.0]),
     ],
 )
 def test_load_steps(given: object, expected: list[float]) -> None:
@@ -180,6 +183,30 @@ def test_load_steps(given: object, expected: list[float]) -> None:
     loading = pl.Loading(depth=given)
     assert loading.values == pytest.approx(expected, rel=1e-14)
     assert loading.prescribed == "depth"
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "value"),
+    [
+        ("depth", "1 um", 1e-6),
+        ("force", "1 uN", 1e-6),
+        ("mean_pressure", "1 Pa", 1.0),
+        ("mean_plane_depth", "-1 um", -1e-6),
+        ("contact_radius", "1 um", 1e-6),
+        ("contact_area", "1 mm^2", 1e-6),
+    ],
+)
+def test_what_is_prescribed(name: str, given: str, value: float) -> None:
+    """Each quantity has its unit, and is what the run as a file and the JSON schema say."""
+    grid = BASE["grid"] | {"boundary": "periodic"}
+    run = pl.Run(**(BASE | {"grid": grid, "loading": {name: [given], "stiffness": True}}))
+    assert (run.loading.prescribed, run.loading.values) == (name, (value,))
+    assert pl.Run.from_json(run.to_json()) == run
+    Draft202012Validator(pl.schema()).validate(json.loads(run.to_json()))
+    ramp = {"start": given, "stop": 1.0, "num": 3, "back": True, "spacing": "linear"}
+    Draft202012Validator(pl.schema()).validate(
+        json.loads(run.to_json()) | {"loading": {name: ramp}}
+    )
 
 
 def test_ramp_ends_exactly() -> None:

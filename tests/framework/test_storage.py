@@ -161,6 +161,13 @@ def test_tails(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         assert storage.scalars(path).sizes == {"step": index + 1}
     assert joins == [0, 1, 3, 7]
     assert storage.field(path, "pressure", 18, (2, 3)) == steps(18)["pressure"].values[0, 2, 3]
+    said, (pressure,) = storage.fields(path, ["pressure"], 18)
+    assert (pressure == steps(18)["pressure"].values[0]).all()
+    assert ATTRIBUTES.items() <= said.items()
+    with pytest.raises(StorageError, match="not hold that many steps"):
+        storage.fields(path, ["pressure"], 99)
+    with pytest.raises(StorageError, match="not a readable result"):
+        storage.fields(path, ["nonsense"], 0)
     whole = xr.concat([steps(index) for index in range(20)], "step", data_vars="all")
     xr.testing.assert_identical(storage.read(path), whole)
     storage.close(path)

@@ -132,6 +132,26 @@ def test_units() -> None:
     assert units == {TENSION: "N/m", "grid.size": "m", "loading.depth": "m"}
 
 
+def test_areas_along_an_axis() -> None:
+    """The areas of an axis have the unit that those of a result have."""
+    made = study({"loading": [{"contact_radius": 1e-5}]})
+    assert made.points[0].run.loading.prescribed == "contact_radius"
+    loading = RUN | {"loading": {"contact_area": 1e-9}}
+    made = Study(run=loading, vary={"loading.contact_area": ["1e-3 mm**2", 2e-9]})
+    ((_, coordinate),) = made.coordinates().values()
+    assert coordinate.values.tolist() == [1e-9, 2e-9]
+    assert coordinate.attributes["units"] == "m2"
+
+
+def test_derived_names_what_the_loading_brings() -> None:
+    """An expression may name the stiffness where it is asked for, and only there."""
+    derived = {"reduced": "stiffness / contact_radius"}
+    asked = RUN | {"loading": {"contact_radius": 1e-5, "stiffness": True}}
+    assert Study(run=asked, vary={TENSION: [0, 1]}, derived=derived).derived == derived
+    with pytest.raises(pl.ConfigError, match=r"derived\.reduced: .*stiffness"):
+        Study(run=RUN, vary={TENSION: [0, 1]}, derived=derived)
+
+
 def test_axes_without_quotes(tmp_path: Path) -> None:
     """A dotted key without quotes makes nested tables in TOML, and means the same."""
     text = pl.Run(**RUN).to_toml() + "[study.vary]\nkernel.tension = [0, 1]\nkernel.{} = [1e4, 2e4]"
@@ -311,6 +331,7 @@ CHANGES: dict[str, list[Any]] = {
     "kernel.reduced_modulus": [1.00000001e4],
     "indenter.radius": [2e-3],
     "loading.depth": [[5e-6], [1e-5, 5e-6], [5e-6, 1e-5, 1.1e-5]],
+    "loading.stiffness": [True],
     "solver.tolerance": [1e-7],
     "corrections": [[]],
 }

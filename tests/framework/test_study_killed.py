@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import xarray as xr
@@ -19,7 +20,7 @@ FILE = """
 title = "18 runs of 3 steps"
 outputs = []
 [grid]
-points = 48
+points = 32
 size = "0.5 mm"
 [kernel]
 type = "tensed_membrane"
@@ -35,7 +36,7 @@ executor = { type = "processes", workers = 2 }
 kernel.tension = { start = "0.1 N/m", stop = "1 N/m", num = 6, spacing = "log" }
 indenter.radius = ["1 mm", "1.2 mm", "1.4 mm"]
 """
-KILLS = 4
+KILLS = 8
 TIMES = {"wall_time"}
 
 
@@ -45,13 +46,13 @@ def _start(folder: Path) -> subprocess.Popen[bytes]:
     return subprocess.Popen(command, cwd=folder, env=environment)
 
 
-def _marks(runs: Path) -> int:
-    """Return how many times a file of a run has been begun or replaced, as far as one can see."""
-    return len({(path.name, path.stat().st_size) for path in _present(runs)})
-
-
-def _present(runs: Path) -> list[Path]:
-    return [path for path in runs.glob("*.h5") if path.exists()]
+def _states(runs: Path) -> set[tuple[str, int]]:
+    """Return the state of each file of a run, which differs from step to step."""
+    found = set()
+    for path in runs.glob("*.h5"):
+        with suppress(FileNotFoundError):
+            found.add((path.name, path.stat().st_size))
+    return found
 
 
 def test_killed_and_restarted(tmp_path: Path) -> None:
@@ -63,8 +64,10 @@ def test_killed_and_restarted(tmp_path: Path) -> None:
     for kill in range(KILLS):
         process = _start(tmp_path)
         # Counted in files, not in seconds: a slow machine must be killed in mid-study too.
-        wanted = _marks(runs) + chance.randrange(1, 5)
-        while process.poll() is None and _marks(runs) < wanted:
+        seen = _states(runs)
+        wanted = len(seen) + chance.randrange(1, 4)
+        while process.poll() is None and len(seen) < wanted:
+            seen |= _states(runs)
             time.sleep(0.002)
         time.sleep(chance.random() * 0.05)
         process.send_signal(signal.SIGKILL)

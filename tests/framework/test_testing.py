@@ -490,6 +490,20 @@ class Miscounting(Solver):
         return replace(found, iterations=found.iterations + 1)
 
 
+class Round(Solver):
+    """Takes every punch for a round one."""
+
+    def punch_pressure(self, problem: Any, contact: Any, monitor: Any) -> Any:
+        return 1.01 * super().punch_pressure(problem, contact, monitor)
+
+
+class Wide(Solver):
+    """Presses off the contact."""
+
+    def punch_pressure(self, problem: Any, contact: Any, monitor: Any) -> Any:
+        return super().punch_pressure(problem, contact, monitor) + 1e-3
+
+
 SOLVERS = {
     Sucking: "pressure_is_nowhere_negative",
     Lying: "done_means_solved",
@@ -500,6 +514,8 @@ SOLVERS = {
     Absolute: "pressure_is_proportional_to_the_stiffness",
     Silent: "progress_is_told",
     Miscounting: "progress_is_told",
+    Round: "punch_is_flat",
+    Wide: "punch_is_flat",
 }
 
 

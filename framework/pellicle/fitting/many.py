@@ -189,7 +189,7 @@ def carry_out(
     files: tuple[Path, ...] = ()
     try:
         with (
-            StudyProgress(len(sources), len(sources) - len(tasks), progress, "curves") as bar,
+            StudyProgress(len(sources), len(sources) - len(tasks), progress) as bar,
             closing(cast("Generator[Any]", carrier.map(work, tasks, bar.report))) as ends,
         ):
             for task, outcome in ends:

@@ -84,6 +84,8 @@ class Maps:
     frames: Sequence[Frame]
     begin: int = 0
     """The frame that is shown at first."""
+    shared: bool = True
+    """Whether the colours go over the values of all frames, not over those of each."""
 
     @property
     def remark(self) -> str:
@@ -118,6 +120,7 @@ class Maps:
             )
         return {
             "unit": length_unit,
+            "shared": self.shared,
             "fields": fields,
             "frames": [
                 {

@@ -86,10 +86,10 @@ function makeMaps(figure, data) {
     paint();
   }
 
-  // The range of the colours: of all frames, or of the pixels in view.
+  // The range of the colours: of all frames, of this one, or of the pixels in view.
   function range(number) {
-    const field = data.fields[number];
-    if (!alone.checked) return [field.low, field.high];
+    const { low: least, high: most } = (data.shared ? data : frame).fields[number];
+    if (!alone.checked) return [least, most];
     const [nx, ny] = frame.shape;
     const cell = (at, axis) => Math.floor((at + frame.size[axis] / 2) / frame.pixel[axis]);
     let low = Infinity, high = -Infinity;
@@ -99,7 +99,7 @@ function makeMaps(figure, data) {
         if (value < low) low = value;
         if (value > high) high = value;
       }
-    return low <= high ? [low, high] : [field.low, field.high];
+    return low <= high ? [low, high] : [least, most];
   }
 
   // How far up the colours a value is, and where the colour of such a share begins.

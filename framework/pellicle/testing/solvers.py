@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.components import Solver
 from pellicle.config import Run
 from pellicle.operators import make_operator
-from pellicle.problem import Problem, measure
+from pellicle.problem import Problem, measure, measure_stiffness
 from pellicle.result import Stop
 
 from .component import check
@@ -58,7 +58,8 @@ def check_solver(solver: Solver) -> None:
     Beside what all components keep: paraboloid, punch and rough surface, on free and periodic
     grids, with depth, force and mean pressure prescribed, are solved to the solver's
     ``tolerance``, with pressure ≥ 0; the answer depends on neither the step before nor the unit of
-    stiffness; arguments are as they were; and progress is told.
+    stiffness; arguments are as they were; progress is told; and ``punch_pressure`` is that of a
+    flat punch.
 
     Raises
     ------
@@ -194,10 +195,26 @@ def progress_is_told(solver: Solver) -> None:
         require(told[-1][1] <= 1, f"the last residual told is {told[-1][1]:g} of the tolerance")
 
 
+def punch_is_flat(solver: Solver) -> None:
+    """punch_pressure() displaces the contact by 1 and acts nowhere else."""
+    for problem in _problems():
+        contact = problem.profile > 0.1 * problem.profile.min()
+        pressure = solver.punch_pressure(problem, contact, _ignore)
+        require(np.shape(pressure) == problem.grid.shape, f"shape {np.shape(pressure)}")
+        require(not pressure[~contact].any(), "punch_pressure() presses off the contact")
+        require(
+            (residual := measure_stiffness(problem, contact, pressure).residual)
+            <= solver.tolerance,
+            f"punch_pressure() misses the displacement 1 by {residual:.1e}, over the tolerance "
+            f"{solver.tolerance:.1e}",
+        )
+
+
 RULES: list[Rule] = [
     pressure_is_nowhere_negative,
     done_means_solved,
     start_belongs_to_the_caller,
+    punch_is_flat,
     what_is_prescribed_is_solved,
     start_does_not_matter,
     pressure_is_proportional_to_the_stiffness,

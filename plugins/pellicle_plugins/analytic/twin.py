@@ -29,7 +29,7 @@ _LINE = 401
 
 
 def contact(run: xr.Dataset, step: int) -> AxisymmetricContact | None:
-    """Return the contact of a load step at its prescribed depth or force; None at zero.
+    """Return the contact of a load step, by what is prescribed; None where that is 0.
 
     Raises
     ------
@@ -57,8 +57,13 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
     indenter = _INDENTERS[shape.pop("type")](**shape)
     modulus: float = run.kernel.reduced_modulus  # type: ignore[attr-defined]
     tension = kernel.get("tension", 0.0)
-    if run.loading.prescribed == "depth":
-        return indent(indenter, modulus, tension, depth=value)
+    match run.loading.prescribed:
+        case "depth":
+            return indent(indenter, modulus, tension, depth=value)
+        case "contact_radius":
+            return indent(indenter, modulus, tension, contact_radius=value)
+        case "contact_area":
+            return indent(indenter, modulus, tension, contact_radius=float(np.sqrt(value / np.pi)))
     return indent(indenter, modulus, tension, force=value)
 
 

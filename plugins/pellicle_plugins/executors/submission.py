@@ -6,7 +6,7 @@ import logging
 import pickle
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from queue import Empty, SimpleQueue
 from types import TracebackType
@@ -24,6 +24,21 @@ from .attempt import attempt_far, pack
 
 _LOOK_EVERY = 2.0
 """Time without news after which we look whether there are workers [s]."""
+_RESTARTS = 3
+"""Times that we start workers in place of those that dask has given up, before we do too."""
+_START_WITHIN = 30.0
+"""Time that dask has to start a worker again [s]."""
+
+
+class _Local(LocalCluster):
+    """A cluster on this machine that can lose a worker before it has heard of it.
+
+    dask would stop listening to its scheduler over it, and raise when it closes.
+    """
+
+    def _update_worker_status(self, op: str, msg: Any) -> None:
+        with suppress(KeyError):
+            super()._update_worker_status(op, msg)  # type: ignore[no-untyped-call]
 
 
 @contextmanager
@@ -33,7 +48,7 @@ def cluster(address: str | None, workers: int | None, threads: int) -> Iterator[
     Raises
     ------
     ConfigError
-        No scheduler answers.
+        No scheduler answers, or none can be started.
     """
     if address is not None:
         try:
@@ -48,17 +63,27 @@ def cluster(address: str | None, workers: int | None, threads: int) -> Iterator[
             yield client
         return
     with (
-        LocalCluster(
-            n_workers=workers or max(1, CPU_COUNT // threads),
+        _started_here(workers or max(1, CPU_COUNT // threads)) as ours,
+        Client(ours, set_as_default=False) as client,
+    ):
+        yield client
+
+
+def _started_here(workers: int) -> LocalCluster:
+    try:
+        return _Local(  # type: ignore[no-untyped-call]
+            n_workers=workers,
             threads_per_worker=1,
             # Without an address its port is 8787, and another scheduler here has that.
             dashboard_address=":0",
             scheduler_kwargs={"dashboard": False},
-            silence_logs=logging.ERROR,
-        ) as ours,
-        Client(ours, set_as_default=False) as client,
-    ):
-        yield client
+            silence_logs=logging.CRITICAL,
+        )
+    except RuntimeError as error:
+        raise ConfigError(
+            f"dask cannot start its workers ({error}); they import the script that starts them, so "
+            'put what it does under if __name__ == "__main__":, or take the executor "processes"'
+        ) from None
 
 
 class Submission(Generic[AnyTask]):
@@ -137,13 +162,19 @@ class Submission(Generic[AnyTask]):
 
     def _finished(self, report: Report[AnyTask]) -> Iterator[tuple[int, Any]]:
         """Yield the outcome of each task that is submitted, and report what is said meanwhile."""
+        left = _RESTARTS
         while self._futures:
             try:
                 index, said = self._news.get(timeout=_LOOK_EVERY)
             except Empty:
                 if _is_deserted(self._client):
-                    yield from self._lost()
+                    if left:
+                        left -= 1
+                        _restart(self._client)
+                    else:
+                        yield from self._lost()
                 continue
+            left = _RESTARTS
             if said is not None:
                 report(self._tasks[index], pickle.loads(said))
             elif index in self._futures:
@@ -163,7 +194,21 @@ def _is_deserted(client: Client) -> bool:
     dask starts a worker that died again, but not one that died while it started. To a scheduler
     with an address workers may yet come.
     """
-    return client.cluster is not None and not client.cluster.workers
+    if client.cluster is None or client.cluster.scheduler_info["workers"]:
+        return False
+    try:
+        client.wait_for_workers(1, timeout=_START_WITHIN)
+    except TimeoutError:
+        return True
+    return False
+
+
+def _restart(client: Client) -> None:
+    """Start as many workers as there were at first."""
+    assert client.cluster is not None
+    workers = len(client.cluster.worker_spec)
+    client.cluster.scale(0)
+    client.cluster.scale(workers)
 
 
 def _bootstrap() -> Callable[..., bytes]:

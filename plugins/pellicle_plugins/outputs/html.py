@@ -108,10 +108,12 @@ class Html(Output):
         shown = {index: number for number, index in enumerate(mapped)}
         maps = (
             Maps(
-                f"The last step of {_some(len(mapped), len(runs), 'run')}.",
+                f"The last step of {_some(len(mapped), len(runs), 'run')}, each in colours over "
+                "its own range.",
                 "run",
                 tuple(FIELDS.values()),
                 tuple(mapped.values()),
+                shared=False,
             ),
         )
         sections = [

@@ -235,10 +235,13 @@ def page_of(folder: Path, **changes: Any) -> Page:
     "changes",
     [
         {"loading": {"depth": 0}},
-        {"grid": {"points": [1, 8], "size": "0.4 mm"}},
-        {"indenter": {"type": "flat_punch", "radius": "0.1 mm"}},
+        {
+            "grid": {"points": [1, 8], "size": "0.4 mm"},
+            "indenter": {"type": "flat_punch", "radius": "0.1 mm"},
+            "loading": {"depth": "1 um"},
+        },
     ],
-    ids=["no contact", "one cell across", "infinite gap"],
+    ids=["no contact", "one cell across, infinite gap"],
 )
 def test_odd_results(tmp_path: Path, changes: dict[str, Any]) -> None:
     """Each has its page, with numbers that JSON and a browser take."""

@@ -1,0 +1,69 @@
+"""Draws ``loading.png``: force against depth, there and back, and the contact stiffness.
+
+Run it as ``python docs/images/loading.py``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib.style
+import numpy as np
+from matplotlib.figure import Figure
+
+import pellicle as pl
+from pellicle_plugins.analytic.axisymmetric import indent
+from pellicle_plugins.analytic.axisymmetric_indenters import Paraboloid
+
+RADIUS, MODULUS, DEEPEST = 1e-3, 10e3, 40e-6
+TENSIONS = {0.0: "C0", 0.5: "C3"}
+
+
+def main() -> None:
+    """Solve, draw and write the picture next to this file."""
+    matplotlib.style.use("default")
+    figure = Figure(figsize=(8.4, 3.7), dpi=150, layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for tension, colour in TENSIONS.items():
+        label = f"τ₀ = {tension:g} N/m"
+        data = pl.run(
+            {
+                "grid": {"points": 96, "size": "0.45 mm"},
+                "kernel": {
+                    "type": "tensed_membrane",
+                    "reduced_modulus": MODULUS,
+                    "tension": tension,
+                },
+                "indenter": {"type": "paraboloid", "radius": RADIUS},
+                "loading": {
+                    "depth": {"start": DEEPEST / 8, "stop": DEEPEST, "num": 8, "back": True},
+                    "stiffness": True,
+                },
+            },
+            progress=False,
+        ).dataset
+        depth, force, stiffness = (data[n].values for n in ("depth", "force", "stiffness"))
+        there = slice(0, 8)
+        left.plot(depth[there] * 1e6, force[there] * 1e6, "o", color=colour, mfc="white", ms=7)
+        left.plot(depth[8:] * 1e6, force[8:] * 1e6, "x", color=colour, ms=5)
+        for d, f, k in zip(depth[there], force[there], stiffness[there], strict=True):
+            near = np.array([-1, 1]) * DEEPEST / 22
+            left.plot((d + near) * 1e6, (f + k * near) * 1e6, color=colour, linewidth=1.0)
+        left.plot([], [], "o", color=colour, mfc="white", label=label)
+        right.plot(depth[there] * 1e6, stiffness[there], "o", color=colour, mfc="white")
+        finer = np.linspace(DEEPEST / 20, DEEPEST, 20)
+        exact = [indent(Paraboloid(RADIUS), MODULUS, tension, depth=d).force for d in finer]
+        right.plot(finer * 1e6, np.gradient(exact, finer, edge_order=2), color=colour, label=label)
+    left.plot([], [], "x", color="0.4", label="unloading")
+    left.plot([], [], color="0.4", linewidth=1.0, label="slope dF/dδ of the solution")
+    left.set(xlabel="depth δ [µm]", ylabel="force F [µN]", xlim=(0, None), ylim=(0, None))
+    right.set(xlabel="depth δ [µm]", ylabel="contact stiffness dF/dδ [N/m]", xlim=(0, None))
+    right.set_ylim(bottom=0)
+    for axes in (left, right):
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize="small")
+    figure.savefig(Path(__file__).with_suffix(".png"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,59 @@
+"""What is written by h5py is NetCDF-4 to the library that reads it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import xarray as xr
+
+from pellicle import netcdf
+
+
+def sample() -> xr.Dataset:
+    """Return a dataset of every kind of variable and dimension."""
+    random = np.random.default_rng(2)
+    return xr.Dataset(
+        {
+            "field": (("step", "x", "y"), random.normal(size=(2, 3, 4)), {"units": "Pa"}),
+            "inside": (("step", "x", "y"), random.uniform(size=(2, 3, 4)) < 0.5),
+            "missing": ("step", [np.nan, 1.0], {"long_name": "a name"}),
+            "count": ("step", [3, 4]),
+            "status": ("step", ["converged", "größer"]),
+            "lone": ((), 2.5),
+            "unnamed": ("other", [1.0, 2.0]),
+        },
+        {
+            "step": [0, 1],
+            "x": [0.0, 1.0, 2.0],
+            "y": [0.0, 1.0, 2.0, 3.0],
+            "zipped": ("step", ["a", "b"]),
+        },
+        {"title": "Größe", "number": 3},
+    )
+
+
+def test_read_as_it_was(tmp_path: Path) -> None:
+    """Values, kinds, names, units, coordinates and their order come back."""
+    path = tmp_path / "sample.h5"
+    path.write_bytes(netcdf.image(sample(), grows=["step"], packed=["field", "inside"]))
+    found = xr.load_dataset(path, engine="h5netcdf")
+    xr.testing.assert_identical(found, sample())
+    assert list(found.data_vars) == list(sample().data_vars)
+    assert {name: each.dtype.kind for name, each in found.items()} == {
+        name: each.dtype.kind for name, each in sample().items()
+    }
+
+
+def test_layout(tmp_path: Path) -> None:
+    """Steps can grow, what is to be packed is, and a missing number is one for every reader."""
+    path = tmp_path / "sample.h5"
+    path.write_bytes(netcdf.image(sample(), grows=["step"], packed=["field"]))
+    with h5py.File(path) as file:
+        assert file["field"].maxshape == (None, 3, 4)
+        assert file["missing"].maxshape == (None,)
+        assert file["x"].maxshape == (3,)
+        assert file["field"].compression == "gzip"
+        assert file["inside"].compression is None
+        assert np.isnan(file["missing"].fillvalue)

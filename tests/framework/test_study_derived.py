@@ -1,0 +1,53 @@
+"""Derived columns of a study: in its table, in both files, and in the list of its runs."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from typer.testing import CliRunner
+
+from pellicle.cli import app
+
+FILE = """
+outputs = []
+[grid]
+points = 16
+size = "0.4 mm"
+[kernel]
+type = "tensed_membrane"
+reduced_modulus = "10 kPa"
+[indenter]
+type = "paraboloid"
+radius = "1 mm"
+[loading]
+depth = ["5 um", "10 um"]
+[study.vary]
+kernel.tension = ["0.5 N/m", "1 N/m"]
+[study.derived]
+s = "2 * kernel.tension / kernel.reduced_modulus"
+pull = "force / (s * depth)"
+"""
+
+
+def test_derived_columns(tmp_path: Path) -> None:
+    """They may name columns, the configuration and each other, and stand wherever runs do."""
+    (tmp_path / "s.toml").write_text(FILE, encoding="utf-8")
+    folder = tmp_path / "out"
+    done = CliRunner().invoke(app, ["run", str(tmp_path / "s.toml"), "-o", str(folder)])
+    assert done.exit_code == 0, done.output
+    table = xr.load_dataset(folder / "study.h5", engine="h5netcdf")
+    s = 2 * table["kernel.tension"] / 1e4
+    wanted = (table["force"] / (s * table["depth"])).values
+    np.testing.assert_allclose(table["pull"], wanted, rtol=1e-14)
+    assert table["pull"].attrs["long_name"] == "force / (s * depth)"
+    with (folder / "study.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    np.testing.assert_allclose([float(row["pull"]) for row in rows], wanted.ravel(), rtol=1e-14)
+    assert {float(row["s"]) for row in rows} == {1e-4, 2e-4}
+    shown = CliRunner().invoke(app, ["show", str(folder)])
+    head, *lines = [line.split() for line in shown.output.splitlines()[3:]]
+    assert head[-3:] == ["s", "pull", "status"]
+    assert [line[-2] for line in lines] == [f"{last:.6g}" for last in wanted[:, -1]]
