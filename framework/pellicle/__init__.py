@@ -3,7 +3,7 @@
 Give an indenter, a soft material and the tension in its surface; get the contact pressure, area,
 force and depth. `run` solves a `Run`, `run_study` all runs of a `Study`; `kernel`, `indenter` and
 `solver` make components by name; `displacement` applies one operator; `fit` finds modulus and
-tension of a measured curve.
+tension of a measured curve, `fit_many` and `fit_pooled` those of many.
 """
 
 from __future__ import annotations
@@ -35,6 +35,8 @@ if TYPE_CHECKING:
         StorageError,
     )
     from .fitting.fit import Estimate, Fit, fit
+    from .fitting.many import fit_many
+    from .fitting.pooled import PooledCurve, PooledFit, fit_pooled
     from .grid import Grid
     from .hookspecs import hookimpl
     from .loading import Loading
@@ -68,6 +70,8 @@ _HOME = {
     "PellicleError": "errors",
     "Place": "components",
     "PluginError": "errors",
+    "PooledCurve": "fitting.pooled",
+    "PooledFit": "fitting.pooled",
     "Problem": "problem",
     "Result": "result",
     "Run": "config",
@@ -79,6 +83,8 @@ _HOME = {
     "Study": "study_config",
     "displacement": "operators",
     "fit": "fitting.fit",
+    "fit_many": "fitting.many",
+    "fit_pooled": "fitting.pooled",
     "hookimpl": "hookspecs",
     "load": "result",
     "registry": "plugins",
@@ -108,6 +114,8 @@ __all__ = [
     "PellicleError",
     "Place",
     "PluginError",
+    "PooledCurve",
+    "PooledFit",
     "Problem",
     "Result",
     "Run",
@@ -120,6 +128,8 @@ __all__ = [
     "__version__",
     "displacement",
     "fit",
+    "fit_many",
+    "fit_pooled",
     "hookimpl",
     "indenter",
     "kernel",

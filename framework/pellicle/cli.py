@@ -19,12 +19,14 @@ from typer.core import TyperGroup
 from .errors import ConfigError, PellicleError, PluginError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     import xarray as xr
 
     from .config import Run
-    from .fitting.fit import Fit
+    from .fitting.fit import Estimate, Fit
+    from .fitting.pooled import PooledFit
+    from .fitting.sources import Source
     from .result import Result
     from .study_config import Study
 
@@ -156,14 +158,20 @@ def _run_study(
 
 @app.command()
 def fit(
-    curve: Annotated[
-        Path,
-        typer.Argument(help="CSV or TSV with a header such as position (um),force (nN); HDF5."),
+    curves: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Files, or a folder of them: tables with a header such as position (um),force "
+            "(nN); HDF5; formats of instruments. Or a table file,radius (um) that lists files."
+        ),
     ],
     indenter: Annotated[
         str, typer.Option("--indenter", "-i", help="Type: paraboloid, sphere, cone, flat_punch, …")
     ],
-    radius: Annotated[str | None, typer.Option(help='Radius with its unit: "5 um".')] = None,
+    radius: Annotated[
+        list[str] | None,
+        typer.Option(help='Radius with its unit: "5 um"; repeat it to give one for each file.'),
+    ] = None,
     half_angle: Annotated[
         str | None, typer.Option(help='Angle between axis and side of a cone: "70 degree".')
     ] = None,
@@ -178,6 +186,19 @@ def fit(
         str, typer.Option(help="Fitted of the force before contact: none, offset, slope.")
     ] = "none",
     segment: Annotated[str, typer.Option(help="Pass to fit: approach, retract.")] = "approach",
+    spring_constant: Annotated[
+        str | None, typer.Option(help='Of the cantilever, to subtract its bending: "0.05 N/m".')
+    ] = None,
+    sensitivity: Annotated[
+        str | None, typer.Option(help='Deflection over the signal in volts: "50 nm/V".')
+    ] = None,
+    pool: Annotated[
+        bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
+    ] = False,
+    executor: Annotated[
+        str | None,
+        typer.Option(help="What carries out many fits, and runs: serial, processes, dask."),
+    ] = None,
     kernel: Annotated[
         str | None, typer.Option(help="Type of the solid, if it is no half-space: coated, …")
     ] = None,
@@ -196,50 +217,137 @@ def fit(
         Path | None, typer.Option(help="Folder that keeps simulated force curves.")
     ] = None,
     directory: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for JSON and a figure.")
+        Path | None, typer.Option("-o", "--output", help="Folder for JSON, table and figure.")
     ] = None,
     report: Annotated[
         bool, typer.Option("--report", help="Leave a web page, there or in the current folder.")
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Fit reduced modulus, tension and contact point to a measured curve, with intervals."""
-    from .fitting.fit import fit as fit_curve
-    from .fitting.read import read
+    """Fit reduced modulus, tension and contact point to measured curves, with intervals.
+
+    Exit code 0 only if every curve was fitted.
+    """
     from .fitting.simulation import GRID_POINTS
+    from .fitting.sources import gather
     from .study_config import DEFAULT_EXECUTOR
 
-    measured = read(curve)
-    shape = {"type": indenter, "radius": radius, "half_angle": half_angle}
+    shape = {"radius": radius[0] if radius and len(radius) == 1 else radius}
+    fields = shape | {
+        "half_angle": half_angle,
+        "spring_constant": spring_constant,
+        "sensitivity": sensitivity,
+    }
+    given = {name: value for name, value in fields.items() if value is not None}
     tables = _tables(
         {
-            "indenter": {name: value for name, value in shape.items() if value is not None},
+            "indenter": {"type": indenter},
             "kernel": {} if kernel is None else {"type": kernel},
-            "executor": {"type": DEFAULT_EXECUTOR},
+            "executor": {"type": executor or DEFAULT_EXECUTOR},
         },
         set_ or (),
     )
-    made = fit_curve(
-        measured.position,
-        measured.force,
-        depth=measured.depth,
-        indenter=tables["indenter"],
-        kernel=tables["kernel"] or None,
-        poissons_ratio=poissons_ratio,
-        fix=dict(map(_assignment, fix or ())),
-        baseline=baseline,  # type: ignore[arg-type]
-        segment=segment,  # type: ignore[arg-type]
-        cache=cache,
-        executor=tables["executor"],
-        grid_points=GRID_POINTS if grid_points is None else grid_points,
-        progress=sys.stderr.isatty(),
-    )
+    options = {
+        "kernel": tables["kernel"] or None,
+        "poissons_ratio": poissons_ratio,
+        "fix": dict(map(_assignment, fix or ())),
+        "baseline": baseline,
+        "segment": segment,
+    }
+    study = {
+        "cache": cache,
+        "executor": tables["executor"],
+        "grid_points": GRID_POINTS if grid_points is None else grid_points,
+    }
+    if pool:
+        _only_one(report)
+        _fit_pooled(curves, tables["indenter"], options | given, study, directory, json=json)
+        return
+    sources = gather(curves, segment, given)
+    if [source.name for source in sources] == [str(curves[0])]:
+        made = _fit_one(sources[0], tables["indenter"], options, study)
+        if json:
+            _print_json(made.to_dict())
+        else:
+            _print_fit(made)
+        for path in _fit_files(made, curves[0].stem, directory, report=report):
+            typer.echo(f"wrote {path}", err=json)
+    else:
+        _only_one(report)
+        _fit_many(sources, tables["indenter"], options, study, directory, json=json)
+
+
+def _only_one(report: bool) -> None:
+    if report:
+        raise ConfigError("is of one curve; fit that one alone, or leave it out", "--report")
+
+
+def _fit_one(
+    source: Source, indenter: dict[str, Any], options: dict[str, Any], study: dict[str, Any]
+) -> Fit:
+    from .fitting.fit import cleaned, fitted, modelled, question
+
+    measured = source.curve
+    if isinstance(measured, PellicleError):
+        raise measured
+    is_depth = measured.depth is not None
+    asked = question(indenter, source.fields, is_depth=is_depth, **options)
+    curve = cleaned(measured, asked.segment)
+    return fitted(curve, modelled(asked, curve, progress=sys.stderr.isatty(), **study))
+
+
+def _fit_many(
+    sources: list[Source],
+    indenter: dict[str, Any],
+    options: dict[str, Any],
+    study: dict[str, Any],
+    directory: Path | None,
+    *,
+    json: bool,
+) -> None:
+    from .fitting.many import carry_out
+
+    try:
+        done = carry_out(sources, indenter, options, directory=directory, progress=True, **study)
+    except KeyboardInterrupt:
+        kept = f"; what was finished is in {directory}, and the same command goes on"
+        typer.echo(f"interrupted{kept if directory else ''}", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    if json:
+        _print_json({"curves": done.rows})
+    else:
+        _print_fits(done.rows)
+    if done.taken:
+        typer.echo(f"{done.taken} of {len(sources)} fits were done before", err=json)
+    for path in done.files:
+        typer.echo(f"wrote {path}", err=json)
+    if done.failed:
+        typer.echo(f"{done.failed} of {len(sources)} curves could not be fitted", err=True)
+        raise typer.Exit(NOT_CONVERGED)
+
+
+def _fit_pooled(
+    curves: list[Path],
+    indenter: dict[str, Any],
+    options: dict[str, Any],
+    study: dict[str, Any],
+    directory: Path | None,
+    *,
+    json: bool,
+) -> None:
+    from .fitting.pooled import fit_pooled
+
+    made = fit_pooled(curves, indenter=indenter, progress=sys.stderr.isatty(), **options, **study)
     if json:
         _print_json(made.to_dict())
     else:
-        _print_fit(made)
-    for path in _fit_files(made, curve.stem, directory, report=report):
-        typer.echo(f"wrote {path}", err=json)
+        _print_pooled(made)
+    if directory is not None:
+        from .fitting.pooled_drawing import save_figure
+
+        files = made.save(directory / "pool.json"), save_figure(made, directory / "pool.png")
+        for path in files:
+            typer.echo(f"wrote {path}", err=json)
 
 
 @app.command()
@@ -446,21 +554,70 @@ def _tables(tables: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
 
 
 def _print_fit(fit: Fit) -> None:
-    rows = []
-    for name, estimate in fit.estimates().items():
-        low, high = (
-            "open" if end is None else f"{end:.4g}" for end in (estimate.low, estimate.high)
-        )
-        interval = "held" if estimate.held else f"{low} to {high}"
-        value = f"{estimate.value:.4g}"
-        rows.append({"": name, "value": value, "95 % interval": interval, "unit": estimate.unit})
-    _print_table(["", "value", "95 % interval", "unit"], rows)
+    _print_estimates(fit.estimates())
     typer.echo(f"noise: {fit.noise:.3g} N, from {fit.noise_from}; {fit.points} points")
     for line in (fit.comparison, fit.advice):
         if line:
             typer.echo(line)
     for message in fit.messages:
         typer.echo(f"note: {message}", err=True)
+
+
+def _print_pooled(fit: PooledFit) -> None:
+    _print_estimates(fit.estimates())
+    rows = [
+        {
+            "curve": curve.name,
+            "contact_point [m]": f"{curve.contact_point.value:.6g}",
+            "noise [N]": f"{curve.noise:.3g}",
+            "points": str(curve.points),
+            "chi_squared": f"{curve.chi_squared:.5g}",
+            "alone: reduced_modulus [Pa]": f"{curve.reduced_modulus_alone:.4g}",
+            "tension [N/m]": f"{curve.tension_alone:.4g}",
+        }
+        for curve in fit.curves
+    ]
+    _print_table(list(rows[0]), rows)
+    for line in (fit.comparison, fit.agreement, fit.advice):
+        typer.echo(line)
+    for message in fit.messages:
+        typer.echo(f"note: {message}", err=True)
+    for curve in fit.curves:
+        for message in curve.messages:
+            typer.echo(f"note: {curve.name}: {message}", err=True)
+
+
+def _print_estimates(estimates: Mapping[str, Estimate]) -> None:
+    rows = []
+    for name, estimate in estimates.items():
+        interval = "held" if estimate.held else _interval(estimate.low, estimate.high)
+        value = f"{estimate.value:.4g}"
+        rows.append({"": name, "value": value, "95 % interval": interval, "unit": estimate.unit})
+    _print_table(["", "value", "95 % interval", "unit"], rows)
+
+
+def _interval(low: float | None, high: float | None) -> str:
+    ends = ("open" if end is None else f"{end:.4g}" for end in (low, high))
+    return " to ".join(ends)
+
+
+def _print_fits(rows: list[dict[str, Any]]) -> None:
+    """Print a line for each curve; what the fits themselves say is in the table that is kept."""
+    names = {"reduced_modulus": "Pa", "tension": "N/m", "contact_point": "m"}
+    shown = []
+    for row in rows:
+        line = {"curve": row["curve"]}
+        for name, unit in names.items():
+            found = row.get(name, {})
+            line[f"{name} [{unit}]"] = f"{found['value']:.4g}" if found else ""
+            if name != "contact_point":
+                told = found and not found["held"]
+                line[f"95 % of {name}"] = _interval(found["low"], found["high"]) if told else ""
+        verdict, _, reason = row["status"].partition(": ")
+        shown.append(line | {"notes": str(len(row.get("messages", ()))), "status": verdict})
+        if reason:
+            typer.echo(f"{row['curve']}: {reason}", err=True)
+    _print_table(list(shown[0]), shown)
 
 
 def _write_starter(path: Path) -> None:

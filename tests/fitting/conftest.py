@@ -1,8 +1,9 @@
-"""Lets the tests here use the ensemble of the benchmarks."""
+"""Lets the tests here use the ensemble of the benchmarks, and the files of instruments."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
+HERE = Path(__file__).parent
+sys.path += [str(HERE), str(HERE.parent / "benchmarks")]

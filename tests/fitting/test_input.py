@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli import app
+from pellicle.fitting.measured import Measured
 from pellicle.fitting.read import read
 
 Array = NDArray[np.float64]
@@ -130,7 +131,8 @@ def test_tables(cli: Cli, header: str, separator: str) -> None:
     """Separators, comments, round brackets and capitals are understood."""
     position, force = _curve()
     _write(position, force, header, separator)
-    measured = read(Path("curve.csv"))
+    measured = read(Path("curve.csv"))[""]
+    assert isinstance(measured, Measured)
     assert measured.position == pytest.approx(position)
     assert measured.force == pytest.approx(force, abs=1e-18)
 
@@ -138,7 +140,8 @@ def test_tables(cli: Cli, header: str, separator: str) -> None:
 def test_decimal_commas(cli: Cli) -> None:
     """Between semicolons a comma is decimal."""
     Path("curve.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n", encoding="utf-8")
-    measured = read(Path("curve.csv"))
+    measured = read(Path("curve.csv"))[""]
+    assert isinstance(measured, Measured)
     assert measured.depth == pytest.approx([1.5e-9, 2.5e-9])
     assert measured.force == pytest.approx([2.25e-9, np.nan], nan_ok=True)
 
@@ -249,7 +252,7 @@ def test_sphere_is_not_sunk() -> None:
         ("position [um],force [V]", "spring constant"),
         ("position [um],force [nm]", "no unit of force"),
         ("position [um],load [nN]", "no column force"),
-        ("height [um],force [nN]", "no column position or depth"),
+        ("height [um],force [nN]", "spring_constant: is missing"),
         ("1.0,2.0", "no column force"),
         ("force [nN],force [nN]", "several columns force"),
     ],

@@ -30,10 +30,20 @@ class Curve:
     force: Array
     messages: tuple[str, ...] = ()
     """What was left out, and what to be careful of."""
+    stiffness: float | None = None
+    """Of the cantilever [N/m], if its deflection was subtracted to get the position."""
 
 
-def clean(position: ArrayLike, force: ArrayLike, segment: Segment = "approach") -> Curve:
+def clean(
+    position: ArrayLike,
+    force: ArrayLike,
+    segment: Segment = "approach",
+    stiffness: float | None = None,
+) -> Curve:
     """Return the rows of one pass into the solid (or out of it), in order of position.
+
+    Where the ``stiffness`` [N/m] of a cantilever is known its base, which has no noise, tells the
+    passes apart.
 
     Raises
     ------
@@ -56,7 +66,9 @@ def clean(position: ArrayLike, force: ArrayLike, segment: Segment = "approach") 
     if not span:
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
     _stiffens(z, f)
-    z, f = _one_pass(z, f, span, segment, messages)
+    base = z if stiffness is None else z + f / stiffness
+    rows = _one_pass(base, segment, messages)
+    z, f = z[rows], f[rows]
     _enough(z, f"its {segment}")
     order = np.argsort(z, kind="stable")
     z, f = z[order], f[order]
@@ -66,7 +78,7 @@ def clean(position: ArrayLike, force: ArrayLike, segment: Segment = "approach") 
         raise ConfigError(
             f"has {np.unique(z).size} different values; give at least {FEWEST}", "position"
         )
-    return Curve(z, f, tuple(messages))
+    return Curve(z, f, tuple(messages), stiffness)
 
 
 def _array(values: ArrayLike, name: str) -> Array:
@@ -107,11 +119,9 @@ def _stiffens(z: Array, f: Array) -> None:
         )
 
 
-def _one_pass(
-    z: Array, f: Array, span: float, segment: Segment, messages: list[str]
-) -> tuple[Array, Array]:
+def _one_pass(z: Array, segment: Segment, messages: list[str]) -> slice:
     """Return the rows that move into the solid, or out of it."""
-    turns = _turns(z, _PASS * span)
+    turns = _turns(z, _PASS * float(np.ptp(z)))
     passes = list(zip([0, *turns], [*turns, z.size - 1], strict=True))
     inward = [bool(z[last] > z[first]) for first, last in passes]
     if len(passes) > 2:
@@ -136,7 +146,7 @@ def _one_pass(
         )
     if not wanted:
         messages.append("a retract is fitted as if nothing adhered: compare with the approach")
-    return z[first : last + 1], f[first : last + 1]
+    return slice(first, last + 1)
 
 
 def _turns(z: Array, least: float) -> list[int]:
@@ -150,11 +160,11 @@ def _turns(z: Array, least: float) -> list[int]:
         if here < z[low]:
             low = row
         if direction >= 0 and z[high] - here >= least:
-            if direction or high:
+            if direction:
                 turns.append(high)
             direction, low = -1, row
         elif direction <= 0 and here - z[low] >= least:
-            if direction or low:
+            if direction:
                 turns.append(low)
             direction, high = 1, row
         if direction > 0 and here >= z[high]:

@@ -66,8 +66,8 @@ def advice(likelihood: Likelihood, parameters: Array) -> str:
     """Return in words which experiment would tighten modulus and tension."""
     now, others = designs(likelihood, parameters)
     reached = (
-        f"no unbiased fit of this curve could beat ± {_percent(now.modulus)} of the modulus and "
-        f"± {_percent(now.tension)} of the tension (Cramér–Rao bound, one standard deviation)"
+        f"no unbiased fit of this curve could beat ± {percent(now.modulus)} of the modulus and "
+        f"± {percent(now.tension)} of the tension (Cramér–Rao bound, one standard deviation)"
     )
     if not decidable(now, others):
         return (
@@ -79,7 +79,7 @@ def advice(likelihood: Likelihood, parameters: Array) -> str:
     best = others[0]
     return (
         f"{reached}; {best.words} at the same noise relative to the largest force would bring "
-        f"± {_percent(best.modulus)} and ± {_percent(best.tension)}"
+        f"± {percent(best.modulus)} and ± {percent(best.tension)}"
     )
 
 
@@ -102,7 +102,8 @@ def _other_radius(likelihood: Likelihood, parameters: Array, factor: float) -> L
 def _measured(other: Likelihood, likelihood: Likelihood, parameters: Array) -> Likelihood:
     """Return an experiment with the same noise relative to its largest force."""
     share = likelihood.noise / np.max(np.abs(likelihood.model(parameters)))
-    return replace(other, noise=share * float(np.max(np.abs(other.model(parameters)))))
+    force = other.model(parameters)
+    return replace(other, force=force, noise=share * float(np.max(np.abs(force))))
 
 
 def _metres(value: float) -> str:
@@ -112,5 +113,6 @@ def _metres(value: float) -> str:
     return f"{value / 1e-9:.3g} nm"
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
+    """Return a share as a message shows it."""
     return f"{100 * share:.2g} %" if share < 10 else "more than 1000 %"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,17 +16,18 @@ from pellicle.errors import ConfigError
 from pellicle.model import nearest
 from pellicle.operators import Array
 from pellicle.plugins import registry
-from pellicle.storage import reported
 from pellicle.units import Quantity
 
 from .curve import Curve, Segment, clean
 from .design import advice, decidable, designs
 from .interval import Better, Minimum, interval
-from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood
+from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, ChiSquared, Likelihood
+from .measured import Calibration, Measured
 from .simulated import SimulatedCurve
 from .simulation import GRID_POINTS, simulate
-from .solid import DEFAULT_KERNEL, lengths, solid
+from .solid import DEFAULT_KERNEL, Solid, lengths, solid
 from .start import BEFORE, starts
+from .written import as_json, write_json
 
 Baseline = Literal["none", "offset", "slope"]
 
@@ -48,8 +48,6 @@ _OFF = 4.0
 """Standard errors that the force before contact may be from 0."""
 _CHANCE = 1e-3
 """A misfit less likely than this is no chance."""
-_MODEL_ACCURACY = 1e-6
-"""Of the master curves, relative to the largest force; less noise than this cannot be told."""
 _PLAUSIBLE_DEPTH = (1e-3, 1.0)
 _PLAUSIBLE_MODULUS = (1.0, 1e12)
 _PLAUSIBLE_TENSION = 10.0
@@ -81,6 +79,21 @@ class Estimate:
             "bound": bound,
             "held": self.held,
         }
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked of a curve."""
+
+    indenter: Any
+    """It has a force curve, or is pressed into `material`."""
+    material: Solid | None
+    """What is to be simulated; None if nothing is."""
+    held: Array
+    """Parameters, in the order of `likelihood`; of the free ones, anything."""
+    free: tuple[int, ...]
+    segment: Segment
+    poissons_ratio: float | None
 
 
 @dataclass(frozen=True)
@@ -140,28 +153,18 @@ class Fit:
         StorageError
             The file cannot be written.
         """
-        path = Path(path)
-        with reported(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(self.to_json(), encoding="utf-8")
-        return path
+        return write_json(self.to_dict(), Path(path))
 
     def to_json(self) -> str:
         """Return what `to_dict` returns as JSON."""
-        return json.dumps(self.to_dict(), indent=2, ensure_ascii=False) + "\n"
+        return as_json(self.to_dict())
 
     def model(self) -> dict[str, Any]:
         """Return indenter and kernel that were fitted with, as JSON has them.
 
         A kernel is there only if its force curve was simulated, without modulus and tension.
         """
-        curve = self.likelihood.indenter
-        if isinstance(curve, SimulatedCurve):
-            said = {"kernel": dict(curve.kernel), "accuracy": curve.accuracy}
-            return {"indenter": curve.indenter.model_dump(mode="json", exclude_none=True), **said}
-        if isinstance(curve, Component):
-            return {"indenter": curve.model_dump(mode="json", exclude_none=True)}
-        return {"indenter": {"type": type(curve).__name__}}
+        return described(self.likelihood.indenter)
 
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold."""
@@ -190,6 +193,7 @@ def fit(
     fix: Mapping[str, Any] | None = None,
     baseline: Baseline = "none",
     segment: Segment = "approach",
+    spring_constant: float | str | None = None,
     cache: str | Path | None = None,
     executor: str | Mapping[str, Any] | Executor = "serial",
     grid_points: int = GRID_POINTS,
@@ -226,6 +230,9 @@ def fit(
         ``"slope"``.
     segment
         The pass that is fitted of a curve with two: ``"approach"`` or ``"retract"``.
+    spring_constant
+        Of the cantilever [N/m], if position is that of its base less its deflection: noise of the
+        deflection is then in both, position and force, and is reckoned with.
     cache
         Folder that keeps studies; the user's cache folder if None.
     executor
@@ -242,12 +249,61 @@ def fit(
     ConvergenceError, StorageError
         A study did not come to its end.
     """
+    asked = question(
+        indenter,
+        fields,
+        is_depth=depth is not None,
+        kernel=kernel,
+        poissons_ratio=poissons_ratio,
+        fix=fix,
+        baseline=baseline,
+        segment=segment,
+    )
+    if (position is None) == (depth is None):
+        raise ConfigError("give either position or depth")
+    if force is None:
+        raise ConfigError("is missing; give the force [N] at each position", "force")
+    stiffness = Calibration.of(spring_constant).spring_constant
+    curve = cleaned(Measured(force, position, depth, stiffness=stiffness), segment)  # type: ignore[arg-type]
+    model = modelled(
+        asked,
+        curve,
+        cache=cache,
+        executor=executor,
+        grid_points=grid_points,
+        progress=progress,
+    )
+    return fitted(curve, model)
+
+
+def question(
+    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
+    fields: Mapping[str, Any],
+    *,
+    is_depth: bool,
+    kernel: str | Mapping[str, Any] | None = None,
+    poissons_ratio: float | None = None,
+    fix: Mapping[str, Any] | None = None,
+    baseline: Baseline = "none",
+    segment: Segment = "approach",
+) -> Question:
+    """Return what the arguments of `fit` ask.
+
+    Raises
+    ------
+    ConfigError, PluginError
+        One of them is not allowed.
+    """
     shape = _indenter(indenter, fields)
     ratio = _ratio(poissons_ratio)
     if kernel is None and not isinstance(shape, HasForceCurve):
         kernel = DEFAULT_KERNEL
     material = None if kernel is None else solid(kernel, ratio)
-    held = _held(fix or {}, depth is not None)
+    if material is not None:
+        if not isinstance(shape, Indenter):
+            raise ConfigError("is given beside a force curve, which has one already", "kernel")
+        ratio = material.poissons_ratio
+    held = _held(fix or {}, is_depth)
     free = tuple(k for k in range(3) if k not in held)
     if segment not in ("approach", "retract"):
         raise ConfigError(f"{segment!r} is not allowed; give approach or retract", "segment")
@@ -257,32 +313,58 @@ def fit(
         )
     if not {MODULUS, TENSION} & set(free):
         raise ConfigError("holds both modulus and tension; leave one of them to the fit", "fix")
-    free += _BASELINES[baseline]
-    if (position is None) == (depth is None):
-        raise ConfigError("give either position or depth")
-    if force is None:
-        raise ConfigError("is missing; give the force [N] at each position", "force")
-    curve = clean(depth if position is None else position, force, segment)  # type: ignore[arg-type]
     values = np.zeros(5)
     for k, value in held.items():
         values[k] = value
-    if material is not None:
-        if not isinstance(shape, Indenter):
-            raise ConfigError("is given beside a force curve, which has one already", "kernel")
-        span = float(np.ptp(curve.position))
-        reach = float(curve.position[-1]) - values[POINT] if POINT in held else (1 + BEFORE) * span
-        shape = simulate(
-            shape,
-            material,
-            # Where nothing reaches contact, the fit itself says so.
-            reach if reach > 0 else span,
-            cache=None if cache is None else Path(cache),
-            executor=executor,
-            grid_points=grid_points,
-            progress=progress,
-        )
-        ratio = material.poissons_ratio
-    return _fitted(curve, shape, values, free, ratio)
+    free += _BASELINES[baseline]
+    return Question(shape, material, values, free, segment, ratio)
+
+
+def cleaned(measured: Measured, segment: Segment) -> Curve:
+    """Return the rows of a measured curve that are fitted.
+
+    Raises
+    ------
+    ConfigError
+        As for `clean`.
+    """
+    place = measured.position if measured.depth is None else measured.depth
+    made = clean(place, measured.force, segment, measured.stiffness)  # type: ignore[arg-type]
+    return replace(made, messages=(*measured.messages, *made.messages))
+
+
+def modelled(
+    asked: Question,
+    curve: Curve,
+    *,
+    cache: str | Path | None = None,
+    executor: str | Mapping[str, Any] | Executor = "serial",
+    grid_points: int = GRID_POINTS,
+    progress: bool = False,
+) -> Question:
+    """Return the question with an indenter that has a force curve, simulated if need be.
+
+    Raises
+    ------
+    ConfigError, ConvergenceError, StorageError
+        As for `simulate`.
+    """
+    if asked.material is None:
+        return asked
+    span = float(np.ptp(curve.position))
+    held = POINT not in asked.free
+    reach = float(curve.position[-1]) - asked.held[POINT] if held else (1 + BEFORE) * span
+    made = simulate(
+        asked.indenter,
+        asked.material,
+        # Where nothing reaches contact, the fit itself says so.
+        reach if reach > 0 else span,
+        cache=None if cache is None else Path(cache),
+        executor=executor,
+        grid_points=grid_points,
+        progress=progress,
+    )
+    return replace(asked, indenter=made, material=None)
 
 
 def _indenter(
@@ -290,6 +372,8 @@ def _indenter(
 ) -> Any:
     if isinstance(given, str):
         given = {"type": given, **fields}
+    elif isinstance(given, Mapping):
+        given = {**given, **fields}
     elif fields:
         raise ConfigError(f"{', '.join(fields)} given beside an indenter that is complete")
     if isinstance(given, HasForceCurve):
@@ -323,22 +407,55 @@ def _ratio(given: float | None) -> float | None:
         raise ConfigError(str(error), "poissons_ratio") from None
 
 
-def _fitted(
-    curve: Curve, indenter: Any, held: Array, free: tuple[int, ...], poissons_ratio: float | None
-) -> Fit:
+@dataclass(frozen=True)
+class Explained:
+    """A curve on its own: its likelihood with its noise, and the best parameters."""
+
+    likelihood: Likelihood
+    parameters: Array
+    freedom: float
+    """Degrees of freedom of the noise."""
+    noise_from: str
+    messages: tuple[str, ...]
+
+
+def explain(curve: Curve, asked: Question) -> Explained:
+    """Return the best parameters of a curve and its noise.
+
+    Raises
+    ------
+    ConfigError
+        Nothing explains the curve.
+    """
     messages = list(curve.messages)
     largest = float(np.max(np.abs(curve.force)))
-    rough = Likelihood(curve.position, curve.force, indenter, largest, free)
-    minimum = _best([rough.minimise(start) for start in _starts(rough, held)])
+    rough = Likelihood(
+        curve.position, curve.force, asked.indenter, largest, asked.free, curve.stiffness
+    )
+    minimum = _best([rough.minimise(start) for start in _starts(rough, asked.held)])
     noise, freedom, source = _noise(rough, minimum.parameters, messages)
-    likelihood = replace(rough, noise=noise)
-    rise = float(stdtrit(freedom, (1 + CONFIDENCE) / 2) ** 2)
-    best, without, ends = _profiled(likelihood, minimum.parameters, rise)
-    ends = _widened(ends, likelihood, best, messages)
+    return Explained(
+        replace(rough, noise=noise), minimum.parameters, freedom, source, tuple(messages)
+    )
+
+
+def fitted(curve: Curve, asked: Question) -> Fit:
+    """Return the fit of a curve by an indenter that has a force curve.
+
+    Raises
+    ------
+    ConfigError
+        The curve cannot be fitted.
+    """
+    alone = explain(curve, asked)
+    likelihood, free, messages = alone.likelihood, asked.free, list(alone.messages)
+    rise = allowed_rise(alone.freedom)
+    best, without, ends = _profiled(likelihood, alone.parameters, rise)
+    ends = widened(ends, likelihood, best, messages)
     point, log_modulus = best.parameters[POINT], best.parameters[MODULUS]
     bound = likelihood.deviations(best.parameters)
     modulus = float(np.exp(log_modulus))
-    _plausible(curve, indenter, point, modulus, float(best.parameters[TENSION]), messages)
+    plausible(curve, asked.indenter, point, modulus, float(best.parameters[TENSION]), messages)
 
     def estimate(which: int, unit: str) -> Estimate:
         value = float(best.parameters[which])
@@ -347,7 +464,7 @@ def _fitted(
         return Estimate(value, *ends[which], unit, float(bound[which]))
 
     log = estimate(MODULUS, "Pa")
-    reduced = Estimate(modulus, _exp(log.low), _exp(log.high), "Pa", log.bound * modulus, log.held)
+    reduced = of_log(log)
     tension = estimate(TENSION, "N/m")
     gain = without.chi_squared - best.chi_squared
     _open(reduced, tension, likelihood, best.parameters, messages)
@@ -357,13 +474,13 @@ def _fitted(
         contact_point=estimate(POINT, "m"),
         offset=estimate(OFFSET, "N"),
         slope=estimate(SLOPE, "N/m"),
-        youngs_modulus=None if poissons_ratio is None else _times(reduced, 1 - poissons_ratio**2),
-        noise=noise,
-        noise_from=source,
+        youngs_modulus=youngs_modulus(reduced, asked.poissons_ratio),
+        noise=likelihood.noise,
+        noise_from=alone.noise_from,
         points=curve.force.size,
         chi_squared=best.chi_squared,
         chi_squared_without_tension=without.chi_squared,
-        comparison=_comparison(tension, gain),
+        comparison=comparison(tension, gain),
         advice=_advice(likelihood, best.parameters, tension),
         messages=tuple(messages),
         likelihood=likelihood,
@@ -371,6 +488,26 @@ def _fitted(
         parameters_without_tension=without.parameters,
         rise=rise,
     )
+
+
+def described(curve: HasForceCurve) -> dict[str, Any]:
+    """Return indenter and, if it was simulated, kernel of a force curve, as JSON has them."""
+    if isinstance(curve, SimulatedCurve):
+        said = {"kernel": dict(curve.kernel), "accuracy": curve.accuracy}
+        return {"indenter": curve.indenter.model_dump(mode="json", exclude_none=True), **said}
+    if isinstance(curve, Component):
+        return {"indenter": curve.model_dump(mode="json", exclude_none=True)}
+    return {"indenter": {"type": type(curve).__name__}}
+
+
+def allowed_rise(freedom: float) -> float:
+    """Return the rise of χ² at the ends of an interval, with the noise known that well."""
+    return float(stdtrit(freedom, (1 + CONFIDENCE) / 2) ** 2)
+
+
+def youngs_modulus(reduced: Estimate, poissons_ratio: float | None) -> Estimate | None:
+    """Return E = (1 − ν²) E*, if ν was given."""
+    return None if poissons_ratio is None else _times(reduced, 1 - poissons_ratio**2)
 
 
 def _starts(likelihood: Likelihood, held: Array) -> list[Array]:
@@ -389,7 +526,7 @@ def _best(found: list[tuple[Array, float]]) -> Minimum:
 def _noise(rough: Likelihood, parameters: Array, messages: list[str]) -> tuple[float, float, str]:
     """Return standard deviation [N], its degrees of freedom, and where it comes from."""
     residuals = rough.residuals(parameters) * rough.noise
-    least = _accuracy(rough.indenter) * rough.noise
+    least = rough.accuracy * rough.noise
     span = float(np.ptp(rough.position))
     before = rough.position < parameters[POINT] - 0.01 * span
     baseline = sum(k in rough.free for k in (OFFSET, SLOPE))
@@ -444,29 +581,25 @@ def _profiled(
             return best, without, ends
 
 
-def _accuracy(indenter: HasForceCurve) -> float:
-    return indenter.accuracy if isinstance(indenter, SimulatedCurve) else _MODEL_ACCURACY
-
-
-def _widened(
+def widened(
     ends: dict[int, tuple[float | None, float | None]],
-    likelihood: Likelihood,
+    likelihood: ChiSquared,
     best: Minimum,
     messages: list[str],
 ) -> dict[int, tuple[float | None, float | None]]:
     """Return intervals with what the grids of a simulated curve may have shifted added to them."""
-    curve = likelihood.indenter
-    if not isinstance(curve, SimulatedCurve) or curve.coarse is None:
+    coarser = likelihood.coarse()
+    if coarser is None:
         return ends
-    coarse, _ = replace(likelihood, indenter=curve.coarse).minimise(best.parameters)
+    coarse, _ = coarser.minimise(best.parameters)
     shift = np.abs(coarse - best.parameters)
     tension = best.parameters[TENSION]
     said = [f"the modulus by {100 * np.expm1(shift[MODULUS]):.2g} %"] * (MODULUS in ends)
     if TENSION in ends and tension:
         said.append(f"the tension by {100 * shift[TENSION] / tension:.2g} %")
     messages.append(
-        f"the force curve is simulated, to {100 * curve.accuracy:.2g} %; half as many cells change "
-        f"{' and '.join(said)}, and the intervals are widened by that"
+        f"the force curve is simulated, to {100 * likelihood.accuracy:.2g} %; half as many cells "
+        f"change {' and '.join(said)}, and the intervals are widened by that"
     )
     wider = {}
     for which, (low, high) in ends.items():
@@ -486,8 +619,11 @@ def _without_tension(likelihood: Likelihood, best: Minimum) -> Minimum:
     return _best(found)
 
 
-def _exp(log: float | None) -> float | None:
-    return None if log is None else float(np.exp(log))
+def of_log(log: Estimate) -> Estimate:
+    """Return the modulus whose logarithm is estimated."""
+    value = float(np.exp(log.value))
+    low, high = (None if end is None else float(np.exp(end)) for end in (log.low, log.high))
+    return replace(log, value=value, low=low, high=high, bound=log.bound * value)
 
 
 def _times(estimate: Estimate, factor: float) -> Estimate:
@@ -497,7 +633,8 @@ def _times(estimate: Estimate, factor: float) -> Estimate:
     )
 
 
-def _comparison(tension: Estimate, gain: float) -> str:
+def comparison(tension: Estimate, gain: float) -> str:
+    """Return in words whether tension is needed; ``gain`` is how much it lowers χ²."""
     figures = f"Δχ² = {gain:.3g}, ΔAIC = {gain - 2:.3g}"
     if tension.held and not tension.value:
         return "tension is held at 0, so whether it is needed was not asked"
@@ -552,7 +689,7 @@ def _open(
         messages.append(text)
 
 
-def _plausible(
+def plausible(
     curve: Curve, indenter: Any, point: float, modulus: float, tension: float, messages: list[str]
 ) -> None:
     """Refuse or warn of what a wrong unit or radius would give."""

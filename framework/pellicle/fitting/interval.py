@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from pellicle.operators import Array
 
-from .likelihood import MODULUS, POINT, REACH, TENSION, Likelihood
+from .likelihood import MODULUS, POINT, REACH, TENSION, ChiSquared
 
 _ACCURACY = 2e-3
 """To which an end is found, relative to its distance from the value."""
@@ -34,7 +34,7 @@ class Better(Exception):  # noqa: N818 - no error: the search goes on from there
 
 
 def interval(
-    likelihood: Likelihood, best: Minimum, which: int, rise: float
+    likelihood: ChiSquared, best: Minimum, which: int, rise: float
 ) -> tuple[float | None, float | None]:
     """Return the ends between which the least χ² at a held parameter is up by at most ``rise``.
 
@@ -53,7 +53,7 @@ def interval(
     )
 
 
-def _limits(likelihood: Likelihood, best: Array, which: int) -> tuple[float, float]:
+def _limits(likelihood: ChiSquared, best: Array, which: int) -> tuple[float, float]:
     value, scale = float(best[which]), float(likelihood.scale[which])
     if which == MODULUS:
         return value - REACH, value + REACH
@@ -64,7 +64,7 @@ def _limits(likelihood: Likelihood, best: Array, which: int) -> tuple[float, flo
 
 
 def _end(
-    likelihood: Likelihood, best: Minimum, which: int, limit: float, rise: float
+    likelihood: ChiSquared, best: Minimum, which: int, limit: float, rise: float
 ) -> float | None:
     value = float(best.parameters[which])
     span = limit - value

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,59 +13,46 @@ from scipy.optimize import least_squares
 from pellicle.components import HasForceCurve
 from pellicle.operators import Array
 
+from .simulated import SimulatedCurve
+
 POINT, MODULUS, TENSION, OFFSET, SLOPE = range(5)
 """Parameters: contact point [m], log of E* in Pa, τ₀ [N/m], force offset [N], its slope [N/m]."""
 REACH = np.log(100.0)
 """How far in log E*, and in log τ₀ above, an interval is followed before it is called open."""
 _TOLERANCE = 1e-10
+_ACCURACY = 1e-6
+"""Of the master curves."""
+_BALANCED = 1e-9
+"""To which cantilever and solid balance, relative to the range of the force."""
 
 
-@dataclass(frozen=True)
-class Likelihood:
-    """χ² of a curve under normal noise in the force, equal at all points."""
+class ChiSquared(ABC):
+    """χ² over parameters of which `POINT`, `MODULUS` and `TENSION` come first."""
 
-    position: Array
-    force: Array
-    indenter: HasForceCurve
-    noise: float
     free: tuple[int, ...]
     """The parameters that are not held."""
 
     @cached_property
+    @abstractmethod
     def scale(self) -> Array:
         """What each parameter moves by, about."""
-        span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
-        return np.array([span, 1.0, height / span, height, height / span])
 
-    def model(self, parameters: Array) -> Array:
-        """Return the force [N] at every position."""
-        return self._model(parameters)[0]
-
-    def _model(self, parameters: Array) -> tuple[Array, Array]:
-        point, log_modulus, tension, offset, slope = parameters
-        modulus = np.exp(log_modulus)
-        length = 2 * tension / modulus
-        curve = self.indenter.force_curve(self.position - point, length)
-        moved = self.position - self.position[0]
-        force = modulus * curve.force + offset + slope * moved
-        jacobian = np.column_stack(
-            [
-                -modulus * curve.by_depth,
-                modulus * (curve.force - length * curve.by_length),
-                2 * curve.by_length,
-                np.ones_like(moved),
-                moved,
-            ]
-        )
-        return force, jacobian
-
-    def jacobian(self, parameters: Array) -> Array:
-        """Return the derivatives of the force, shape (n, 5)."""
-        return self._model(parameters)[1]
-
+    @abstractmethod
     def residuals(self, parameters: Array) -> Array:
-        """Return (model − force) / noise."""
-        return (self.model(parameters) - self.force) / self.noise
+        """Return residuals over the noise; their squares add up to χ²."""
+
+    @abstractmethod
+    def slopes(self, parameters: Array) -> Array:
+        """Return the derivatives of the residuals in each parameter, a column for each."""
+
+    @property
+    @abstractmethod
+    def accuracy(self) -> float:
+        """Of the model, relative to the largest force; less noise than this cannot be told."""
+
+    @abstractmethod
+    def coarse(self) -> ChiSquared | None:
+        """Return the same with force curves of coarser grids; None where none is simulated."""
 
     def chi_squared(self, parameters: Array) -> float:
         """Return the sum of squared residuals."""
@@ -73,12 +61,12 @@ class Likelihood:
 
     def information(self, parameters: Array, free: Sequence[int]) -> Array:
         """Return the Fisher information of some parameters, in units of `scale`."""
-        jacobian = self.jacobian(parameters)[:, free] * self.scale[list(free)] / self.noise
+        jacobian = self.slopes(parameters)[:, free] * self.scale[list(free)]
         return jacobian.T @ jacobian
 
     def deviations(self, parameters: Array) -> Array:
         """Return the Cramér–Rao bound of each parameter, as a standard deviation; 0 if held."""
-        bound = np.zeros(5)
+        bound = np.zeros(parameters.size)
         information = self.information(parameters, self.free)
         try:
             variances = np.diag(np.linalg.inv(information))
@@ -95,8 +83,8 @@ class Likelihood:
         if not free:
             return best, self.chi_squared(best)
         scale = self.scale[free]
-        lowest = np.full(5, -np.inf)
-        highest = np.full(5, np.inf)
+        lowest = np.full(best.size, -np.inf)
+        highest = np.full(best.size, np.inf)
         lowest[TENSION] = 0.0
         # Far beyond every interval, and where no exponential overflows.
         lowest[MODULUS], highest[MODULUS] = start[MODULUS] - 20, start[MODULUS] + 20
@@ -107,7 +95,7 @@ class Likelihood:
             return parameters
 
         def jacobian(u: Array) -> Array:
-            return self.jacobian(full(u))[:, free] * scale / self.noise
+            return self.slopes(full(u))[:, free] * scale
 
         found = least_squares(
             lambda u: self.residuals(full(u)),
@@ -120,3 +108,90 @@ class Likelihood:
             gtol=_TOLERANCE,
         )
         return full(found.x), 2 * float(found.cost)
+
+
+@dataclass(frozen=True)
+class Likelihood(ChiSquared):
+    """χ² of a curve under normal noise in the force, equal at all points."""
+
+    position: Array
+    force: Array
+    indenter: HasForceCurve
+    noise: float
+    free: tuple[int, ...]
+    stiffness: float | None = None
+    """Of the cantilever [N/m] whose deflection was subtracted to get the position; noise of the
+    force is then in the position too, and what is exact is the position of its base."""
+
+    @cached_property
+    def scale(self) -> Array:
+        """What each parameter moves by, about."""
+        span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
+        return np.array([span, 1.0, height / span, height, height / span])
+
+    @property
+    def accuracy(self) -> float:
+        """Of the model, relative to the largest force."""
+        curve = self.indenter
+        return curve.accuracy if isinstance(curve, SimulatedCurve) else _ACCURACY
+
+    def coarse(self) -> Likelihood | None:
+        """Return the same with the force curve of a coarser grid, if it has one."""
+        curve = self.indenter
+        if not isinstance(curve, SimulatedCurve) or curve.coarse is None:
+            return None
+        return replace(self, indenter=curve.coarse)
+
+    def model(self, parameters: Array) -> Array:
+        """Return the force [N] at every position."""
+        return self._model(self.position, parameters)[0]
+
+    def _model(self, position: Array, parameters: Array) -> tuple[Array, Array]:
+        point, log_modulus, tension, offset, slope = parameters
+        modulus = np.exp(log_modulus)
+        length = 2 * tension / modulus
+        curve = self.indenter.force_curve(position - point, length)
+        moved = self.position - self.position[0]
+        force = modulus * curve.force + offset + slope * moved
+        jacobian = np.column_stack(
+            [
+                -modulus * curve.by_depth,
+                modulus * (curve.force - length * curve.by_length),
+                2 * curve.by_length,
+                np.ones_like(moved),
+                moved,
+            ]
+        )
+        return force, jacobian
+
+    def jacobian(self, parameters: Array) -> Array:
+        """Return the derivatives of the force, shape (n, 5)."""
+        return self._model(self.position, parameters)[1]
+
+    def residuals(self, parameters: Array) -> Array:
+        """Return (model − force) / noise."""
+        return (self._balanced(parameters)[0] - self.force) / self.noise
+
+    def slopes(self, parameters: Array) -> Array:
+        """Return the derivatives of the residuals, shape (n, 5)."""
+        return self._balanced(parameters)[1] / self.noise
+
+    def _balanced(self, parameters: Array) -> tuple[Array, Array]:
+        """Return force and derivatives where the base of the cantilever is, not its tip.
+
+        There the force F solves F = P(z − F/k). P grows ever faster, so that Newton's steps are
+        monotonic after the first.
+        """
+        if self.stiffness is None:
+            return self._model(self.position, parameters)
+        base = self.position + self.force / self.stiffness
+        force = self.force.copy()
+        enough = _BALANCED * float(np.ptp(self.force))
+        while True:
+            there, jacobian = self._model(base - force / self.stiffness, parameters)
+            give = 1 - jacobian[:, POINT] / self.stiffness
+            step = (there - force) / give
+            force += step
+            # Written so that NaN ends it.
+            if not np.max(np.abs(step)) > enough:
+                return force, jacobian / give[:, None]

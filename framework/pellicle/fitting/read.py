@@ -1,40 +1,39 @@
-"""Reads a measured curve: columns with a name and a unit, from a table or an HDF5 file."""
+"""Reads the measured curves of a file: named columns with units, or the format of an instrument."""
 
 from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 
-from pellicle.errors import ConfigError, StorageError, shown
-from pellicle.operators import Array
-from pellicle.units import Quantity
+from pellicle.errors import ConfigError, PellicleError, StorageError
+
+from . import afm
+from .measured import EXAMPLE, NAMES, Calibration, Column, Measured, from_columns, is_curve
 
 _HEADER = re.compile(r"\s*([^\[(]*?)\s*(?:[\[(]([^\])]*)[\])])?\s*")
-_UNITS = {"position": "m", "depth": "m", "force": "N"}
-_EXAMPLE = "position [um],force [nN]"
 _HDF5 = (".h5", ".hdf5", ".nc")
+SUFFIXES = (".csv", ".tsv", ".txt", *_HDF5, *afm.SUFFIXES)
+"""Endings of the files of a folder that are curves."""
+_LABEL = "curve"
+_FILE = "file"
+
+Columns = Mapping[str, Column]
+Found = dict[str, Measured | PellicleError]
+"""What a file holds, by its label in the file: a curve, or what is wrong with it."""
 
 
-@dataclass(frozen=True)
-class Measured:
-    """Columns of a file in SI."""
+def read(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Found:
+    """Return the curves of a file, by their labels; that of an only curve is empty.
 
-    force: Array
-    position: Array | None = None
-    depth: Array | None = None
-
-
-def read(path: Path) -> Measured:
-    """Return position (or depth) and force of a file.
-
-    A table (CSV, TSV, semicolons) has a header such as ``position [um],force [nN]``; other columns
-    are ignored, and cells that hold no number are NaN.  In an HDF5 file the datasets ``position``
-    or ``depth`` and ``force`` have an attribute ``units``; a pellicle result is such a file.
+    A table (CSV, TSV, semicolons) has a header such as ``position [um],force [nN]``; cells that
+    hold no number are NaN, columns of other names are ignored, and rows that differ in a column
+    ``curve`` are different curves.  An HDF5 file has datasets of the same names with an attribute
+    ``units``, or groups of them, one for each curve; a pellicle result is such a file.  Anything
+    else is read by afmformats, which then picks the ``segment``.
 
     Raises
     ------
@@ -43,94 +42,147 @@ def read(path: Path) -> Measured:
     StorageError
         The file cannot be read.
     """
-    columns = _hdf5(path) if path.suffix.lower() in _HDF5 else _table(path)
-    if "force" not in columns:
-        raise ConfigError(
-            f"{path}: has no column force (columns: {', '.join(columns) or 'none'}); give a header "
-            f"such as {_EXAMPLE!r}"
+    calibration = calibration or Calibration()
+    if path.suffix.lower() in afm.SUFFIXES:
+        return afm.read(path, calibration, segment)
+    found = _hdf5(path) if path.suffix.lower() in _HDF5 else _table(path)
+    hint = ""
+    if not any(map(is_curve, found.values())):
+        try:
+            return afm.read(path, calibration, segment)
+        except StorageError:
+            # Not the format of an instrument either, or nobody can tell.
+            hint = "" if afm.installed() else f"; if it is of an instrument: {afm.INSTALL}"
+    if not found:
+        raise StorageError(
+            f"{path}: is neither text, nor HDF5, nor of an instrument that can be read{hint}; "
+            f"export it as a table with a header such as {EXAMPLE!r}"
         )
-    places = [name for name in ("position", "depth") if name in columns]
-    if len(places) != 1:
-        what = "both position and depth" if places else "no column position or depth"
-        raise ConfigError(f"{path}: has {what}; give one of them, e.g. {_EXAMPLE!r}")
-    values = {
-        name: _factor(path, name, columns[name][0]) * columns[name][1]
-        for name in (places[0], "force")
+    curves: Found = {}
+    for label, columns in found.items():
+        try:
+            curves[label] = from_columns(columns, calibration)
+        except ConfigError as error:
+            where = f"{path}: curve {label}" if label else str(path)
+            curves[label] = ConfigError(f"{where}: {error}{hint}")
+    return curves
+
+
+def manifest(path: Path) -> list[dict[str, str]] | None:
+    """Return the rows of a table that lists files, values with their units; None for any other.
+
+    Its header is such as ``file,radius [um]``; a row has what is not empty.
+
+    Raises
+    ------
+    StorageError
+        The file cannot be read.
+    """
+    if path.suffix.lower() not in (".csv", ".tsv", ".txt") or (made := _cells(path)) is None:
+        return None
+    heads, rows, _ = made
+    if _FILE not in [name for name, _ in heads]:
+        return None
+    return [
+        {
+            name: f"{cell.strip()} {unit}".strip()
+            for (name, unit), cell in zip(heads, row, strict=False)
+            if cell.strip()
+        }
+        for row in rows
+    ]
+
+
+def _table(path: Path) -> dict[str, Columns]:
+    """Return the known columns of each curve of a table; none at all if it is no text."""
+    made = _cells(path)
+    if made is None:
+        return {}
+    heads, rows, number = made
+    names = [name for name, _ in heads]
+    places = {name: index for index, name in enumerate(names) if name in NAMES}
+    for name in places:
+        if names.count(name) > 1:
+            raise ConfigError(
+                f"{path}: has several columns {name}: give one curve to a file, tell curves apart "
+                f"by a column {_LABEL}, or name the others differently"
+            )
+    curves: dict[str, list[list[str]]] = {"": rows}
+    if _LABEL in names and places:
+        curves = {}
+        label = names.index(_LABEL)
+        for row in rows:
+            curves.setdefault(row[label].strip() if label < len(row) else "", []).append(row)
+    return {
+        label: {
+            name: Column(heads[index][1], np.array([number(row, index) for row in own]))
+            for name, index in places.items()
+        }
+        for label, own in curves.items()
     }
-    return Measured(**values)
 
 
-def _factor(path: Path, name: str, unit: str) -> float:
-    """Return what a column is to be multiplied by."""
-    if not unit:
-        raise ConfigError(
-            f"{path}: column {name} has no unit; write it in the header, e.g. {_EXAMPLE!r}"
-        )
-    try:
-        return Quantity(_UNITS[name])(f"1 {unit}")
-    except ValueError:
-        hint = (
-            "; multiply volts by deflection sensitivity [m/V] and spring constant [N/m]"
-            if unit in ("V", "mV", "volt", "volts")
-            else ""
-        )
-        raise ConfigError(
-            f"{path}: column {name} is in {shown(unit)}, which is no unit of {name}; give it in "
-            f"{_UNITS[name]} or a multiple, e.g. {_EXAMPLE!r}{hint}"
-        ) from None
+Number = Callable[[list[str], int], float]
 
 
-def _table(path: Path) -> Mapping[str, tuple[str, Array]]:
-    """Return unit and values of each known column."""
+def _cells(path: Path) -> tuple[list[tuple[str, str]], list[list[str]], Number] | None:
+    """Return name and unit of each column, the rows below, and how numbers are read."""
     try:
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
     except UnicodeDecodeError:
-        raise StorageError(f"{path} is not a text file; give a CSV or an HDF5 file") from None
+        return None
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     if not lines:
-        raise ConfigError(f"{path}: is empty; give a table with the header {_EXAMPLE!r}")
+        raise ConfigError(f"{path}: is empty; give a table with the header {EXAMPLE!r}")
     separator = max("\t;,", key=lines[0].count)
-    rows = list(csv.reader(lines, delimiter=separator))
+    first, *rows = csv.reader(lines, delimiter=separator)
     # Where semicolons separate, commas are decimal.
     comma = separator == ";"
-    columns: dict[str, tuple[str, Array]] = {}
-    for index, head in enumerate(rows[0]):
-        match = _HEADER.fullmatch(head)
-        name, unit = (match[1].lower(), match[2] or "") if match else (head.lower(), "")
-        if name not in _UNITS:
-            continue
-        if name in columns:
-            raise ConfigError(
-                f"{path}: has several columns {name}: give one curve to a file, or name the others "
-                "differently"
-            )
-        columns[name] = (unit, np.array([_number(row, index, comma) for row in rows[1:]]))
-    return columns
+
+    def number(row: list[str], index: int) -> float:
+        try:
+            return float(row[index].replace(",", ".") if comma else row[index])
+        except (ValueError, IndexError):
+            return float("nan")
+
+    return [_head(head) for head in first], rows, number
 
 
-def _number(row: list[str], index: int, comma: bool) -> float:
-    try:
-        return float(row[index].replace(",", ".") if comma else row[index])
-    except (ValueError, IndexError):
-        return float("nan")
+def _head(text: str) -> tuple[str, str]:
+    match = _HEADER.fullmatch(text)
+    return (match[1].lower(), (match[2] or "").strip()) if match else (text.lower(), "")
 
 
-def _hdf5(path: Path) -> Mapping[str, tuple[str, Array]]:
+def _hdf5(path: Path) -> dict[str, Columns]:
     import h5py
 
-    columns: dict[str, tuple[str, Array]] = {}
     try:
         with h5py.File(path) as file:
-            for name in _UNITS:
-                found = file.get(name)
-                if isinstance(found, h5py.Dataset) and found.ndim == 1:
-                    unit = found.attrs.get("units", "")
-                    unit = unit.decode() if isinstance(unit, bytes) else str(unit)
-                    columns[name] = (unit, np.asarray(found, dtype=float))
+            if own := _datasets(file):
+                return {"": own}
+            groups = {
+                str(name): _datasets(group)
+                for name, group in file.items()
+                if isinstance(group, h5py.Group)
+            }
     except OSError as error:
         raise StorageError(
             f"{path}: cannot be read as an HDF5 file ({error.strerror or error})"
         ) from None
+    return {name: columns for name, columns in groups.items() if columns} or {"": {}}
+
+
+def _datasets(group: object) -> dict[str, Column]:
+    """Return the known columns that are datasets of a group."""
+    import h5py
+
+    columns = {}
+    for name in NAMES:
+        found = group.get(name)  # type: ignore[attr-defined]
+        if isinstance(found, h5py.Dataset) and found.ndim == 1:
+            unit = found.attrs.get("units", "")
+            unit = unit.decode() if isinstance(unit, bytes) else str(unit)
+            columns[name] = Column(unit, np.asarray(found, dtype=float))
     return columns

@@ -1,0 +1,281 @@
+"""Writes small files in the formats of instruments, to be read back.
+
+Each writer takes a `Recording`, what a microscope sees of an approach and a retract.
+"""
+
+from __future__ import annotations
+
+import struct
+import zipfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Height of the cantilever's base [m], falling and rising again, and force [N]."""
+
+    height: Array
+    force: Array
+    spring_constant: float
+    sensitivity: float = 50e-9
+
+    @property
+    def segment(self) -> NDArray[np.uint8]:
+        """0 on approach, 1 on retract."""
+        return (np.arange(self.force.size) >= self.force.size // 2).astype(np.uint8)
+
+    @property
+    def volts(self) -> Array:
+        """Signal of the detector."""
+        return self.force / self.spring_constant / self.sensitivity
+
+
+def record(position: Array, force: Array, noise: Array, spring_constant: float) -> Recording:
+    """Return what is seen of a curve, and of the way back with some adhesion.
+
+    Position and force are those of the tip; the noise [N] is that of the deflection.
+    """
+    both = np.concatenate([force, force[::-1] - 0.1 * force.max()])
+    tip = -np.concatenate([position, position[::-1]])
+    seen = both + np.concatenate([noise, noise[::-1]])
+    return Recording(tip - both / spring_constant, seen, spring_constant)
+
+
+def hdf5(path: Path, *recordings: Recording) -> None:
+    """Write what afmformats exports."""
+    import h5py
+
+    with h5py.File(path, "w") as file:
+        for number, each in enumerate(recordings):
+            _exported(path, each, number).export_data(file, fmt="hdf5")
+
+
+def tab(path: Path, recording: Recording) -> None:
+    """Write what afmformats exports."""
+    # Its file is in the encoding of the machine otherwise.
+    with path.open("w", encoding="utf-8", newline="") as file:
+        _exported(path, recording, 0).export_data(file, fmt="tab")
+
+
+def _exported(path: Path, recording: Recording, number: int):  # type: ignore[no-untyped-def]
+    from afmformats.mod_force_distance import AFMForceDistance
+
+    data = {
+        "force": recording.force,
+        "height (measured)": recording.height,
+        "segment": recording.segment,
+    }
+    metadata = {
+        "imaging mode": "force-distance",
+        "spring constant": recording.spring_constant,
+        "enum": number,
+        "path": path,
+    }
+    return AFMForceDistance(data, metadata)
+
+
+def jpk(path: Path, *recordings: Recording) -> None:
+    """Write a JPK archive: properties, and channels of big-endian integers; several make a map."""
+    with zipfile.ZipFile(path, "w") as archive:
+        general = "file-format-version=0.5\n"
+        if len(recordings) > 1:
+            archive.writestr("header.properties", general)
+            archive.writestr("index/", "")
+        for number, each in enumerate(recordings):
+            folder = f"index/{number}/" if len(recordings) > 1 else ""
+            if folder:
+                archive.writestr(folder, "")
+            archive.writestr(f"{folder}header.properties", general)
+            archive.writestr(f"{folder}segments/", "")
+            for segment, style in enumerate(("extend", "retract")):
+                inner = f"{folder}segments/{segment}/"
+                rows = each.segment == segment
+                archive.writestr(inner, "")
+                archive.writestr(
+                    f"{inner}segment-header.properties", _jpk_header(each, rows, style, number)
+                )
+                for name, values in (("measuredHeight", each.height), ("vDeflection", each.volts)):
+                    whole = np.round(values[rows] / _jpk_step(values)).astype(">i4")
+                    archive.writestr(f"{inner}channels/{name}.dat", whole.tobytes())
+
+
+def _jpk_step(values: Array) -> float:
+    return float(np.abs(values).max()) / 2**30
+
+
+def _jpk_header(recording: Recording, rows: NDArray[np.bool_], style: str, number: int) -> str:
+    settings = "force-segment-header.settings"
+    lines = [
+        f"force-segment-header.num-points={rows.sum()}",
+        "force-segment-header.duration=1.0",
+        "force-segment-header.approach-id=1",
+        "force-segment-header.time-stamp=2026-01-02 10:11:12 +0000",
+        f"force-scan-map.header.position-index={number}",
+        f"{settings}.style={style}",
+        f"{settings}.feedback-mode.name=contact",
+        f"{settings}.segment-settings.duration=1.0",
+        f"{settings}.segment-settings.z-start=1e-5",
+        f"{settings}.segment-settings.z-end=0.0",
+    ]
+    for name, values, base, steps in (
+        ("measuredHeight", recording.height, "nominal", {}),
+        (
+            "vDeflection",
+            recording.volts,
+            "volts",
+            {
+                "distance": ("volts", recording.sensitivity, "m"),
+                "force": ("distance", recording.spring_constant, "N"),
+            },
+        ),
+    ):
+        channel = f"channel.{name}"
+        unit = "m" if base == "nominal" else "V"
+        lines += [
+            f"{channel}.data.encoder.type=signedinteger",
+            f"{channel}.data.encoder.scaling.offset=0.0",
+            f"{channel}.data.encoder.scaling.multiplier={_jpk_step(values)!r}",
+            f"{channel}.data.encoder.scaling.unit.unit={unit}",
+            f"{channel}.conversion-set.conversions.base={base}",
+            f"{channel}.conversion-set.conversion.{base}.name={base}",
+        ]
+        for slot, (of, multiplier, unit) in steps.items():
+            conversion = f"{channel}.conversion-set.conversion.{slot}"
+            lines += [
+                f"{conversion}.name={slot}",
+                f"{conversion}.base-calibration-slot={of}",
+                f"{conversion}.scaling.offset=0.0",
+                f"{conversion}.scaling.multiplier={multiplier!r}",
+                f"{conversion}.scaling.unit.unit={unit}",
+            ]
+    return "\n".join(lines) + "\n"
+
+
+def ibw(path: Path, recording: Recording) -> None:
+    """Write an Asylum file: an Igor binary wave (version 5) with a note and labels of columns."""
+    columns = {
+        "Raw": -recording.height,
+        "Defl": recording.force / recording.spring_constant,
+        "ZSnsr": -recording.height,
+    }
+    note = "\r".join(
+        [
+            "ScanSize: 0",
+            "ImagingMode: Contact",
+            "NumPtsPerSec: 1000",
+            f"InvOLS: {float(recording.sensitivity)!r}",
+            "TriggerChannel: Force",
+            f"TriggerPoint: {float(recording.force.max())!r}",
+            f"SpringConstant: {recording.spring_constant!r}",
+            "InputTime: 1",
+            "ApproachVelocity: 1e-6",
+            "RetractVelocity: 1e-6",
+            "MicroscopeModel: MFP3D",
+            "Version: 1",
+            "Date: 2026-01-02",
+            "Time: 10:11:12 AM",
+        ]
+    ).encode()
+    data = np.column_stack(list(columns.values())).astype("<f8")
+    labels = b"".join(name.encode().ljust(32, b"\0") for name in ("", *columns))
+    header = bytearray(320)
+    struct.pack_into("<i", header, 12, data.size)
+    struct.pack_into("<h", header, 16, 4)
+    struct.pack_into("<h", header, 26, 1)
+    struct.pack_into("<4i", header, 68, *data.shape, 0, 0)
+    struct.pack_into("<8d", header, 84, *[1.0] * 4, *[0.0] * 4)
+    body = data.tobytes(order="F")
+    sizes = struct.pack(
+        "<3i i 4i 4i 3i",
+        *(len(header) + len(body), 0, len(note)),
+        0,
+        *(0, 0, 0, 0),
+        *(0, len(labels), 0, 0),
+        *(0, 0, 0),
+    )
+    # The 16-bit words of the two headers add up to nothing.
+    head = struct.pack("<2h", 5, 0) + sizes
+    total = sum(struct.unpack(f"<{(len(head) + len(header)) // 2}h", head + bytes(header)))
+    checksum = (-total + 2**15) % 2**16 - 2**15
+    head = struct.pack("<2h", 5, checksum) + sizes
+    path.write_bytes(head + bytes(header) + body + note + labels)
+
+
+def workshop(path: Path, recording: Recording) -> None:
+    """Write an AFM Workshop table, in volts."""
+    half = recording.force.size // 2
+    nm = -1e9 * recording.height
+    columns = (nm[:half], recording.volts[:half], nm[half:], recording.volts[half:])
+    lines = [
+        "Force-Distance Curve",
+        "File Format:\t3",
+        "",
+        "Date:\tWednesday, August 1, 2018",
+        "Time:\t1:07:47 PM",
+        "Mode:\tSingle",
+        "Point:\t1",
+        "X, um:\t27.250000",
+        "Y, um:\t27.250000",
+        "",
+        "Extend Z-Sense(nm),Extend T-B(V),Retract Z-Sense(nm),Retract T-B(V)",
+        *(",".join(f"{value:.10g}" for value in row) for row in zip(*columns, strict=True)),
+    ]
+    path.write_text("\n".join(lines), encoding="utf-8")
+
+
+def nova(path: Path, recording: Recording) -> None:
+    """Write a table of NT-MDT Nova, without a header: height [nm] and both signals [nA].
+
+    The retract is that of the approach's heights.
+    """
+    half = recording.force.size // 2
+    back = np.arange(half)[::-1]
+    signal = 1e9 * recording.volts[:half]
+    rows = np.column_stack([1e9 * recording.height[:half], signal, signal - 1])[back]
+    path.write_text("\n".join(" ".join(f"{v:.10g}" for v in row) for row in rows), encoding="utf-8")
+
+
+def chiaro(path: Path, recording: Recording) -> None:
+    """Write a table of an Optics11 Chiaro indenter, in the encoding of western Windows."""
+    bending = recording.force / recording.spring_constant
+    time = np.linspace(0, 1, recording.force.size)
+    piezo = -recording.height
+    columns = (time, 1e6 * recording.force, 1e9 * (piezo - bending), 1e9 * bending, 1e9 * piezo)
+    lines = [
+        "Date\t02/01/2026\tTime\t10:11:12\tStatus\tok",
+        "Device:\tChiaro",
+        f"k (N/m)\t{recording.spring_constant!r}",
+        "Software version\t3",
+        "Max load (µN)\t1",
+        "Piezo position (nm) (Measured)\t1000",
+        "Piezo speed  (µm/s)\t1",
+        "",
+        "Time (s)\tLoad (uN)\tIndentation (nm)\tCantilever (nm)\tPiezo (nm)",
+        *("\t".join(f"{value:.10g}" for value in row) for row in zip(*columns, strict=True)),
+    ]
+    path.write_text("\n".join(lines) + "\n", encoding="ISO-8859-1")
+
+
+WRITERS: dict[str, Callable[[Path, Recording], None]] = {
+    "export.h5": hdf5,
+    "export.tab": tab,
+    "curve.jpk-force": jpk,
+    "curve.ibw": ibw,
+    "workshop.csv": workshop,
+    "nova.txt": nova,
+    "chiaro.txt": chiaro,
+}
+"""Files of one curve."""
+MAPS: dict[str, Callable[[Path, Sequence[Recording]], None]] = {
+    "export.h5": lambda path, each: hdf5(path, *each),
+    "map.jpk-force-map": lambda path, each: jpk(path, *each),
+}
+"""Files of several."""
+UNCALIBRATED = ("workshop.csv", "nova.txt")
