@@ -200,8 +200,10 @@ def test_runs_are_the_same_as_here() -> None:
     assert found == {job: press(job, print) for job in jobs}
 
 
+# Started in the background of a shell, tests and what they start would ignore Ctrl-C.
 UNGUARDED = """
-import os, sys, time
+import os, signal, sys, time
+signal.signal(signal.SIGINT, signal.default_int_handler)
 from dataclasses import dataclass
 from pathlib import Path
 import pellicle as pl
