@@ -77,7 +77,7 @@ def measure(
 
     with scipy.fft.set_workers(threads):
         # What is imported on the way is not the solve's.
-        small, loose, _ = problem(case, 32, tension, 0.5 if cutoff is None else cutoff)
+        small, loose, _ = problem(case, 32, tension)
         pl.solver(solver, tolerance=loose).solve(small, None, lambda *_: None)
         before = _peak()
         given, tolerance, setup = problem(case, points, tension, cutoff)

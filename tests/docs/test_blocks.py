@@ -29,7 +29,8 @@ DIRECTIVES = {"{eval-rst}", "{toctree}"}
 EXEMPT = [
     "python3 -m venv .venv && .venv/bin/pip install . && "
     ".venv/bin/pellicle run docs/studies/indent.toml -o results",
-    "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/python -m pytest",
+    "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/python -m pytest "
+    "-n 2 --dist loadfile",
 ]
 """Set-up of a fresh machine: the packaging tests do that."""
 
