@@ -657,22 +657,13 @@ def _print_steps(result: Result) -> None:
             typer.echo(f"step {index + 1}: {status.item()}", err=True)
 
 
-_OF_THE_CONTACT = (
-    "mean_contact_pressure",
-    "contact_radius",
-    "semi_major_axis",
-    "semi_minor_axis",
-    "major_axis_angle",
-    "patches",
-    "perimeter",
-)
-
-
 def _print_contact(result: Result) -> None:
     """Print a second table, of the shape of the contact."""
+    from .dataset import OF_THE_CONTACT
+
     data = result.dataset
     # Files of earlier versions do not say it.
-    names = [name for name in _OF_THE_CONTACT if name in data]
+    names = [name for name in OF_THE_CONTACT if name in data]
     if not names:
         return
     typer.echo("contact:")

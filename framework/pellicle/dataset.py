@@ -44,6 +44,17 @@ DESCRIPTIONS = {
     "status": ("", "how the step ended"),
     "wall_time": ("s", "time that the step took"),
 }
+
+OF_THE_CONTACT = (
+    "mean_contact_pressure",
+    "contact_radius",
+    "semi_major_axis",
+    "semi_minor_axis",
+    "major_axis_angle",
+    "patches",
+    "perimeter",
+)
+"""What is told of the contact beside its area, in a table of its own."""
 """Unit and meaning of each variable of a result."""
 
 

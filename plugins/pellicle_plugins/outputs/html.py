@@ -14,6 +14,7 @@ from pydantic import Field
 from pellicle import Grid, Loading, hookimpl, storage
 from pellicle.columns import FIRST_RUN
 from pellicle.components import Output, Place
+from pellicle.dataset import OF_THE_CONTACT
 from pellicle.errors import StorageError
 from pellicle.inputs import Input, in_words, inputs
 from pellicle.page import (
@@ -223,13 +224,17 @@ def _numbers(data: xr.Dataset) -> list[str]:
 
 
 def _steps(data: xr.Dataset) -> list[Table]:
-    """Return the numbers of each load step: what was found, and at what effort."""
+    """Return the numbers of each load step: what was found, of what shape, and at what effort."""
     effort = [n for n in _numbers(data) if n in _EFFORT or n.startswith("residual_")]
-    found = [n for n in _numbers(data) if n not in effort]
-    return [
-        _table_of_steps(data, found, "What was found in each load step."),
-        _table_of_steps(data, effort, "How exactly each load step was solved, and at what effort."),
-    ]
+    shape = [n for n in _numbers(data) if n in OF_THE_CONTACT]
+    found = [n for n in _numbers(data) if n not in (*effort, *shape)]
+    tables = {
+        "What was found in each load step.": found,
+        "Of what shape the contact is.": shape,
+        "How exactly each load step was solved, and at what effort.": effort,
+    }
+    # Files of earlier versions do not say the shape.
+    return [_table_of_steps(data, names, said) for said, names in tables.items() if names]
 
 
 def _table_of_steps(data: xr.Dataset, names: list[str], caption: str) -> Table:

@@ -134,7 +134,8 @@ def test_every_number_is_there_with_its_unit(ran: tuple[Path, xr.Dataset]) -> No
     """What a step has in the result is in the row of the step, in the unit of its column."""
     path, data = ran
     page = Page(path)
-    found, effort = page.table("What was found"), page.table("How exactly")
+    heads = ("What was found", "Of what shape", "How exactly")
+    found, shape, effort = (page.table(head) for head in heads)
     scalars = [
         str(name)
         for name, v in data.data_vars.items()
@@ -142,7 +143,7 @@ def test_every_number_is_there_with_its_unit(ran: tuple[Path, xr.Dataset]) -> No
     ]
     assert {"contact_area_yastrebov", "wall_time", "residual_load"} <= set(scalars)
     for index in range(2):
-        row = {**found[index], **effort[index]}
+        row = {**found[index], **shape[index], **effort[index]}
         assert row["step"] == str(index + 1)
         assert row["status"] == "converged"
         exact = [name for name in scalars if not name.startswith("residual")]
