@@ -14,6 +14,7 @@ from typing import Any, Generic, Self
 from uuid import uuid4
 
 import cloudpickle
+from dask import config
 from dask.system import CPU_COUNT
 from distributed import Client, Future, KilledWorker, LocalCluster, get_worker
 
@@ -28,6 +29,10 @@ _RESTARTS = 3
 """Times that we start workers in place of those that dask has given up, before we do too."""
 _START_WITHIN = 30.0
 """Time that dask has to start a worker again [s]."""
+
+# dask has its workers give memory back as soon as it is free; arrays that come and go, as those of
+# a solve do, would then cost page faults each time. 2**25 is the most that malloc takes.
+_KEEPS_MEMORY = {"MALLOC_TRIM_THRESHOLD_": str(2**30), "MALLOC_MMAP_THRESHOLD_": str(2**25)}
 
 
 class _Local(LocalCluster):
@@ -70,15 +75,17 @@ def cluster(address: str | None, workers: int | None, threads: int) -> Iterator[
 
 
 def _started_here(workers: int) -> LocalCluster:
+    before = config.get("distributed.nanny.pre-spawn-environ")
     try:
-        return _Local(  # type: ignore[no-untyped-call]
-            n_workers=workers,
-            threads_per_worker=1,
-            # Without an address its port is 8787, and another scheduler here has that.
-            dashboard_address=":0",
-            scheduler_kwargs={"dashboard": False},
-            silence_logs=logging.CRITICAL,
-        )
+        with config.set({"distributed.nanny.pre-spawn-environ": before | _KEEPS_MEMORY}):
+            return _Local(  # type: ignore[no-untyped-call]
+                n_workers=workers,
+                threads_per_worker=1,
+                # Without an address its port is 8787, and another scheduler here has that.
+                dashboard_address=":0",
+                scheduler_kwargs={"dashboard": False},
+                silence_logs=logging.CRITICAL,
+            )
     except RuntimeError as error:
         raise ConfigError(
             f"dask cannot start its workers ({error}); they import the script that starts them, so "
