@@ -210,6 +210,7 @@ class IterativeSolver(Solver):
     def solve(self, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
         """Iterate until the tolerance is met, or it is plain that it will not be."""
         state = self.begin(problem, start)
+        patience = self.patience(problem)
         best, best_at, iteration = np.inf, 0, 0
         while True:
             residual = self.residual(problem, state)
@@ -220,7 +221,7 @@ class IterativeSolver(Solver):
                 stop = Stop.NOT_FINITE
             elif residual <= self.tolerance:
                 stop = Stop.DONE
-            elif iteration - best_at >= self.patience(problem):
+            elif iteration - best_at >= patience:
                 stop = Stop.STALLED
             elif iteration >= self.max_iterations:
                 stop = Stop.ITERATION_LIMIT

@@ -6,6 +6,7 @@ import math
 import signal
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple, Protocol, Self
@@ -67,24 +68,22 @@ class Saying:
         return _monitor(index, self._steps, self._say)
 
 
-class Progress:
-    """Shows a bar on a terminal; says nothing where there is none, or when not ``enabled``.
+class _Shown(ABC):
+    """A context with a bar, if there is a terminal for it, that holds back Ctrl-C."""
 
-    The bar has the step, the iteration, the residual and the time left. Ctrl-C takes effect at
-    the next iteration.
-    """
-
-    def __init__(self, steps: int, enabled: bool) -> None:
-        self._steps = steps
-        console = _terminal() if enabled else None
-        self._bar = None if console is None else _make_bar(console)
+    def __init__(self, bar: rich.progress.Progress | None) -> None:
+        self._bar = bar
         self._interrupt = _Interrupt()
+
+    @abstractmethod
+    def _begin(self, bar: rich.progress.Progress) -> None:
+        """Put onto the bar what it shows from the start."""
 
     def __enter__(self) -> Self:
         self._interrupt.hold()
         if self._bar is not None:
             self._bar.start()
-            self._task = self._bar.add_task("", total=float(self._steps), said="")
+            self._begin(self._bar)
         return self
 
     def __exit__(
@@ -98,6 +97,22 @@ class Progress:
         self._interrupt.release()
         if kind is None:
             self._interrupt.check()
+
+
+class Progress(_Shown):
+    """Shows a bar on a terminal; says nothing where there is none, or when not ``enabled``.
+
+    The bar has the step, the iteration, the residual and the time left. Ctrl-C takes effect at
+    the next iteration.
+    """
+
+    def __init__(self, steps: int, enabled: bool) -> None:
+        self._steps = steps
+        console = _terminal() if enabled else None
+        super().__init__(None if console is None else _make_bar(console))
+
+    def _begin(self, bar: rich.progress.Progress) -> None:
+        self._task = bar.add_task("", total=float(self._steps), said="")
 
     def step(self, index: int) -> Monitor:
         """Return the monitor of a load step, counted from 0."""
@@ -121,7 +136,7 @@ class Progress:
             )
 
 
-class StudyProgress:
+class StudyProgress(_Shown):
     """Shows a bar for a study and one for each run at work; without a terminal, a line a run.
 
     Ctrl-C takes effect when a run next says something. Nothing is shown when not ``enabled``.
@@ -131,30 +146,13 @@ class StudyProgress:
         self._total, self._done, self._failed = total, done, 0
         self._console = _stderr() if enabled else None
         is_terminal = self._console is not None and self._console.is_terminal
-        self._bar = _make_study_bar(self._console) if self._console and is_terminal else None
         self._running: dict[str, tuple[rich.progress.TaskID, float]] = {}
-        self._interrupt = _Interrupt()
+        super().__init__(_make_study_bar(self._console) if self._console and is_terminal else None)
 
-    def __enter__(self) -> Self:
-        self._interrupt.hold()
-        if self._bar is not None:
-            self._bar.start()
-            self._all = self._bar.add_task(
-                "runs", total=float(self._total), completed=self._done, said=self._count()
-            )
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        if self._bar is not None:
-            self._bar.stop()
-        self._interrupt.release()
-        if kind is None:
-            self._interrupt.check()
+    def _begin(self, bar: rich.progress.Progress) -> None:
+        self._all = bar.add_task(
+            "runs", total=float(self._total), completed=self._done, said=self._count()
+        )
 
     def report(self, task: Task, said: Said) -> None:
         """Show where a run is."""

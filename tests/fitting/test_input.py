@@ -13,10 +13,8 @@ import numpy as np
 import pytest
 from click.testing import Result
 from numpy.typing import NDArray
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
 from pellicle.fitting.measured import Measured
 from pellicle.fitting.read import read
 
@@ -25,20 +23,6 @@ MODULUS, TENSION, RADIUS, POINT = 5e3, 7.5e-3, 10e-6, 1e-6
 HEADER = "position [um],force [nN]"
 OPTIONS = ("--indenter", "paraboloid", "--radius", "10 um")
 Cli = Callable[..., Result]
-
-
-@pytest.fixture
-def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Cli:
-    """Return a function that calls ``pellicle fit`` in an empty folder and checks its exit code."""
-    monkeypatch.chdir(tmp_path)
-
-    def call(*arguments: str, code: int = 0) -> Result:
-        result = CliRunner().invoke(app, ["fit", *arguments])
-        assert result.exit_code == code, result.output
-        assert "Traceback" not in result.output
-        return result
-
-    return call
 
 
 def _curve(points: int = 300) -> tuple[Array, Array]:

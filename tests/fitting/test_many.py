@@ -14,10 +14,8 @@ import pytest
 import xarray as xr
 from click.testing import Result
 from numpy.typing import NDArray
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.fitting.many import carry_out
 from pellicle.fitting.sources import gather
@@ -29,20 +27,6 @@ OPTIONS = ("-i", "paraboloid", "--radius", "10 um")
 PLAIN = {"fix": {"tension": 0}}
 """Without tension a fit is faster."""
 Cli = Callable[..., Result]
-
-
-@pytest.fixture
-def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Cli:
-    """Return a function that calls ``pellicle fit`` in an empty folder and checks its exit code."""
-    monkeypatch.chdir(tmp_path)
-
-    def call(*arguments: str, code: int = 0) -> Result:
-        result = CliRunner().invoke(app, ["fit", *arguments])
-        assert result.exit_code == code, result.output
-        assert "Traceback" not in result.output
-        return result
-
-    return call
 
 
 def curve(seed: int, *, radius: float = RADIUS, points: int = 60) -> tuple[Array, Array]:
