@@ -16,6 +16,7 @@ from pellicle.operators import Array
 from pellicle.problem import Problem, height_scale
 from pellicle.transfer import prolong
 
+from .extension import bends
 from .guess import first_guess, with_force
 from .inner_solve import inner_solve
 from .preconditioner import Preconditioner, stiffness_orders
@@ -31,19 +32,42 @@ _CLOSE: Final = 0.05
 
 
 @dataclass(frozen=True)
+class _History:
+    """What has been tried, to tell when the contact goes round in a cycle."""
+
+    contacts: frozenset[bytes] = frozenset()
+    """Every contact that there was, packed."""
+    fewest: float = np.inf
+    """Least number of cells found wrong."""
+    cycles: bool = False
+    """Whether a contact came back, and since then there were not fewer cells wrong."""
+
+    def after(self, contact: NDArray[np.bool_], wrong: int) -> _History:
+        """Return it after an inner solve on a contact that found so many cells wrong."""
+        packed = np.packbits(contact).tobytes()
+        return _History(
+            contacts=self.contacts | {packed},
+            fewest=min(wrong, self.fewest),
+            cycles=wrong >= self.fewest and (self.cycles or packed in self.contacts),
+        )
+
+
+@dataclass(frozen=True)
 class _State:
-    pressure: Array
-    """≥ 0 [Pa]."""
+    start: Array
+    """Pressure that the next inner solve starts from [Pa]; it may still pull."""
     displacement: Array
-    gap: Array
-    """u − δ − f [m]."""
+    """What ``start`` makes [m]."""
+    pressure: Array
+    """The same without what pulls [Pa]."""
     contact: NDArray[np.bool_]
     """Where the next inner solve puts pressure."""
     scale: float
     """Height range of the indenter in contact [m]."""
     error: float
-    """max(|gap| under pressure, penetration) [m]."""
+    """max(|gap| under pressure, penetration) of ``start`` [m]."""
     preconditioner: Preconditioner
+    history: _History
 
 
 class ActiveSet(IterativeSolver):
@@ -51,9 +75,10 @@ class ActiveSet(IterativeSolver):
 
     The contact is guessed on a coarser grid; an inner solve finds the pressure, of either sign,
     that closes the gap on it; cells that would need suction leave, cells that penetrate join
-    (Hintermüller, Ito & Kunisch 2002), and so on until nothing changes. Departures: (1) inner
-    solves are as exact as the contact is known; (2) penetration counts only where it exceeds the
-    error of the inner solve, so that loose solves do not scatter the contact.
+    (Hintermüller, Ito & Kunisch 2002), and so on until nothing changes. Departures: (1) an inner
+    solve ends as soon as it is certain which cells are wrong, and those in doubt stay, so that
+    loose solves do not scatter the contact; (2) where the contact comes back to what it was before,
+    one cell at a time changes sides (Murty 1974), until fewer are wrong than ever.
     """
 
     type: Literal["active_set"] = "active_set"
@@ -62,31 +87,26 @@ class ActiveSet(IterativeSolver):
         """Return the state of the last step's pressure, or of the solution on a coarser grid."""
         preconditioner = Preconditioner(problem.operator)
         if start is not None and start.any():
-            state = _clipped(problem, start, None, preconditioner)
+            state = _measured(problem, start, start > 0, preconditioner, _History())
             if state.error <= _CLOSE * state.scale:
                 return state
-        return _clipped(problem, self._cold_start(problem), None, preconditioner)
+        start = self._cold_start(problem)
+        return _measured(problem, start, start > 0, preconditioner, _History())
 
     def step(self, problem: Problem, state: _State) -> _State:
         """Return the state after one inner solve and one look at the contact."""
-        goal = self.tolerance / 2 * state.scale
         found = inner_solve(
             problem,
             state.preconditioner.on(state.contact),
-            state.pressure,
+            state.start,
             state.displacement,
-            state.error,
-            goal,
+            self.tolerance / 2 * state.scale,
         )
-        pulls = float(found.pressure.min()) < 0
-        # Where nothing pulls this pressure is the next state's, whose displacement is due anyway.
-        displacement = found.displacement if pulls else problem.operator(found.pressure)
-        gap = displacement - problem.profile
-        gap -= problem.depth(gap[state.contact])
-        contact = np.where(state.contact, found.pressure > 0, gap < -max(found.error, goal))
-        if pulls:
-            return _clipped(problem, found.pressure, contact, state.preconditioner)
-        return _measured(problem, found.pressure, displacement, contact, state.preconditioner)
+        history = state.history.after(state.contact, found.wrong.size)
+        contact = state.contact.copy()
+        contact.ravel()[found.wrong[: 1 if history.cycles else None]] ^= True
+        start = np.where(contact, found.pressure, 0.0)
+        return _measured(problem, start, contact, state.preconditioner, history)
 
     def residual(self, problem: Problem, state: _State) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""
@@ -102,7 +122,7 @@ class ActiveSet(IterativeSolver):
         On a skin that bends a contact that is wrong by a row of cells errs by more than one that is
         wrong everywhere, and settles from its edges.
         """
-        return 100 if stiffness_orders(problem.operator, 1)[0] > 2 else 20
+        return 100 if bends(stiffness_orders(problem.operator, 1)[0]) else 20
 
     def punch_pressure(
         self, problem: Problem, contact: NDArray[np.bool_], monitor: Monitor
@@ -118,7 +138,7 @@ class ActiveSet(IterativeSolver):
         while goal < error < before / 2:
             monitor(iteration, error / self.tolerance)
             pressure = inner_solve(
-                flat, preconditioner, pressure, displacement, error, goal
+                flat, preconditioner, pressure, displacement, goal, settled=True
             ).pressure
             displacement = problem.operator(pressure)
             error, before = float(np.abs(1.0 - displacement[contact]).max()), error
@@ -144,44 +164,31 @@ class ActiveSet(IterativeSolver):
         return first_guess(problem)
 
 
-def _clipped(
-    problem: Problem,
-    pressure: Array,
-    contact: NDArray[np.bool_] | None,
-    preconditioner: Preconditioner,
-) -> _State:
-    """Return the state of the positive part of a pressure, with the force that is prescribed.
-
-    The contact, if not known, is where it presses: cells that penetrate under a pressure that does
-    not carry the load yet are many more than will touch.
-    """
-    pressure = with_force(problem, np.maximum(pressure, 0))
-    if contact is None:
-        contact = pressure > 0
-    return _measured(problem, pressure, problem.operator(pressure), contact, preconditioner)
-
-
 def _measured(
     problem: Problem,
-    pressure: Array,
-    displacement: Array,
+    start: Array,
     contact: NDArray[np.bool_],
     preconditioner: Preconditioner,
+    history: _History,
 ) -> _State:
-    """Return the state of a pressure ≥ 0 [Pa] and its displacement [m]."""
-    pressed = pressure > 0
+    """Return the state of a pressure [Pa], with the force that is prescribed."""
+    start = with_force(problem, start)
+    displacement = problem.operator(start)
+    pressed = start != 0
     gap = displacement - problem.profile
     depth = problem.depth(gap[pressed])
     gap -= depth
     inside = float(np.abs(gap[pressed]).max(initial=0.0))
+    pulls = start.min() < 0
     return _State(
-        pressure=pressure,
+        start=start,
         displacement=displacement,
-        gap=gap,
+        pressure=with_force(problem, np.maximum(start, 0)) if pulls else start,
         contact=contact,
         scale=height_scale(problem.profile, pressed, depth),
         error=max(inside, -float(gap.min(initial=0.0))),
         preconditioner=preconditioner,
+        history=history,
     )
 
 

@@ -15,16 +15,24 @@ _FAR: Final = np.float32(0.25)
 # Fine cells that are worked on at a time, so that what is made of them stays in the cache.
 _BLOCK: Final = 2**17
 
-# Where the order is above this, bending decides.
+# Above this order of the stiffness bending decides.
 _BENDS: Final = 2.5
-_SWEEPS: Final = 4
-# Δ² of waves from four cells to two, in units of the cell.
-_SLOWEST, _FASTEST = 4.0, 64.0
-# Over- and underrelaxation at the roots of the Chebyshev polynomial on that range.
+_SWEEPS: Final = 8
+# Δ² of waves from about eight cells to two, in units of the cell.
+_SLOWEST, _FASTEST = 1.0, 64.0
+# Roots of the Chebyshev polynomial from both ends in turns: in order their round-off grows.
+_ROOTS: Final = np.cos(np.pi * (np.arange(_SWEEPS) + 0.5) / _SWEEPS)
+# Over- and underrelaxation on that range.
 _DAMPINGS: Final = tuple(
     np.float32(2 / (_FASTEST + _SLOWEST + (_FASTEST - _SLOWEST) * root))
-    for root in np.cos(np.pi * (np.arange(_SWEEPS) + 0.5) / _SWEEPS)
+    for pair in zip(_ROOTS[: _SWEEPS // 2], _ROOTS[::-1], strict=False)
+    for root in pair
 )
+
+
+def bends(order: float) -> bool:
+    """Whether bending decides where the stiffness goes as q^``order``."""
+    return order > _BENDS
 
 
 class Extension:
@@ -55,7 +63,7 @@ class Extension:
         weight = known.astype(np.float32)
         self._free: list[Field] = []
         self._shares: list[Field] = []
-        self._bends = [order > _BENDS for order in orders]
+        self._bends = [bends(order) for order in orders]
         for order in orders:
             self._free.append(1 - weight)
             total = _sum_of_four(weight)
@@ -71,11 +79,11 @@ class Extension:
             levels.append(_sum_of_four(levels[-1]))
             levels[-1] *= share
         filled = levels.pop()
-        for free, own, bends in zip(
+        for free, own, relaxes in zip(
             reversed(self._free), reversed(levels), reversed(self._bends), strict=True
         ):
             filled = _interpolate(filled, free, own)
-            for damping in _DAMPINGS if bends else ():
+            for damping in _DAMPINGS if relaxes else ():
                 change = _biharmonic(filled)
                 change *= damping
                 change *= free
@@ -85,8 +93,8 @@ class Extension:
     def gather(self, values: Field) -> Field:
         """Return the transpose of E applied to ``values``; of use only where known."""
         levels = [values]
-        for free, bends in zip(self._free, self._bends, strict=True):
-            for damping in reversed(_DAMPINGS) if bends else ():
+        for free, relaxes in zip(self._free, self._bends, strict=True):
+            for damping in reversed(_DAMPINGS) if relaxes else ():
                 change = _biharmonic(free * levels[-1])
                 change *= damping
                 levels[-1] = levels[-1] - change

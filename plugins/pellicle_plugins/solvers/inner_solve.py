@@ -12,9 +12,12 @@ from pellicle.problem import Problem
 from .preconditioner import Cells, OnContact
 from .products import dot
 
-# The error shrinks by this factor before the contact is looked at again: by more for a stiffness of
-# an order above 2, where a small gap is a large pressure, whose sign decides.
-_REDUCTION: Final = 0.03
+# Later iterations may change a value by what the last one changed, this many times over.
+_LASTING: Final = 2.0
+# A solve ends when no more cells are in doubt, for each that is certain to be wrong.
+_DOUBTS: Final = 0.3
+# One iteration does not tell what the next may change.
+_LEAST: Final = 2
 # No solve shrinks the error by more than this: the operator is applied in single precision, which
 # has no more digits, and the next solve starts from a displacement in double.
 _SINGLE: Final = 1e-5
@@ -31,6 +34,8 @@ class Inner(NamedTuple):
     """To the digits of single precision in what has changed [m]."""
     error: float
     """max |gap| on the contact [m]."""
+    wrong: Cells
+    """Flat index, ascending, of each cell of the contact that pulls or other that penetrates."""
 
 
 def inner_solve(
@@ -38,32 +43,36 @@ def inner_solve(
     preconditioner: OnContact,
     pressure: Array,
     displacement: Array,
-    error: float,
     goal: float,
+    *,
+    settled: bool = False,
 ) -> Inner:
-    """Return the pressure on a contact whose gap is nearly closed.
+    """Return the pressure on a contact whose gap is nearly closed, and where the contact is wrong.
 
     Preconditioned conjugate gradients, with a prescribed force in the space of pressures that keep
-    it. They go on beyond the first reduction of ``error`` [m] for as long as the contact would stay
-    as it is, until the error is at ``goal`` [m]. All vectors are on the cells of the contact, but
-    the displacement, which tells where else the surface penetrates.
+    it. They go on until the error is at ``goal`` [m] or, unless the contact is ``settled``,
+    until nearly all cells that pull or penetrate are certain to. All vectors are on the cells of
+    the contact, but the displacement, which tells where else the surface penetrates.
 
     The operator is applied in single precision, in less than half of the time: to solve again for
-    what is left recovers all digits (iterative refinement; Wilkinson 1963).
+    what is left recovers all digits (iterative refinement; Wilkinson 1963). Under a skin that bends
+    it is applied in double: a gap that single precision does not see is a pressure above those
+    whose sign is sought.
     """
     cells = preconditioner.cells
     if not cells.size:
-        return Inner(np.zeros(problem.grid.shape), np.zeros(problem.grid.shape), 0.0)
+        return Inner(np.zeros(problem.grid.shape), np.zeros(problem.grid.shape), 0.0, cells)
     search = _Search(preconditioner, keeps_force=problem.prescribed == "force")
-    whole = np.zeros(problem.grid.shape, dtype=np.float32)
+    whole = np.zeros(problem.grid.shape, dtype=np.float64 if preconditioner.bends else np.float32)
     displacement = displacement.copy()
-    goal = max(goal, _SINGLE * error)
     pressed = pressure.ravel()[cells]
     aloft = displacement.ravel()[cells] - problem.profile.ravel()[cells]
     residual = problem.depth(aloft) - aloft
-    reduction = _REDUCTION ** max(1.0, preconditioner.order / 2)
-    next_look = max(reduction * error, goal)
-    best, since_best = np.inf, 0
+    error = search.error(residual)
+    goal = max(goal, _SINGLE * error)
+    best, since_best, iteration = np.inf, 0, 0
+    signs = _Signs(problem, cells)
+    wrong = None
     direction = search(residual)
     descent = dot(residual, direction)
     while descent > 0 and since_best < _PATIENCE:
@@ -83,27 +92,65 @@ def inner_solve(
         pressed += direction
         error = search.error(residual)
         best, since_best = (error, 0) if error < best else (best, since_best + 1)
-        if error <= next_look:
-            settled = pressed.min() >= 0 and not _penetrates(problem, displacement, cells, error)
-            if error <= goal or not settled:
+        iteration += 1
+        if error <= goal:
+            break
+        if not settled and iteration >= _LEAST:
+            change -= search.mean(inside)
+            wrong = signs.certain(pressed, displacement, goal, direction, change)
+            if wrong is not None:
                 break
-            next_look = max(reduction * next_look, goal)
         ascent = search(residual)
         before, descent = descent, dot(residual, ascent)
         # The direction was multiplied by its step length.
         direction *= curvature / before * (descent / before)
         direction += ascent
+    if wrong is None:
+        wrong = signs.all(pressed, displacement, max(error, goal))
     pressure = np.zeros(problem.grid.shape)
     pressure.ravel()[cells] = pressed
-    return Inner(pressure, displacement, error)
+    return Inner(pressure, displacement, error, np.sort(wrong))
 
 
-def _penetrates(problem: Problem, displacement: Array, cells: Cells, error: float) -> bool:
-    """Whether the surface penetrates off the contact by more than ``error`` [m]."""
-    gap = displacement - problem.profile
-    inside = gap.ravel()[cells]
-    deepest = problem.depth(inside) - error
-    return bool(np.count_nonzero(gap < deepest) > np.count_nonzero(inside < deepest))
+class _Signs:
+    """Tells which cells have the wrong sign: in contact those that pull, others that penetrate."""
+
+    def __init__(self, problem: Problem, cells: Cells) -> None:
+        self._problem = problem
+        self._cells = cells
+        self._off = np.ones(problem.grid.shape, dtype=bool)
+        self._off.ravel()[cells] = False
+
+    def all(self, pressed: Array, displacement: Array, margin: float) -> Cells:
+        """Return the flat index of each, from pressures in contact [Pa] and the displacement [m].
+
+        Cells penetrate where they do by more than ``margin`` [m].
+        """
+        pulls, penetrates, _ = self._wrong(pressed, displacement, margin)
+        return np.concatenate([self._cells[pulls], penetrates])
+
+    def certain(
+        self, pressed: Array, displacement: Array, margin: float, step: Array, change: Array
+    ) -> Cells | None:
+        """Return those that later iterations will not change, or None if too many are in doubt.
+
+        ``step`` [Pa] and ``change`` [m] are what the last one changed in pressure and gap.
+        """
+        pulls, penetrates, gap = self._wrong(pressed, displacement, margin)
+        surely = pressed[pulls] < -_LASTING * np.abs(step[pulls])
+        deeply = gap < -_LASTING * np.abs(change.ravel()[penetrates])
+        certain = np.concatenate([self._cells[pulls[surely]], penetrates[deeply]])
+        doubtful = pulls.size + penetrates.size - certain.size
+        return certain if certain.size and doubtful <= _DOUBTS * certain.size else None
+
+    def _wrong(
+        self, pressed: Array, displacement: Array, margin: float
+    ) -> tuple[Cells, Cells, Array]:
+        """Return which of the contact pull, the flat index of what penetrates, and its gap."""
+        gap = displacement - self._problem.profile
+        gap -= self._problem.depth(gap.ravel()[self._cells])
+        penetrates = np.flatnonzero((gap < -margin) & self._off)
+        return np.flatnonzero(pressed < 0), penetrates, gap.ravel()[penetrates]
 
 
 class _Search:
@@ -120,11 +167,15 @@ class _Search:
         if not self._keeps_force:
             return self._preconditioner(residual)
         # The mean has no effect but on round-off: single precision must not spend its digits on it.
-        direction = self._preconditioner(residual - residual.mean())
+        direction = self._preconditioner(residual - self.mean(residual))
         direction -= self._lift * float(direction.sum())
         return direction
 
+    def mean(self, gap: Array) -> float:
+        """Return by how much the depth makes up for a gap on the contact; 0 if it is given."""
+        return float(gap.mean()) if self._keeps_force else 0.0
+
     def error(self, residual: Array) -> float:
-        """Return max |gap| on the contact; with a given force the mean gap is the depth's."""
-        mean = float(residual.mean()) if self._keeps_force else 0.0
+        """Return max |gap| on the contact."""
+        mean = self.mean(residual)
         return max(float(residual.max()) - mean, mean - float(residual.min()))

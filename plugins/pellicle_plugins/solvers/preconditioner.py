@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pellicle.grid import Grid
 from pellicle.operators import Array, Operator
 
-from .extension import Extension, Field
+from .extension import Extension, Field, bends
 
 Cells = NDArray[np.int64]
 
@@ -64,7 +64,7 @@ class Preconditioner:
             copied=np.concatenate([np.empty(0, dtype=np.int64), *copied]),
             extension=Extension(known, self._orders[:-1]),
             stiffen=self._stiffen,
-            order=self._orders[0],
+            bends=bends(self._orders[0]),
         )
 
     def _stiffen(self, field: Field) -> Field:
@@ -90,12 +90,12 @@ class OnContact:
         copied: Cells,
         extension: Extension,
         stiffen: Callable[[Field], Field],
-        order: float,
+        bends: bool,
     ) -> None:
         self.cells = cells
         """Flat index of each cell of the contact on the grid."""
-        self.order = order
-        """α of the stiffness, k ~ q^α, at the size of a cell."""
+        self.bends = bends
+        """Whether bending decides at the size of a cell."""
         self._places = places
         self._copied = copied
         self._extension = extension
