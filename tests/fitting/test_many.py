@@ -174,7 +174,7 @@ def test_simulated_once_here(monkeypatch: pytest.MonkeyPatch) -> None:
         asked.append(settings["executor"])
         return indenter
 
-    monkeypatch.setattr("pellicle.fitting.fit.simulate", simulate)
+    monkeypatch.setattr("pellicle.fitting.posed.simulate", simulate)
     curves = {str(seed): curve(seed) for seed in range(2)}
     common: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "fix": {"tension": 0}}
     there = pl.fit_many(

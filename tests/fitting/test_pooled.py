@@ -14,10 +14,10 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli import app
 from pellicle.fitting import simulation
-from pellicle.fitting.fit import widened
 from pellicle.fitting.interval import Minimum
 from pellicle.fitting.likelihood import MODULUS, TENSION, Likelihood
 from pellicle.fitting.pool import Pool
+from pellicle.fitting.profiled import widened
 from pellicle.fitting.simulated import SimulatedCurve
 
 Array = NDArray[np.float64]

@@ -149,7 +149,9 @@ def _only_one(report: bool) -> None:
 def _fit_one(
     source: Source, indenter: dict[str, Any], options: dict[str, Any], study: dict[str, Any]
 ) -> Fit:
-    from pellicle.fitting.fit import cleaned, fitted, modelled, question
+    from pellicle.fitting.fit import fitted
+    from pellicle.fitting.posed import cleaned, modelled
+    from pellicle.fitting.question import question
 
     measured = source.curve
     if isinstance(measured, PellicleError):

@@ -11,7 +11,8 @@ from .printing import print_table
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from pellicle.fitting.fit import Estimate, Fit
+    from pellicle.fitting.estimate import Estimate
+    from pellicle.fitting.fit import Fit
     from pellicle.fitting.pooled import PooledFit
 
 

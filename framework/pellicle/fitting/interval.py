@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
+from scipy.special import stdtrit
 
 from pellicle.operators import Array
 
 from .likelihood import MODULUS, POINT, REACH, TENSION, ChiSquared
 
+CONFIDENCE = 0.95
 _ACCURACY = 2e-3
 """To which an end is found, relative to its distance from the value."""
 _BETTER = 1e-3
@@ -31,6 +33,11 @@ class Better(Exception):  # noqa: N818 - no error: the search goes on from there
     def __init__(self, minimum: Minimum) -> None:
         super().__init__(minimum)
         self.minimum = minimum
+
+
+def allowed_rise(freedom: float) -> float:
+    """Return the rise of χ² at the ends of an interval, with the noise known that well."""
+    return float(stdtrit(freedom, (1 + CONFIDENCE) / 2) ** 2)
 
 
 def interval(

@@ -8,6 +8,7 @@ import pickle
 from collections.abc import Mapping
 from contextlib import closing
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -18,7 +19,9 @@ from pellicle.progress import StudyProgress
 from pellicle.storage import check_writable
 
 from .curve import Curve, Segment
-from .fit import Baseline, Question, cleaned, fitted, modelled, question
+from .fit import fitted
+from .posed import cleaned, modelled
+from .question import Baseline, Question, question
 from .rows import FAILED, FITTED, NOT_RUN, table, write
 from .simulation import GRID_POINTS
 from .sources import Curves, Source, gather
@@ -236,9 +239,7 @@ def _file(directory: Path | None, curve: Curve, asked: Question, grid_points: in
 
 def _identity(curve: Curve, asked: Question, grid_points: int) -> str:
     """Return what tells this curve and what is asked of it from all others."""
-    from pellicle import __version__
-
-    known = hashlib.sha256(__version__.encode())
+    known = hashlib.sha256(version("pellicle").encode())
     kernel = asked.material and asked.material.kernel
     for part in (asked.indenter, kernel):
         if isinstance(part, Component):

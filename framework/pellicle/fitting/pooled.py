@@ -16,26 +16,17 @@ from pellicle.operators import Array
 
 from .curve import Curve, Segment
 from .design import percent
-from .fit import (
-    CONFIDENCE,
-    Baseline,
-    Estimate,
-    Explained,
-    allowed_rise,
-    cleaned,
-    comparison,
-    described,
-    explain,
-    modelled,
-    of_log,
-    plausible,
-    question,
-    widened,
-    youngs_modulus,
-)
-from .interval import Better, Minimum, interval
+from .estimate import Estimate, of_log, youngs_modulus
+from .explained import Explained, explain
+from .fit import comparison
+from .interval import CONFIDENCE, Better, Minimum, allowed_rise, interval
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
+from .plausible import plausible
 from .pool import Pool
+from .posed import cleaned, modelled
+from .profiled import widened
+from .question import Baseline, question
+from .simulated import described
 from .simulation import GRID_POINTS
 from .sources import Curves, gather
 from .start import KEPT

@@ -14,7 +14,9 @@ from pellicle.plotting import axis_unit, svg
 from pellicle.storage import aside, reported
 
 from . import drawing
-from .fit import CONFIDENCE, Estimate, Fit
+from .estimate import Estimate
+from .fit import Fit
+from .interval import CONFIDENCE
 
 _CAPTIONS = (
     "Data, fit, and the fit without tension; below, what each leaves.",
