@@ -14,7 +14,6 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli import app
 from pellicle.fitting import simulation
-from pellicle.fitting.interval import Minimum
 from pellicle.fitting.likelihood import MODULUS, TENSION, Likelihood
 from pellicle.fitting.pool import Pool
 from pellicle.fitting.profiled import widened
@@ -142,7 +141,7 @@ def test_ends_are_where_the_profile_has_risen(fit: pl.PooledFit) -> None:
         for end in ends:
             start = fit.parameters + 2 * bound * random.standard_normal(bound.size)
             start[which] = end
-            least = fit.pool.minimise(start, (which,))[1]
+            least = fit.pool.minimise(start, (which,)).chi_squared
             assert least - fit.chi_squared == pytest.approx(fit.rise, rel=0.02)
 
 
@@ -210,8 +209,8 @@ def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> Non
             here = replace(model, unit=radius, coarse=coarser)
             members.append(Likelihood(z, f, here, 0.01 * float(np.ptp(f)), (0, 1, 2)))
         pool = Pool.of(members)
-        best = Minimum(*pool.minimise(pool.joined(starts)))
-        ends.append(widened({MODULUS: (0.0, 0.0)}, pool, best, []))
+        best = pool.minimise(pool.joined(starts))
+        ends.append(widened({MODULUS: (0.0, 0.0)}, pool, best)[0])
     assert ends[0] == {MODULUS: (0.0, 0.0)}
     low, high = ends[1][MODULUS]
     assert low is not None

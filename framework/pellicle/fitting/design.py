@@ -79,11 +79,10 @@ def undecided(
     tension: Estimate,
     likelihood: Likelihood,
     parameters: Array,
-    messages: list[str],
-) -> None:
+) -> list[str]:
     """Say why an interval is open."""
     if modulus.held or tension.held:
-        return
+        return []
     if modulus.low is None or modulus.high is None or tension.high is None:
         which = "modulus" if modulus.low is None or modulus.high is None else "tension"
         depth = float(likelihood.position[-1] - parameters[POINT])
@@ -94,7 +93,8 @@ def undecided(
         )
         if decidable(*designs(likelihood, _with_tension(likelihood, parameters, tension))):
             text += f"; the curve is too {'shallow' if length > depth else 'deep'}"
-        messages.append(text)
+        return [text]
+    return []
 
 
 def _with_tension(likelihood: Likelihood, parameters: Array, tension: Estimate) -> Array:

@@ -101,7 +101,7 @@ def _rises(fit: Fit) -> tuple[Array, Array, Array]:
     for row in nearest:
         start = warm.copy()
         start[MODULUS] = np.log(moduli[row])
-        ridge, _ = held.minimise(start)
+        ridge = held.minimise(start).parameters
         deviation = float(held.deviations(ridge)[TENSION])
         half = _HALF * (deviation if np.isfinite(deviation) else ridge[TENSION])
         lowest = max(ridge[TENSION] - half, 0.0)
@@ -109,7 +109,7 @@ def _rises(fit: Fit) -> tuple[Array, Array, Array]:
         for column, tension in enumerate(tensions[row]):
             start = ridge.copy()
             start[TENSION] = tension
-            rise[row, column] = held.minimise(start, (TENSION,))[1] - fit.chi_squared
+            rise[row, column] = held.minimise(start, (TENSION,)).chi_squared - fit.chi_squared
     return np.repeat(moduli[:, None], _STEPS, axis=1), tensions, rise
 
 

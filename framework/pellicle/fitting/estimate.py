@@ -35,21 +35,14 @@ class Estimate:
             "held": self.held,
         }
 
+    def exponential(self) -> Estimate:
+        """Return the estimate of what this is the logarithm of."""
+        value = float(np.exp(self.value))
+        low, high = (None if end is None else float(np.exp(end)) for end in (self.low, self.high))
+        return replace(self, value=value, low=low, high=high, bound=self.bound * value)
 
-def of_log(log: Estimate) -> Estimate:
-    """Return the modulus whose logarithm is estimated."""
-    value = float(np.exp(log.value))
-    low, high = (None if end is None else float(np.exp(end)) for end in (log.low, log.high))
-    return replace(log, value=value, low=low, high=high, bound=log.bound * value)
-
-
-def youngs_modulus(reduced: Estimate, poissons_ratio: float | None) -> Estimate | None:
-    """Return E = (1 − ν²) E*, if ν was given."""
-    return None if poissons_ratio is None else _times(reduced, 1 - poissons_ratio**2)
-
-
-def _times(estimate: Estimate, factor: float) -> Estimate:
-    low, high = (None if end is None else end * factor for end in (estimate.low, estimate.high))
-    return replace(
-        estimate, value=estimate.value * factor, low=low, high=high, bound=estimate.bound * factor
-    )
+    def times(self, factor: float) -> Estimate:
+        """Return the estimate of a multiple."""
+        low, high = (None if end is None else end * factor for end in (self.low, self.high))
+        value, bound = self.value * factor, self.bound * factor
+        return replace(self, value=value, low=low, high=high, bound=bound)

@@ -11,8 +11,7 @@ from pellicle.errors import ConfigError
 from pellicle.operators import Array
 
 from .curve import Curve
-from .interval import Minimum
-from .likelihood import OFFSET, POINT, SLOPE, Likelihood
+from .likelihood import OFFSET, POINT, SLOPE, Likelihood, least
 from .question import Question
 from .start import starts
 
@@ -49,7 +48,7 @@ def explain(curve: Curve, asked: Question) -> Explained:
     rough = Likelihood(
         curve.position, curve.force, asked.indenter, largest, asked.free, curve.stiffness
     )
-    minimum = best_of([rough.minimise(start) for start in _starts(rough, asked.held)])
+    minimum = least(rough.minimise(start) for start in _starts(rough, asked.held))
     noise, freedom, source = _noise(rough, minimum.parameters, messages)
     return Explained(
         replace(rough, noise=noise), minimum.parameters, freedom, source, tuple(messages)
@@ -63,11 +62,6 @@ def _starts(likelihood: Likelihood, held: Array) -> list[Array]:
             "is nowhere pushed back as an indenter would be; check signs, indenter and fix", "force"
         )
     return found
-
-
-def best_of(found: list[tuple[Array, float]]) -> Minimum:
-    """Return the least of several minima."""
-    return Minimum(*min(found, key=lambda each: each[1]))
 
 
 def _noise(rough: Likelihood, parameters: Array, messages: list[str]) -> tuple[float, float, str]:

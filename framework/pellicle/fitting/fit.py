@@ -3,95 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from pellicle.components import Executor, HasForceCurve, Indenter
 from pellicle.errors import ConfigError
-from pellicle.operators import Array
 
+from .answer import Answer
 from .curve import Curve, Segment
 from .design import advice, undecided
-from .estimate import Estimate, of_log, youngs_modulus
+from .estimate import Estimate
 from .explained import explain
-from .interval import CONFIDENCE, allowed_rise
-from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood
+from .interval import allowed_rise
+from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood, Minimum, least
 from .measured import Calibration, Measured
 from .plausible import plausible
 from .posed import cleaned, modelled
-from .profiled import profiled, widened
+from .profiled import profiled
 from .question import Baseline, Question, question
 from .simulated import described
 from .simulation import GRID_POINTS
-from .written import as_json, write_json
+from .start import starts
 
 
 @dataclass(frozen=True)
-class Fit:
+class Fit(Answer):
     """What a curve says of the solid, and how sure it is."""
 
-    reduced_modulus: Estimate
-    """E* [Pa]."""
-    tension: Estimate
-    """τ₀ [N/m]."""
     contact_point: Estimate
     """Position of first touch [m]."""
     offset: Estimate
     """Force of the baseline at the first position [N]."""
     slope: Estimate
     """Slope of the baseline [N/m]."""
-    youngs_modulus: Estimate | None
-    """E = (1 − ν²) E* [Pa], if Poisson's ratio was given."""
     noise: float
     """Standard deviation of the force [N]."""
     noise_from: str
     """What it was estimated from."""
     points: int
     """Rows that were used."""
-    chi_squared: float
-    """Least sum of squared residuals over the noise."""
-    chi_squared_without_tension: float
-    """The same with tension held at 0."""
-    comparison: str
-    """Whether tension is needed, in words."""
-    advice: str
-    """The bound that was reached, and what would tighten it."""
-    messages: tuple[str, ...]
-    """What to be careful of."""
     likelihood: Likelihood
     """The curve and its χ²."""
-    parameters: Array
-    """Parameters of the fit, in the order of `likelihood`."""
-    parameters_without_tension: Array
-    """The same with tension held at 0 (Hertz, for a paraboloid)."""
-    rise: float
-    """Rise of χ² at the ends of the intervals."""
-
-    def estimates(self) -> dict[str, Estimate]:
-        """Return the parameters by name; a baseline and Young's modulus only if asked for."""
-        return {
-            name: value
-            for name, value in vars(self).items()
-            if isinstance(value, Estimate) and not (value.held and name in ("offset", "slope"))
-        }
-
-    def save(self, path: str | Path) -> Path:
-        """Write what `to_dict` returns to a JSON file, and return its name.
-
-        Raises
-        ------
-        StorageError
-            The file cannot be written.
-        """
-        return write_json(self.to_dict(), Path(path))
-
-    def to_json(self) -> str:
-        """Return what `to_dict` returns as JSON."""
-        return as_json(self.to_dict())
 
     def model(self) -> dict[str, Any]:
         """Return indenter and kernel that were fitted with, as JSON has them.
@@ -102,17 +58,10 @@ class Fit:
 
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold."""
-        gain = self.chi_squared_without_tension - self.chi_squared
-        return {name: value.to_dict() for name, value in self.estimates().items()} | {
+        return super().to_dict() | {
             "model": self.model(),
-            "confidence": CONFIDENCE,
             "noise": {"value": self.noise, "unit": "N", "from": self.noise_from},
             "points": self.points,
-            "chi_squared": self.chi_squared,
-            "without_tension": {"delta_chi_squared": gain, "delta_aic": gain - 2},
-            "comparison": self.comparison,
-            "advice": self.advice,
-            "messages": list(self.messages),
         }
 
 
@@ -219,57 +168,48 @@ def fitted(curve: Curve, asked: Question) -> Fit:
         The curve cannot be fitted.
     """
     alone = explain(curve, asked)
-    likelihood, free, messages = alone.likelihood, asked.free, list(alone.messages)
-    rise = allowed_rise(alone.freedom)
-    best, without, ends = profiled(likelihood, alone.parameters, rise)
-    ends = widened(ends, likelihood, best, messages)
-    point, log_modulus = best.parameters[POINT], best.parameters[MODULUS]
-    bound = likelihood.deviations(best.parameters)
-    modulus = float(np.exp(log_modulus))
-    plausible(curve, asked.indenter, point, modulus, float(best.parameters[TENSION]), messages)
-
-    def estimate(which: int, unit: str) -> Estimate:
-        value = float(best.parameters[which])
-        if which not in free:
-            return Estimate(value, value, value, unit, 0.0, held=True)
-        return Estimate(value, *ends[which], unit, float(bound[which]))
-
-    log = estimate(MODULUS, "Pa")
-    reduced = of_log(log)
-    tension = estimate(TENSION, "N/m")
-    gain = without.chi_squared - best.chi_squared
-    undecided(reduced, tension, likelihood, best.parameters, messages)
+    likelihood, rise = alone.likelihood, allowed_rise(alone.freedom)
+    found = profiled(
+        likelihood,
+        likelihood.minimise(alone.parameters),
+        rise,
+        likelihood.free,
+        partial(_without_tension, likelihood),
+    )
+    best = found.best.parameters
+    point, modulus, tension = (
+        found.estimate(which, unit)
+        for which, unit in ((POINT, "m"), (MODULUS, "Pa"), (TENSION, "N/m"))
+    )
     return Fit(
-        reduced_modulus=reduced,
+        reduced_modulus=modulus,
         tension=tension,
-        contact_point=estimate(POINT, "m"),
-        offset=estimate(OFFSET, "N"),
-        slope=estimate(SLOPE, "N/m"),
-        youngs_modulus=youngs_modulus(reduced, asked.poissons_ratio),
+        poissons_ratio=asked.poissons_ratio,
+        chi_squared=found.best.chi_squared,
+        chi_squared_without_tension=found.without_tension.chi_squared,
+        advice=advice(likelihood, best, tension),
+        messages=(
+            *alone.messages,
+            *found.messages,
+            *plausible(curve, asked.indenter, point.value, modulus.value, tension.value),
+            *undecided(modulus, tension, likelihood, best),
+        ),
+        parameters=best,
+        parameters_without_tension=found.without_tension.parameters,
+        rise=rise,
+        contact_point=point,
+        offset=found.estimate(OFFSET, "N"),
+        slope=found.estimate(SLOPE, "N/m"),
         noise=likelihood.noise,
         noise_from=alone.noise_from,
         points=curve.force.size,
-        chi_squared=best.chi_squared,
-        chi_squared_without_tension=without.chi_squared,
-        comparison=comparison(tension, gain),
-        advice=advice(likelihood, best.parameters, tension),
-        messages=tuple(messages),
         likelihood=likelihood,
-        parameters=best.parameters,
-        parameters_without_tension=without.parameters,
-        rise=rise,
     )
 
 
-def comparison(tension: Estimate, gain: float) -> str:
-    """Return in words whether tension is needed; ``gain`` is how much it lowers χ²."""
-    figures = f"Δχ² = {gain:.3g}, ΔAIC = {gain - 2:.3g}"
-    if tension.held and not tension.value:
-        return "tension is held at 0, so whether it is needed was not asked"
-    if tension.held:
-        return f"tension is held at {tension.value:.4g} N/m ({figures} against none)"
-    if tension.low is not None:
-        return f"tension is needed ({figures} against none)"
-    if tension.high is not None:
-        return f"this curve does not show tension ({figures}); it is below {tension.high:.3g} N/m"
-    return f"this curve does not show tension ({figures}), and sets no bound on it"
+def _without_tension(likelihood: Likelihood, best: Minimum) -> Minimum:
+    """Return the least χ² without tension, near the best and near the best of a scan."""
+    begun = best.parameters.copy()
+    begun[TENSION] = 0.0
+    held = replace(likelihood, free=tuple(k for k in likelihood.free if k != TENSION))
+    return least(held.minimise(start) for start in (begun, *starts(held, begun)[:1]))

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -24,6 +25,18 @@ _ACCURACY = 1e-6
 """Of the master curves."""
 _BALANCED = 1e-9
 """To which cantilever and solid balance, relative to the range of the force."""
+
+
+class Minimum(NamedTuple):
+    """Parameters of least χ²."""
+
+    parameters: Array
+    chi_squared: float
+
+
+def least(found: Iterable[Minimum]) -> Minimum:
+    """Return the least of several minima."""
+    return min(found, key=lambda each: each.chi_squared)
 
 
 class ChiSquared(ABC):
@@ -76,12 +89,12 @@ class ChiSquared(ABC):
         bound[list(self.free)] = np.sqrt(variances) * self.scale[list(self.free)]
         return bound
 
-    def minimise(self, start: Array, held: Sequence[int] = ()) -> tuple[Array, float]:
-        """Return the parameters of least χ² near ``start``, some of them held, and that χ²."""
+    def minimise(self, start: Array, held: Sequence[int] = ()) -> Minimum:
+        """Return the least χ² near ``start``, some of the parameters held."""
         free = [k for k in self.free if k not in held]
         best = np.array(start, dtype=float)
         if not free:
-            return best, self.chi_squared(best)
+            return Minimum(best, self.chi_squared(best))
         scale = self.scale[free]
         lowest = np.full(best.size, -np.inf)
         highest = np.full(best.size, np.inf)
@@ -107,7 +120,7 @@ class ChiSquared(ABC):
             ftol=_TOLERANCE,
             gtol=_TOLERANCE,
         )
-        return full(found.x), 2 * float(found.cost)
+        return Minimum(full(found.x), 2 * float(found.cost))
 
 
 @dataclass(frozen=True)

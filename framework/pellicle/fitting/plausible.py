@@ -17,9 +17,16 @@ _PLAUSIBLE_TENSION = 10.0
 
 
 def plausible(
-    curve: Curve, indenter: Any, point: float, modulus: float, tension: float, messages: list[str]
-) -> None:
-    """Refuse or warn of what a wrong unit or radius would give."""
+    curve: Curve, indenter: Any, point: float, modulus: float, tension: float
+) -> list[str]:
+    """Refuse or warn of what a wrong unit or radius would give.
+
+    Raises
+    ------
+    ConfigError
+        The depth is beyond that of the indenter's force curve.
+    """
+    messages = []
     depth = float(curve.position[-1]) - point
     shape = indenter.indenter if isinstance(indenter, SimulatedCurve) else indenter
     radius = next(iter(lengths(shape)), None) if isinstance(shape, Component) else None
@@ -38,3 +45,4 @@ def plausible(
         messages.append(f"a modulus of {modulus:.3g} Pa is not plausible: are the units right?")
     if tension > _PLAUSIBLE_TENSION:
         messages.append(f"a tension of {tension:.3g} N/m is not plausible: are the units right?")
+    return messages

@@ -12,6 +12,7 @@ from pellicle.operators import Array
 
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, ChiSquared, Likelihood
 
+SHARED = [MODULUS, TENSION]
 _OWN = (POINT, OFFSET, SLOPE)
 """Parameters that each curve has for itself."""
 _ALL = 5
@@ -47,10 +48,6 @@ class Pool(ChiSquared):
     def scale(self) -> Array:
         """What each parameter moves by, about."""
         return self.joined([member.scale for member in self.members])
-
-    def without_tension(self) -> Pool:
-        """Return the same with the tension held."""
-        return Pool(self.members, tuple(k for k in self.free if k != TENSION))
 
     @property
     def accuracy(self) -> float:

@@ -59,7 +59,7 @@ def profile(fit: PooledFit, which: int, axes: Axes) -> None:
     for at in np.argsort(np.abs(values - estimate.value)):
         start = warm.copy()
         start[which] = np.log(values[at]) if which == MODULUS else values[at]
-        rises[at] = fit.pool.minimise(start, (which,))[1] - fit.chi_squared
+        rises[at] = fit.pool.minimise(start, (which,)).chi_squared - fit.chi_squared
     scale, unit = axis_unit(values, estimate.unit)
     axes.plot(values * scale, rises, "C0-")
     axes.axhline(fit.rise, color="0.3", linewidth=0.8, linestyle="--")
