@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from pellicle.errors import ConfigError, PellicleError
+from pellicle.errors import ConfigError
 
 from .exits import INTERRUPTED, NOT_CONVERGED
 from .fits import print_fit, print_fits, print_pooled
@@ -92,6 +92,7 @@ def fit(
 
     Exit code 0 only if every curve was fitted.
     """
+    from pellicle.fitting.fit import fit_source
     from pellicle.fitting.simulation import GRID_POINTS
     from pellicle.fitting.sources import gather
     from pellicle.study_config import DEFAULT_EXECUTOR
@@ -129,7 +130,9 @@ def fit(
         return
     sources = gather(curves, segment, given)
     if [source.name for source in sources] == [str(curves[0])]:
-        made = _fit_one(sources[0], tables["indenter"], options, study)
+        made = fit_source(
+            sources[0], tables["indenter"], options, progress=sys.stderr.isatty(), **study
+        )
         if json:
             print_json(made.to_dict())
         else:
@@ -144,22 +147,6 @@ def fit(
 def _only_one(report: bool) -> None:
     if report:
         raise ConfigError("is of one curve; fit that one alone, or leave it out", "--report")
-
-
-def _fit_one(
-    source: Source, indenter: dict[str, Any], options: dict[str, Any], study: dict[str, Any]
-) -> Fit:
-    from pellicle.fitting.fit import fitted
-    from pellicle.fitting.posed import cleaned, modelled
-    from pellicle.fitting.question import question
-
-    measured = source.curve
-    if isinstance(measured, PellicleError):
-        raise measured
-    is_depth = measured.depth is not None
-    asked = question(indenter, source.fields, is_depth=is_depth, **options)
-    curve = cleaned(measured, asked.segment)
-    return fitted(curve, modelled(asked, curve, progress=sys.stderr.isatty(), **study))
 
 
 def _fit_many(

@@ -10,9 +10,8 @@ from scipy.special import fdtrc
 from pellicle.errors import ConfigError
 from pellicle.operators import Array
 
-from .curve import Curve
 from .likelihood import OFFSET, POINT, SLOPE, Likelihood, least
-from .question import Question
+from .posed import Posed
 from .start import starts
 
 _QUIET = 20
@@ -27,6 +26,7 @@ _CHANCE = 1e-3
 class Explained:
     """A curve on its own: its likelihood with its noise, and the best parameters."""
 
+    posed: Posed
     likelihood: Likelihood
     parameters: Array
     freedom: float
@@ -35,7 +35,7 @@ class Explained:
     messages: tuple[str, ...]
 
 
-def explain(curve: Curve, asked: Question) -> Explained:
+def explain(posed: Posed) -> Explained:
     """Return the best parameters of a curve and its noise.
 
     Raises
@@ -43,6 +43,7 @@ def explain(curve: Curve, asked: Question) -> Explained:
     ConfigError
         Nothing explains the curve.
     """
+    curve, asked = posed.curve, posed.asked
     messages = list(curve.messages)
     largest = float(np.max(np.abs(curve.force)))
     rough = Likelihood(
@@ -50,9 +51,8 @@ def explain(curve: Curve, asked: Question) -> Explained:
     )
     minimum = least(rough.minimise(start) for start in _starts(rough, asked.held))
     noise, freedom, source = _noise(rough, minimum.parameters, messages)
-    return Explained(
-        replace(rough, noise=noise), minimum.parameters, freedom, source, tuple(messages)
-    )
+    likelihood = replace(rough, noise=noise)
+    return Explained(posed, likelihood, minimum.parameters, freedom, source, tuple(messages))
 
 
 def _starts(likelihood: Likelihood, held: Array) -> list[Array]:

@@ -11,10 +11,10 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from pellicle.components import Executor, HasForceCurve, Indenter
-from pellicle.errors import ConfigError
+from pellicle.errors import ConfigError, PellicleError
 
 from .answer import Answer
-from .curve import Curve, Segment
+from .curve import Segment
 from .design import advice, undecided
 from .estimate import Estimate
 from .explained import explain
@@ -22,11 +22,12 @@ from .interval import allowed_rise
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood, Minimum, least
 from .measured import Calibration, Measured
 from .plausible import plausible
-from .posed import cleaned, modelled
+from .posed import Posed, posed
 from .profiled import profiled
-from .question import Baseline, Question, question
+from .question import Baseline
 from .simulated import described
 from .simulation import GRID_POINTS
+from .sources import Source
 from .start import starts
 
 
@@ -132,34 +133,50 @@ def fit(
     ConvergenceError, StorageError
         A study did not come to its end.
     """
-    asked = question(
-        indenter,
-        fields,
-        is_depth=depth is not None,
-        kernel=kernel,
-        poissons_ratio=poissons_ratio,
-        fix=fix,
-        baseline=baseline,
-        segment=segment,
-    )
     if (position is None) == (depth is None):
         raise ConfigError("give either position or depth")
     if force is None:
         raise ConfigError("is missing; give the force [N] at each position", "force")
     stiffness = Calibration.of(spring_constant).spring_constant
-    curve = cleaned(Measured(force, position, depth, stiffness=stiffness), segment)  # type: ignore[arg-type]
-    model = modelled(
-        asked,
-        curve,
+    measured = Measured(force, position, depth, stiffness=stiffness)  # type: ignore[arg-type]
+    options = {
+        "kernel": kernel,
+        "poissons_ratio": poissons_ratio,
+        "fix": fix,
+        "baseline": baseline,
+        "segment": segment,
+    }
+    return fit_source(
+        Source("", measured, fields),
+        indenter,
+        options,
         cache=cache,
         executor=executor,
         grid_points=grid_points,
         progress=progress,
     )
-    return fitted(curve, model)
 
 
-def fitted(curve: Curve, asked: Question) -> Fit:
+def fit_source(
+    source: Source,
+    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
+    options: Mapping[str, Any],
+    **study: Any,
+) -> Fit:
+    """Return the fit of a source; ``options`` are those of `question`, ``study`` of `simulate`.
+
+    Raises
+    ------
+    PellicleError
+        As for `fit`, or why the source could not be read.
+    """
+    (found,) = posed([source], indenter, options)
+    if isinstance(found, PellicleError):
+        raise found
+    return fitted(found.modelled(**study))
+
+
+def fitted(posed: Posed) -> Fit:
     """Return the fit of a curve by an indenter that has a force curve.
 
     Raises
@@ -167,7 +184,7 @@ def fitted(curve: Curve, asked: Question) -> Fit:
     ConfigError
         The curve cannot be fitted.
     """
-    alone = explain(curve, asked)
+    alone = explain(posed)
     likelihood, rise = alone.likelihood, allowed_rise(alone.freedom)
     found = profiled(
         likelihood,
@@ -184,14 +201,14 @@ def fitted(curve: Curve, asked: Question) -> Fit:
     return Fit(
         reduced_modulus=modulus,
         tension=tension,
-        poissons_ratio=asked.poissons_ratio,
+        poissons_ratio=posed.asked.poissons_ratio,
         chi_squared=found.best.chi_squared,
         chi_squared_without_tension=found.without_tension.chi_squared,
         advice=advice(likelihood, best, tension),
         messages=(
             *alone.messages,
             *found.messages,
-            *plausible(curve, asked.indenter, point.value, modulus.value, tension.value),
+            *plausible(posed, point.value, modulus.value, tension.value),
             *undecided(modulus, tension, likelihood, best),
         ),
         parameters=best,
@@ -202,7 +219,7 @@ def fitted(curve: Curve, asked: Question) -> Fit:
         slope=found.estimate(SLOPE, "N/m"),
         noise=likelihood.noise,
         noise_from=alone.noise_from,
-        points=curve.force.size,
+        points=posed.curve.force.size,
         likelihood=likelihood,
     )
 

@@ -7,7 +7,7 @@ from typing import Any
 from pellicle.components import Component
 from pellicle.errors import ConfigError
 
-from .curve import Curve
+from .posed import Posed
 from .simulated import SimulatedCurve
 from .solid import lengths
 
@@ -16,9 +16,7 @@ _PLAUSIBLE_MODULUS = (1.0, 1e12)
 _PLAUSIBLE_TENSION = 10.0
 
 
-def plausible(
-    curve: Curve, indenter: Any, point: float, modulus: float, tension: float
-) -> list[str]:
+def plausible(posed: Posed, point: float, modulus: float, tension: float) -> list[str]:
     """Refuse or warn of what a wrong unit or radius would give.
 
     Raises
@@ -27,7 +25,8 @@ def plausible(
         The depth is beyond that of the indenter's force curve.
     """
     messages = []
-    depth = float(curve.position[-1]) - point
+    indenter: Any = posed.asked.indenter
+    depth = float(posed.curve.position[-1]) - point
     shape = indenter.indenter if isinstance(indenter, SimulatedCurve) else indenter
     radius = next(iter(lengths(shape)), None) if isinstance(shape, Component) else None
     if depth > indenter.depth_limit:

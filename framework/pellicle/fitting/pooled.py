@@ -15,7 +15,7 @@ from pellicle.components import Executor, HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 
 from .answer import Answer
-from .curve import Curve, Segment
+from .curve import Segment
 from .design import percent
 from .estimate import Estimate
 from .explained import Explained, explain
@@ -24,9 +24,9 @@ from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
 from .plausible import plausible
 from .pool import SHARED, Pool
 from .pool_minima import alone, begin, without_tension
-from .posed import cleaned, modelled
+from .posed import posed
 from .profiled import profiled
-from .question import Baseline, question
+from .question import Baseline
 from .simulated import described
 from .simulation import GRID_POINTS
 from .sources import Curves, gather
@@ -133,41 +133,31 @@ def fit_pooled(
     sources = gather(curves, segment, fields)
     if len(sources) < 2:
         raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
-    rows, every, ratio = [], [], None
-    for source in sources:
-        measured = source.curve
-        if isinstance(measured, PellicleError):
-            raise measured
-        asked = question(
-            indenter,
-            source.fields,
-            is_depth=measured.depth is not None,
-            kernel=kernel,
-            poissons_ratio=poissons_ratio,
-            fix=fix,
-            baseline=baseline,
-            segment=segment,
-        )
-        ratio = asked.poissons_ratio
+    options = {
+        "kernel": kernel,
+        "poissons_ratio": poissons_ratio,
+        "fix": fix,
+        "baseline": baseline,
+        "segment": segment,
+    }
+    study = {
+        "cache": cache,
+        "executor": executor,
+        "grid_points": grid_points,
+        "progress": progress,
+    }
+    every = []
+    for source, each in zip(sources, posed(sources, indenter, options), strict=True):
         try:
-            rows.append(cleaned(measured, segment))
-            asked = modelled(
-                asked,
-                rows[-1],
-                cache=cache,
-                executor=executor,
-                grid_points=grid_points,
-                progress=progress,
-            )
-            every.append(explain(rows[-1], asked))
+            if isinstance(each, PellicleError):
+                raise each
+            every.append(explain(each.modelled(**study)))
         except ConfigError as error:
-            raise ConfigError(f"{source.name}: {error}; leave it out") from None
-    return _fitted([source.name for source in sources], rows, every, ratio)
+            raise source.named(error, "; leave it out") from None
+    return _fitted(every)
 
 
-def _fitted(
-    names: list[str], rows: list[Curve], every: list[Explained], ratio: float | None
-) -> PooledFit:
+def _fitted(every: Sequence[Explained]) -> PooledFit:
     pool = Pool.of([each.likelihood for each in every])
     begun = begin(pool, every)
     singles = [
@@ -183,12 +173,12 @@ def _fitted(
     bounds = pool.parts(pool.deviations(found.best.parameters))
     curves = []
     for number, part in enumerate(pool.parts(found.best.parameters)):
-        member, single = pool.members[number], singles[number]
+        each, member, single = every[number], pool.members[number], singles[number]
         point, held = float(part[POINT]), POINT not in member.free
         end = point if held else None
         curves.append(
             PooledCurve(
-                name=names[number],
+                name=each.posed.name,
                 model=described(member.indenter),
                 contact_point=Estimate(point, end, end, "m", float(bounds[number][POINT]), held),
                 offset=float(part[OFFSET]),
@@ -200,15 +190,15 @@ def _fitted(
                 reduced_modulus_alone=float(np.exp(single.parameters[MODULUS])),
                 tension_alone=float(single.parameters[TENSION]),
                 messages=(
-                    *every[number].messages,
-                    *plausible(rows[number], member.indenter, point, modulus.value, tension.value),
+                    *each.messages,
+                    *plausible(each.posed, point, modulus.value, tension.value),
                 ),
             )
         )
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,
-        poissons_ratio=ratio,
+        poissons_ratio=every[0].posed.asked.poissons_ratio,
         chi_squared=found.best.chi_squared,
         chi_squared_without_tension=found.without_tension.chi_squared,
         advice=_advice(modulus, tension),
