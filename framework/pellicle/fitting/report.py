@@ -17,11 +17,7 @@ from . import drawing
 from .estimate import Estimate
 from .fit import Fit
 from .interval import CONFIDENCE
-
-_CAPTIONS = (
-    "Data, fit, and the fit without tension; below, what each leaves.",
-    "The pairs of modulus and tension that explain the curve.",
-)
+from .pictures import HEIGHT, Drawn
 
 
 def save_report(fit: Fit, path: Path, title: str) -> Path:
@@ -36,7 +32,7 @@ def save_report(fit: Fit, path: Path, title: str) -> Path:
         title,
         [
             Section("Result", [*_said(fit), _estimates(fit)]),
-            Section("Figures", _pictures(fit)),
+            Section("Figures", _pictures(drawing.pictures(fit))),
             Section("What would tell more", [Text(_sentence(fit.advice))] if fit.advice else []),
             Section("Inputs", [_model(fit), _facts(fit)]),
             Section("As JSON", [Code(fit.to_json(), "All numbers, SI.", f"{path.stem}.json")]),
@@ -90,9 +86,8 @@ def _row(estimate: Estimate) -> list[str]:
     return [value, *ends, unit, bound]
 
 
-def _pictures(fit: Fit) -> list[Picture]:
-    drawn = (svg(draw, drawing.SIZE) for draw in drawing.pictures(fit))
-    return [Picture(each, said, said) for each, said in zip(drawn, _CAPTIONS, strict=False)]
+def _pictures(drawn: list[Drawn]) -> list[Picture]:
+    return [Picture(svg(d.draw, (d.width, HEIGHT)), d.caption, d.caption) for d in drawn]
 
 
 def _model(fit: Fit) -> Table:
