@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import Result
 from numpy.typing import NDArray
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
 from pellicle.fitting import simulation
 from pellicle.fitting.likelihood import MODULUS, TENSION, Likelihood
 from pellicle.fitting.pool import Pool
 from pellicle.fitting.profiled import widened
+from pellicle.fitting.report import save_report
 from pellicle.fitting.simulated import SimulatedCurve
 
 Array = NDArray[np.float64]
@@ -217,22 +219,36 @@ def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> Non
     assert high == -low == pytest.approx(np.log(1.01), rel=0.05)
 
 
-def test_command(
-    measured: dict[str, tuple[Array, Array]],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """``--pool`` prints, and leaves JSON and a figure."""
-    monkeypatch.chdir(tmp_path)
+def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Result]) -> None:
+    """``--pool`` prints, and leaves JSON, a figure and a page."""
     for number, (position, force) in enumerate(measured.values()):
         rows = np.column_stack([position * 1e6, force * 1e9])
         header = "position [um],force [nN]"
         np.savetxt(f"{number}.csv", rows, delimiter=",", header=header, comments="")
     radii = [text for radius in RADII for text in ("--radius", f"{radius * 1e6:g} um")]
-    arguments = ["fit", "0.csv", "1.csv", "-i", "paraboloid", *radii, "--pool", "-o", "out"]
-    result = CliRunner().invoke(app, arguments)
-    assert result.exit_code == 0, result.output
-    assert "the curves agree" in result.stdout
+    arguments = ("0.csv", "1.csv", "-i", "paraboloid", *radii, "--pool", "-o", "out", "--report")
+    assert "the curves agree" in cli(*arguments).stdout
     said = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
     assert said["reduced_modulus"]["low"] < TRUE_MODULUS < said["reduced_modulus"]["high"]
     assert Path("out/pool.png").stat().st_size > 10_000
+    page = Path("out/pool.html").read_text(encoding="utf-8")
+    for words in ("The curves agree", "0.csv", "5 µm, 40 µm", "modulus alone"):
+        assert words in page
+    assert page.count("data:image/svg+xml") == 2
+
+
+def test_page_of_curves_that_disagree(tmp_path: Path) -> None:
+    """What the curves disagree on is said where it is seen first, and not as good news."""
+    random = np.random.default_rng(5)
+    made = [curve(RADII[0], random, modulus=modulus, points=60)[:2] for modulus in (2e3, 4e3)]
+    fit = pl.fit_pooled(
+        {"soft": made[0], "stiff": made[1]},
+        indenter="paraboloid",
+        radius=RADII[0],
+        fix={"tension": TRUE_TENSION},
+    )
+    page = save_report(fit, tmp_path / "pool.html", "Two gels").read_text(encoding="utf-8")
+    notice = re.search(r'<div class="notice bad">.*?do not agree', page, re.DOTALL)
+    assert notice is not None
+    assert "notice good" not in notice[0]
+    assert page.count("held") >= 2

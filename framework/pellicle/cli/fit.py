@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
 from pellicle.errors import ConfigError
 
 from .exits import INTERRUPTED, NOT_CONVERGED
-from .fits import print_fit, print_fits, print_pooled
+from .fits import print_fit, print_fits
 from .printing import print_json
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
     from pellicle.fitting.fit import Fit
-    from pellicle.fitting.sources import Source
+    from pellicle.fitting.many import Fitted
+    from pellicle.fitting.pooled import PooledFit
 
 
 def fit(
@@ -93,12 +94,14 @@ def fit(
     Exit code 0 only if every curve was fitted.
     """
     from pellicle.fitting.fit import fit_source
+    from pellicle.fitting.many import carry_out
+    from pellicle.fitting.pooled import pool_sources
     from pellicle.fitting.simulation import GRID_POINTS
     from pellicle.fitting.sources import gather
     from pellicle.study_config import DEFAULT_EXECUTOR
 
-    shape = {"radius": radius[0] if radius and len(radius) == 1 else radius}
-    fields = shape | {
+    fields = {
+        "radius": radius[0] if radius and len(radius) == 1 else radius,
         "half_angle": half_angle,
         "spring_constant": spring_constant,
         "sensitivity": sensitivity,
@@ -124,97 +127,78 @@ def fit(
         "executor": tables["executor"],
         "grid_points": GRID_POINTS if grid_points is None else grid_points,
     }
+    progress, wanted = sys.stderr.isatty(), _Wanted(directory, report, json)
+    shape, sources = tables["indenter"], gather(curves, segment, given)
     if pool:
-        _only_one(report)
-        _fit_pooled(curves, tables["indenter"], options | given, study, directory, json=json)
-        return
-    sources = gather(curves, segment, given)
-    if [source.name for source in sources] == [str(curves[0])]:
-        made = fit_source(
-            sources[0], tables["indenter"], options, progress=sys.stderr.isatty(), **study
-        )
-        if json:
-            print_json(made.to_dict())
-        else:
-            print_fit(made)
-        for path in _fit_files(made, curves[0].stem, directory, report=report):
-            typer.echo(f"wrote {path}", err=json)
+        pooled = pool_sources(sources, shape, options, progress=progress, **study)
+        _leave(pooled, "pool", "Pooled fit", wanted)
+    elif [source.name for source in sources] == [str(curves[0])]:
+        made = fit_source(sources[0], shape, options, progress=progress, **study)
+        _leave(made, f"{curves[0].stem}-fit", curves[0].stem, wanted)
     else:
-        _only_one(report)
-        _fit_many(sources, tables["indenter"], options, study, directory, json=json)
+        try:
+            done = carry_out(sources, shape, options, directory=directory, progress=True, **study)
+        except KeyboardInterrupt:
+            kept = f"; what was finished is in {directory}, and the same command goes on"
+            typer.echo(f"interrupted{kept if directory else ''}", err=True)
+            raise typer.Exit(INTERRUPTED) from None
+        _leave_table(done, wanted)
 
 
-def _only_one(report: bool) -> None:
-    if report:
-        raise ConfigError("is of one curve; fit that one alone, or leave it out", "--report")
+class _Wanted(NamedTuple):
+    """What is to be left."""
+
+    directory: Path | None
+    report: bool
+    json: bool
+
+    def page(self, name: str) -> Path:
+        return (self.directory or Path()) / f"{name}.html"
 
 
-def _fit_many(
-    sources: list[Source],
-    indenter: dict[str, Any],
-    options: dict[str, Any],
-    study: dict[str, Any],
-    directory: Path | None,
-    *,
-    json: bool,
-) -> None:
-    from pellicle.fitting.many import carry_out
+def _leave(made: Fit | PooledFit, name: str, title: str, wanted: _Wanted) -> None:
+    """Print a fit, and leave its files."""
+    from pellicle.fitting import drawing, pooled_drawing
+    from pellicle.fitting.pooled import PooledFit
+    from pellicle.fitting.report import save_report
 
-    try:
-        done = carry_out(sources, indenter, options, directory=directory, progress=True, **study)
-    except KeyboardInterrupt:
-        kept = f"; what was finished is in {directory}, and the same command goes on"
-        typer.echo(f"interrupted{kept if directory else ''}", err=True)
-        raise typer.Exit(INTERRUPTED) from None
-    if json:
+    if wanted.json:
+        print_json(made.to_dict())
+    else:
+        print_fit(made)
+    files = []
+    if wanted.directory is not None:
+        stem = wanted.directory / name
+        files.append(made.save(stem.with_name(f"{name}.json")))
+        picture = stem.with_name(f"{name}.png")
+        if isinstance(made, PooledFit):
+            files.append(pooled_drawing.save_figure(made, picture))
+        else:
+            files.append(drawing.save_figure(made, picture))
+    if wanted.report:
+        files.append(save_report(made, wanted.page(name), title))
+    for path in files:
+        typer.echo(f"wrote {path}", err=wanted.json)
+
+
+def _leave_table(done: Fitted, wanted: _Wanted) -> None:
+    """Print many fits, and leave their page."""
+    from pellicle.fitting.many_report import save_report
+
+    count, files = len(done.rows), list(done.files)
+    if wanted.json:
         print_json({"curves": done.rows})
     else:
         print_fits(done.rows)
     if done.taken:
-        typer.echo(f"{done.taken} of {len(sources)} fits were done before", err=json)
-    for path in done.files:
-        typer.echo(f"wrote {path}", err=json)
+        typer.echo(f"{done.taken} of {count} fits were done before", err=wanted.json)
+    if wanted.report:
+        files.append(save_report(done.rows, wanted.page("fits"), f"Fits of {count} curves"))
+    for path in files:
+        typer.echo(f"wrote {path}", err=wanted.json)
     if done.failed:
-        typer.echo(f"{done.failed} of {len(sources)} curves could not be fitted", err=True)
+        typer.echo(f"{done.failed} of {count} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
-
-
-def _fit_pooled(
-    curves: list[Path],
-    indenter: dict[str, Any],
-    options: dict[str, Any],
-    study: dict[str, Any],
-    directory: Path | None,
-    *,
-    json: bool,
-) -> None:
-    from pellicle.fitting.pooled import fit_pooled
-
-    made = fit_pooled(curves, indenter=indenter, progress=sys.stderr.isatty(), **options, **study)
-    if json:
-        print_json(made.to_dict())
-    else:
-        print_pooled(made)
-    if directory is not None:
-        from pellicle.fitting.pooled_drawing import save_figure
-
-        files = made.save(directory / "pool.json"), save_figure(made, directory / "pool.png")
-        for path in files:
-            typer.echo(f"wrote {path}", err=json)
-
-
-def _fit_files(fit: Fit, stem: str, directory: Path | None, *, report: bool) -> Iterator[Path]:
-    """Write what is asked for of a fit, and yield each file."""
-    name = f"{stem}-fit"
-    if directory is not None:
-        from pellicle.fitting.drawing import save_figure
-
-        yield fit.save(directory / f"{name}.json")
-        yield save_figure(fit, directory / f"{name}.png")
-    if report:
-        from pellicle.fitting.report import save_report
-
-        yield save_report(fit, (directory or Path()) / f"{name}.html", stem)
 
 
 def _tables(tables: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:

@@ -16,40 +16,22 @@ if TYPE_CHECKING:
     from pellicle.fitting.pooled import PooledFit
 
 
-def print_fit(fit: Fit) -> None:
-    """Print the estimates of a fit, its noise, and what it says."""
-    _print_estimates(fit.estimates())
-    typer.echo(f"noise: {fit.noise:.3g} N, from {fit.noise_from}; {fit.points} points")
-    for line in (fit.comparison, fit.advice):
-        if line:
-            typer.echo(line)
-    for message in fit.messages:
-        typer.echo(f"note: {message}", err=True)
+def print_fit(fit: Fit | PooledFit) -> None:
+    """Print the estimates of a fit and what it says; of a pool, a line for each curve."""
+    from pellicle.fitting.pooled import PooledFit
 
-
-def print_pooled(fit: PooledFit) -> None:
-    """Print what a pooled fit says, with a line for each curve."""
     _print_estimates(fit.estimates())
-    rows = [
-        {
-            "curve": curve.name,
-            "contact_point [m]": f"{curve.contact_point.value:.6g}",
-            "noise [N]": f"{curve.noise:.3g}",
-            "points": str(curve.points),
-            "chi_squared": f"{curve.chi_squared:.5g}",
-            "alone: reduced_modulus [Pa]": f"{curve.reduced_modulus_alone:.4g}",
-            "tension [N/m]": f"{curve.tension_alone:.4g}",
-        }
-        for curve in fit.curves
-    ]
-    print_table(list(rows[0]), rows)
-    for line in (fit.comparison, fit.agreement, fit.advice):
+    if isinstance(fit, PooledFit):
+        _print_curves(fit)
+        said = [fit.comparison, fit.agreement, fit.advice]
+        own = [f"{curve.name}: {message}" for curve in fit.curves for message in curve.messages]
+    else:
+        typer.echo(f"noise: {fit.noise:.3g} N, from {fit.noise_from}; {fit.points} points")
+        said, own = [fit.comparison, fit.advice], []
+    for line in filter(None, said):
         typer.echo(line)
-    for message in fit.messages:
+    for message in (*fit.messages, *own):
         typer.echo(f"note: {message}", err=True)
-    for curve in fit.curves:
-        for message in curve.messages:
-            typer.echo(f"note: {curve.name}: {message}", err=True)
 
 
 def print_fits(rows: list[dict[str, Any]]) -> None:
@@ -69,6 +51,22 @@ def print_fits(rows: list[dict[str, Any]]) -> None:
         if reason:
             typer.echo(f"{row['curve']}: {reason}", err=True)
     print_table(list(shown[0]), shown)
+
+
+def _print_curves(fit: PooledFit) -> None:
+    rows = [
+        {
+            "curve": curve.name,
+            "contact_point [m]": f"{curve.contact_point.value:.6g}",
+            "noise [N]": f"{curve.noise:.3g}",
+            "points": str(curve.points),
+            "chi_squared": f"{curve.chi_squared:.5g}",
+            "alone: reduced_modulus [Pa]": f"{curve.reduced_modulus_alone:.4g}",
+            "tension [N/m]": f"{curve.tension_alone:.4g}",
+        }
+        for curve in fit.curves
+    ]
+    print_table(list(rows[0]), rows)
 
 
 def _print_estimates(estimates: Mapping[str, Estimate]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from pellicle.operators import Array
 
@@ -16,6 +16,8 @@ from .written import as_json, write_json
 @dataclass(frozen=True)
 class Answer:
     """Modulus and tension, and how well they explain what was measured."""
+
+    _does: ClassVar[str] = "this curve does"
 
     reduced_modulus: Estimate
     """E* [Pa]."""
@@ -56,10 +58,9 @@ class Answer:
         if tension.low is not None:
             return f"tension is needed ({figures} against none)"
         if tension.high is not None:
-            return (
-                f"this curve does not show tension ({figures}); it is below {tension.high:.3g} N/m"
-            )
-        return f"this curve does not show tension ({figures}), and sets no bound on it"
+            bound = f"it is below {tension.high:.3g} N/m"
+            return f"{self._does} not show tension ({figures}); {bound}"
+        return f"{self._does} not show tension ({figures}), nor set a bound on it"
 
     @property
     def _gain(self) -> float:

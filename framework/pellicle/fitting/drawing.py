@@ -30,8 +30,6 @@ _OPEN = 10.0
 """How far an open interval of the modulus is drawn, as a factor."""
 _LEVELS = np.linspace(0, 4, 17)
 _WITHOUT = "without tension"
-_WIDTH = 5.2
-"""Of a picture [inch]."""
 
 
 def curve(fit: Fit, axes: Axes) -> None:
@@ -117,13 +115,12 @@ def pictures(fit: Fit) -> list[Drawn]:
     drawn = [
         Drawn(
             partial(_left, fit),
-            _WIDTH,
             "Data, fit, and the fit without tension; below, what each leaves.",
         )
     ]
     if not (fit.reduced_modulus.held or fit.tension.held):
         said = "The pairs of modulus and tension that explain the curve."
-        drawn.append(Drawn(partial(_right, fit), _WIDTH, said))
+        drawn.append(Drawn(partial(_right, fit), said))
     return drawn
 
 

@@ -1,4 +1,4 @@
-"""Pictures of a fit: each with its width and its caption, beside each other in one file."""
+"""Pictures of a fit: each with its caption, beside each other in one file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pellicle.plotting import save_figure
 if TYPE_CHECKING:
     from matplotlib.figure import FigureBase
 
-HEIGHT = 4.6
+SIZE = (5.2, 4.6)
 """Of a picture [inch]."""
 
 
@@ -19,8 +19,6 @@ class Drawn(NamedTuple):
     """A picture that is to be drawn."""
 
     draw: Callable[[FigureBase], None]
-    width: float
-    """[inch]"""
     caption: str
 
 
@@ -32,12 +30,12 @@ def save(pictures: Sequence[Drawn], path: Path) -> Path:
     StorageError
         The file cannot be written.
     """
-    widths = [each.width for each in pictures]
 
     def fill(figure: FigureBase) -> None:
-        parts = figure.subfigures(1, len(widths), squeeze=False, width_ratios=widths)
+        parts = figure.subfigures(1, len(pictures), squeeze=False)
         for each, part in zip(pictures, parts[0], strict=True):
             each.draw(part)
 
-    (file,) = save_figure(fill, path.with_suffix(""), [path.suffix[1:]], (sum(widths), HEIGHT))
+    size = len(pictures) * SIZE[0], SIZE[1]
+    (file,) = save_figure(fill, path.with_suffix(""), [path.suffix[1:]], size)
     return file

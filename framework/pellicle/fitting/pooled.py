@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.special import chdtrc
@@ -29,7 +29,7 @@ from .profiled import profiled
 from .question import Baseline
 from .simulated import described
 from .simulation import GRID_POINTS
-from .sources import Curves, gather
+from .sources import Curves, Source, gather
 
 _CHANCE = 1e-3
 """A disagreement less likely than this is no chance."""
@@ -73,9 +73,13 @@ class PooledCurve:
 class PooledFit(Answer):
     """What several curves say together of one solid."""
 
+    _does: ClassVar[str] = "these curves do"
+
     curves: tuple[PooledCurve, ...]
     agreement: str
     """Whether the curves agree on one modulus and one tension, in words."""
+    agree: bool
+    """The same; where they do not, the intervals are widened."""
     pool: Pool
     """The curves and their χ²."""
 
@@ -126,13 +130,6 @@ def fit_pooled(
     StorageError
         A folder cannot be read.
     """
-    if "contact_point" in (fix or {}):
-        raise ConfigError(
-            "is not shared, each curve has its own; leave it out", "fix.contact_point"
-        )
-    sources = gather(curves, segment, fields)
-    if len(sources) < 2:
-        raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
     options = {
         "kernel": kernel,
         "poissons_ratio": poissons_ratio,
@@ -140,12 +137,36 @@ def fit_pooled(
         "baseline": baseline,
         "segment": segment,
     }
-    study = {
-        "cache": cache,
-        "executor": executor,
-        "grid_points": grid_points,
-        "progress": progress,
-    }
+    return pool_sources(
+        gather(curves, segment, fields),
+        indenter,
+        options,
+        cache=cache,
+        executor=executor,
+        grid_points=grid_points,
+        progress=progress,
+    )
+
+
+def pool_sources(
+    sources: Sequence[Source],
+    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
+    options: Mapping[str, Any],
+    **study: Any,
+) -> PooledFit:
+    """Return the pooled fit of sources, asked as `fit_source` asks.
+
+    Raises
+    ------
+    PellicleError
+        As for `fit_pooled`.
+    """
+    if "contact_point" in (options["fix"] or {}):
+        raise ConfigError(
+            "is not shared, each curve has its own; leave it out", "fix.contact_point"
+        )
+    if len(sources) < 2:
+        raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
     every = []
     for source, each in zip(sources, posed(sources, indenter, options), strict=True):
         try:
@@ -208,6 +229,7 @@ def _fitted(every: Sequence[Explained]) -> PooledFit:
         rise=rise,
         curves=tuple(curves),
         agreement=_agreement(curves, spread, degrees, factor),
+        agree=factor == 1,
         pool=pool,
     )
 

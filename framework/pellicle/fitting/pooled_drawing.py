@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
 
-_WIDTHS = (6.2, 4.2)
-"""Of the pictures [inch]."""
 _STEPS = 15
 _BEYOND = 0.4
 """How far beyond an interval a profile is drawn, over its width."""
@@ -80,12 +78,10 @@ def pictures(fit: PooledFit) -> list[Drawn]:
     return [
         Drawn(
             partial(_left, fit),
-            _WIDTHS[0],
             "Data and fit of each curve, depth and force over its largest; below, what is left.",
         ),
         Drawn(
             partial(_right, fit),
-            _WIDTHS[1],
             "The rise of the least χ² where a parameter is held; dotted, the ends of its interval.",
         ),
     ]
