@@ -51,12 +51,11 @@ class ChiSquared(ABC):
         """What each parameter moves by, about."""
 
     @abstractmethod
-    def residuals(self, parameters: Array) -> Array:
-        """Return residuals over the noise; their squares add up to χ²."""
+    def expanded(self, parameters: Array) -> tuple[Array, Array]:
+        """Return residuals over the noise, whose squares add up to χ², and their derivatives.
 
-    @abstractmethod
-    def slopes(self, parameters: Array) -> Array:
-        """Return the derivatives of the residuals in each parameter, a column for each."""
+        The derivatives have a column for each parameter.
+        """
 
     @property
     @abstractmethod
@@ -66,6 +65,14 @@ class ChiSquared(ABC):
     @abstractmethod
     def coarse(self) -> ChiSquared | None:
         """Return the same with force curves of coarser grids; None where none is simulated."""
+
+    def residuals(self, parameters: Array) -> Array:
+        """Return residuals over the noise; their squares add up to χ²."""
+        return self.expanded(parameters)[0]
+
+    def slopes(self, parameters: Array) -> Array:
+        """Return the derivatives of the residuals in each parameter, a column for each."""
+        return self.expanded(parameters)[1]
 
     def chi_squared(self, parameters: Array) -> float:
         """Return the sum of squared residuals."""
@@ -107,11 +114,20 @@ class ChiSquared(ABC):
             parameters[free] = u * scale
             return parameters
 
+        # The optimiser asks for slopes where it has just asked for residuals.
+        slopes: dict[bytes, Array] = {}
+
+        def residuals(u: Array) -> Array:
+            slopes.clear()
+            found, slopes[u.tobytes()] = self.expanded(full(u))
+            return found
+
         def jacobian(u: Array) -> Array:
-            return self.slopes(full(u))[:, free] * scale
+            known = slopes.get(u.tobytes())
+            return (self.slopes(full(u)) if known is None else known)[:, free] * scale
 
         found = least_squares(
-            lambda u: self.residuals(full(u)),
+            residuals,
             np.clip(best[free], lowest[free], highest[free]) / scale,
             jacobian,
             (lowest[free] / scale, highest[free] / scale),
@@ -181,13 +197,10 @@ class Likelihood(ChiSquared):
         """Return the derivatives of the force, shape (n, 5)."""
         return self._model(self.position, parameters)[1]
 
-    def residuals(self, parameters: Array) -> Array:
-        """Return (model − force) / noise."""
-        return (self._balanced(parameters)[0] - self.force) / self.noise
-
-    def slopes(self, parameters: Array) -> Array:
-        """Return the derivatives of the residuals, shape (n, 5)."""
-        return self._balanced(parameters)[1] / self.noise
+    def expanded(self, parameters: Array) -> tuple[Array, Array]:
+        """Return (model − force) / noise and its derivatives, shapes (n,) and (n, 5)."""
+        force, jacobian = self._balanced(parameters)
+        return (force - self.force) / self.noise, jacobian / self.noise
 
     def _balanced(self, parameters: Array) -> tuple[Array, Array]:
         """Return force and derivatives where the base of the cantilever is, not its tip.

@@ -62,30 +62,21 @@ class Pool(ChiSquared):
         pairs = zip(coarser, self.members, strict=True)
         return Pool(tuple(made or member for made, member in pairs), self.free)
 
-    def residuals(self, parameters: Array) -> Array:
-        """Return residuals of the same squares as all, six for each curve."""
-        return np.concatenate([rotated[:, _ALL] for rotated in self._rotated(parameters)])
+    def expanded(self, parameters: Array) -> tuple[Array, Array]:
+        """Return residuals of the same squares as all, six for each curve, and their derivatives.
 
-    def slopes(self, parameters: Array) -> Array:
-        """Return the derivatives that belong to `residuals`."""
-        rotated = self._rotated(parameters)
+        A rotation changes neither χ² nor a step of Gauss and Newton, and in the right coordinates
+        six are left of thousands of points: a hundred curves fit into memory.
+        """
+        rotated: list[Array] = []
+        for member, part in zip(self.members, self.parts(parameters), strict=True):
+            residuals, slopes = member.expanded(part)
+            rotated.append(np.asarray(np.linalg.qr(np.column_stack([slopes, residuals]), mode="r")))
         slopes = np.zeros((sum(map(len, rotated)), parameters.size))
         for number, own in enumerate(rotated):
             rows = slice((_ALL + 1) * number, (_ALL + 1) * (number + 1))
             slopes[rows, _places(number)] = own[:, :_ALL]
-        return slopes
-
-    def _rotated(self, parameters: Array) -> list[Array]:
-        """Return slopes and residuals of each curve in the coordinates in which they are fewest.
-
-        A rotation changes neither χ² nor a step of Gauss and Newton, and what is left of thousands
-        of points are six: a hundred curves fit into memory.
-        """
-        rotated: list[Array] = []
-        for member, part in zip(self.members, self.parts(parameters), strict=True):
-            both = np.column_stack([member.slopes(part), member.residuals(part)])
-            rotated.append(np.asarray(np.linalg.qr(both, mode="r")))
-        return rotated
+        return np.concatenate([own[:, _ALL] for own in rotated]), slopes
 
 
 def _places(member: int) -> list[int]:
