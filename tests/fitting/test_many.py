@@ -247,6 +247,7 @@ def test_radius_of_each(cli: Cli, listed: bool) -> None:
         (("list.csv", *OPTIONS), "has a row without a file"),
         (("a.csv", *OPTIONS, "--spring-constant", "1 m"), "spring_constant"),
         (("a.csv", *OPTIONS, "--pool"), "a pool needs two"),
+        (("a.csv", *OPTIONS, "--contact-points"), "is of a pool"),
         (("a.csv", "none.csv", *OPTIONS, "--pool"), "none.csv: cannot be read"),
         (("a.csv", "b.csv", *OPTIONS, "--pool", "--fix", "contact_point=0"), "is not shared"),
     ],

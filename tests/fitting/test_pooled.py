@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.fitting import simulation
-from pellicle.fitting.likelihood import MODULUS, TENSION, Likelihood
+from pellicle.fitting.likelihood import MODULUS, POINT, TENSION, Likelihood
 from pellicle.fitting.pool import Pool
 from pellicle.fitting.profiled import widened
 from pellicle.fitting.report import save_report
@@ -54,16 +54,17 @@ def measured() -> dict[str, tuple[Array, Array]]:
 @pytest.fixture(scope="module")
 def fit(measured: dict[str, tuple[Array, Array]]) -> pl.PooledFit:
     """Return their pooled fit."""
-    return pooled(measured)
+    return pooled(measured, contact_points=True)
 
 
 def test_errors_reach_the_pooled_bound_and_intervals_shrink_to_it() -> None:
     """Over random curves errors and intervals are those of the Cramér–Rao bound of the pool."""
     random = np.random.default_rng(8)
-    errors, covered, widths, gains = [], [], [], []
+    errors, covered, widths, gains, touched = [], [], [], [], []
     for _ in range(10):
         made = [curve(radius, random, points=100) for radius in RADII]
-        found = pooled({str(number): each[:2] for number, each in enumerate(made)})
+        curves = {str(number): each[:2] for number, each in enumerate(made)}
+        found = pooled(curves, contact_points=True)
         members = [
             Likelihood(z, f, pl.indenter("paraboloid", radius=radius), noise, (0, 1, 2))  # type: ignore[arg-type]
             for (z, f, _, noise), radius in zip(made, RADII, strict=True)
@@ -84,9 +85,15 @@ def test_errors_reach_the_pooled_bound_and_intervals_shrink_to_it() -> None:
             covered.append(estimate.low < truth < estimate.high)
             widths.append((estimate.high - estimate.low) / 2 / deviation)
             gains.append(min(each[which] for each in alone) / bound[which])
+        for own, (_, _, point, _) in zip(found.curves, made, strict=True):
+            estimate = own.contact_point
+            assert estimate.low is not None
+            assert estimate.high is not None
+            touched.append(estimate.low < point < estimate.high)
     # Three standard deviations of the rms of 20 normal numbers, half of them independent.
     assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 1.6
     assert sum(covered) >= 16
+    assert sum(touched) >= 16
     # 1.96, but for the noise that is estimated from 23 points of each curve.
     assert np.mean(widths) == pytest.approx(2.0, rel=0.1)
     # The two radii tell far more than either alone.
@@ -136,15 +143,33 @@ def test_ends_are_where_the_profile_has_risen(fit: pl.PooledFit) -> None:
     """At each end the least χ² is up by the stated rise, and no start finds less."""
     random = np.random.default_rng(3)
     bound = fit.pool.deviations(fit.parameters)
+    points = [curve.contact_point for curve in fit.curves]
     for which, ends in (
         (MODULUS, np.log([fit.reduced_modulus.low, fit.reduced_modulus.high])),
         (TENSION, [fit.tension.low, fit.tension.high]),
+        *((fit.pool.place(at, POINT), [each.low, each.high]) for at, each in enumerate(points)),
     ):
         for end in ends:
             start = fit.parameters + 2 * bound * random.standard_normal(bound.size)
             start[which] = end
             least = fit.pool.minimise(start, (which,)).chi_squared
             assert least - fit.chi_squared == pytest.approx(fit.rise, rel=0.02)
+
+
+def test_contact_points_are_sought_if_asked(measured: dict[str, tuple[Array, Array]]) -> None:
+    """Without that they have a bound and no ends; those that are held have both."""
+    common = {"indenter": "paraboloid", "radius": list(RADII), "fix": {"tension": TRUE_TENSION}}
+    plain = pl.fit_pooled(measured, **common)  # type: ignore[arg-type]
+    assert plain.curves[0].contact_point.low is None
+    assert plain.curves[0].contact_point.bound > 0
+    told = pl.fit_pooled(measured, contact_points=True, **common)  # type: ignore[arg-type]
+    for curve in told.curves:
+        point = curve.contact_point
+        assert point.low is not None
+        assert point.high is not None
+        # √rise standard deviations, where the noise is known from as few points as here.
+        width = (point.high - point.low) / 2 / point.bound
+        assert width == pytest.approx(np.sqrt(told.rise), rel=0.05)
 
 
 def test_what_is_said(fit: pl.PooledFit) -> None:
@@ -227,12 +252,20 @@ def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Re
         np.savetxt(f"{number}.csv", rows, delimiter=",", header=header, comments="")
     radii = [text for radius in RADII for text in ("--radius", f"{radius * 1e6:g} um")]
     arguments = ("0.csv", "1.csv", "-i", "paraboloid", *radii, "--pool", "-o", "out", "--report")
-    assert "the curves agree" in cli(*arguments).stdout
+    shown = cli(*arguments, "--contact-points").stdout
+    assert "the curves agree" in shown
+    assert "95 % of contact_point" in shown
     said = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
     assert said["reduced_modulus"]["low"] < TRUE_MODULUS < said["reduced_modulus"]["high"]
     assert Path("out/pool.png").stat().st_size > 10_000
     page = Path("out/pool.html").read_text(encoding="utf-8")
-    for words in ("The curves agree", "0.csv", "5 µm, 40 µm", "modulus alone"):
+    for words in (
+        "The curves agree",
+        "0.csv",
+        "5 µm, 40 µm",
+        "modulus alone",
+        "contact point, low",
+    ):
         assert words in page
     assert page.count("data:image/svg+xml") == 2
 

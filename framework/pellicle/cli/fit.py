@@ -60,6 +60,10 @@ def fit(
     pool: Annotated[
         bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
     ] = False,
+    contact_points: Annotated[
+        bool,
+        typer.Option("--contact-points", help="Of a pool, also seek intervals of these."),
+    ] = False,
     executor: Annotated[
         str | None,
         typer.Option(help="What carries out many fits, and runs: serial, processes, dask."),
@@ -127,10 +131,14 @@ def fit(
         "executor": tables["executor"],
         "grid_points": GRID_POINTS if grid_points is None else grid_points,
     }
+    if contact_points and not pool:
+        raise ConfigError("is of a pool; otherwise they have intervals anyway", "--contact-points")
     progress, wanted = sys.stderr.isatty(), _Wanted(directory, report, json)
     shape, sources = tables["indenter"], gather(curves, segment, given)
     if pool:
-        pooled = pool_sources(sources, shape, options, progress=progress, **study)
+        pooled = pool_sources(
+            sources, shape, options, contact_points=contact_points, progress=progress, **study
+        )
         _leave(pooled, "pool", "Pooled fit", wanted)
     elif [source.name for source in sources] == [str(curves[0])]:
         made = fit_source(sources[0], shape, options, progress=progress, **study)

@@ -54,28 +54,32 @@ def print_fits(rows: list[dict[str, Any]]) -> None:
 
 
 def _print_curves(fit: PooledFit) -> None:
-    rows = [
-        {
-            "curve": curve.name,
-            "contact_point [m]": f"{curve.contact_point.value:.6g}",
+    rows = []
+    for curve in fit.curves:
+        point = {"contact_point [m]": f"{curve.contact_point.value:.6g}"}
+        if fit.contact_points:
+            point["95 % of contact_point"] = _ends(curve.contact_point)
+        own = {
             "noise [N]": f"{curve.noise:.3g}",
             "points": str(curve.points),
             "chi_squared": f"{curve.chi_squared:.5g}",
             "alone: reduced_modulus [Pa]": f"{curve.reduced_modulus_alone:.4g}",
             "tension [N/m]": f"{curve.tension_alone:.4g}",
         }
-        for curve in fit.curves
-    ]
+        rows.append({"curve": curve.name, **point, **own})
     print_table(list(rows[0]), rows)
 
 
 def _print_estimates(estimates: Mapping[str, Estimate]) -> None:
     rows = []
     for name, estimate in estimates.items():
-        interval = "held" if estimate.held else _interval(estimate.low, estimate.high)
-        value = f"{estimate.value:.4g}"
-        rows.append({"": name, "value": value, "95 % interval": interval, "unit": estimate.unit})
+        value, ends = f"{estimate.value:.4g}", _ends(estimate)
+        rows.append({"": name, "value": value, "95 % interval": ends, "unit": estimate.unit})
     print_table(["", "value", "95 % interval", "unit"], rows)
+
+
+def _ends(estimate: Estimate) -> str:
+    return "held" if estimate.held else _interval(estimate.low, estimate.high)
 
 
 def _interval(low: float | None, high: float | None) -> str:

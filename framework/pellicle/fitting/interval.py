@@ -51,12 +51,12 @@ def interval(likelihood: ChiSquared, best: Minimum, which: int, rise: float) -> 
 
 
 def _limits(likelihood: ChiSquared, best: Array, which: int) -> tuple[float, float]:
-    value, scale = float(best[which]), float(likelihood.scale[which])
-    if which == MODULUS:
+    value, scale, kind = float(best[which]), float(likelihood.scale[which]), likelihood.kind(which)
+    if kind == MODULUS:
         return value - REACH, value + REACH
-    if which == TENSION:
+    if kind == TENSION:
         return 0.0, float(np.exp(REACH)) * max(value, scale)
-    reach = 10 * scale if which == POINT else 1e3 * scale
+    reach = 10 * scale if kind == POINT else 1e3 * scale
     return value - reach, value + reach
 
 

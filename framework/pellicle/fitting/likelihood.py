@@ -66,6 +66,10 @@ class ChiSquared(ABC):
     def coarse(self) -> ChiSquared | None:
         """Return the same with force curves of coarser grids; None where none is simulated."""
 
+    def kind(self, which: int) -> int:
+        """Return which parameter of a curve a parameter is."""
+        return which
+
     def residuals(self, parameters: Array) -> Array:
         """Return residuals over the noise; their squares add up to χ²."""
         return self.expanded(parameters)[0]

@@ -44,6 +44,14 @@ class Pool(ChiSquared):
         """Return all parameters; modulus and tension are those of the first curve."""
         return np.concatenate([parts[0], *(part[list(_OWN)] for part in parts[1:])])
 
+    def place(self, number: int, which: int) -> int:
+        """Return where a parameter of a curve is among those of the pool."""
+        return _places(number)[which]
+
+    def kind(self, which: int) -> int:
+        """Return which parameter of a curve a parameter is."""
+        return which if which < _ALL else _OWN[(which - _ALL) % len(_OWN)]
+
     @cached_property
     def scale(self) -> Array:
         """What each parameter moves by, about."""

@@ -43,7 +43,7 @@ class PooledCurve:
     model: dict[str, Any]
     """Indenter, and the kernel if it was simulated, as JSON has them."""
     contact_point: Estimate
-    """Position of first touch [m]; its interval is not looked for."""
+    """Position of first touch [m]; its interval only if it was asked for."""
     offset: float
     """Force of the baseline at the first position [N]."""
     slope: float
@@ -80,6 +80,8 @@ class PooledFit(Answer):
     """Whether the curves agree on one modulus and one tension, in words."""
     agree: bool
     """The same; where they do not, the intervals are widened."""
+    contact_points: bool
+    """Whether the intervals of the contact points were asked for."""
     pool: Pool
     """The curves and their χ²."""
 
@@ -104,6 +106,7 @@ def fit_pooled(
     executor: str | Mapping[str, Any] | Executor = "serial",
     grid_points: int = GRID_POINTS,
     progress: bool = False,
+    contact_points: bool = False,
     **fields: Any,
 ) -> PooledFit:
     """Fit one reduced modulus and one tension to several curves together.
@@ -119,6 +122,9 @@ def fit_pooled(
         As for `fit`.
     fix
         Parameters to hold, of those that are shared: reduced_modulus, tension.
+    contact_points
+        Look for the interval of each contact point too. Each takes searches over the parameters of
+        all curves, so that the time grows with the square of their number.
     **fields
         Of the indenter and, if asked for by files, spring_constant and sensitivity; a list has a
         value for each file: ``radius=["5 um", "20 um"]``.
@@ -141,6 +147,7 @@ def fit_pooled(
         gather(curves, segment, fields),
         indenter,
         options,
+        contact_points=contact_points,
         cache=cache,
         executor=executor,
         grid_points=grid_points,
@@ -152,6 +159,8 @@ def pool_sources(
     sources: Sequence[Source],
     indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
     options: Mapping[str, Any],
+    *,
+    contact_points: bool = False,
     **study: Any,
 ) -> PooledFit:
     """Return the pooled fit of sources, asked as `fit_source` asks.
@@ -175,10 +184,10 @@ def pool_sources(
             every.append(explain(each.modelled(**study)))
         except ConfigError as error:
             raise source.named(error, "; leave it out") from None
-    return _fitted(every)
+    return _fitted(every, contact_points)
 
 
-def _fitted(every: Sequence[Explained]) -> PooledFit:
+def _fitted(every: Sequence[Explained], contact_points: bool) -> PooledFit:
     pool = Pool.of([each.likelihood for each in every])
     begun = begin(pool, every)
     singles = [
@@ -189,19 +198,19 @@ def _fitted(every: Sequence[Explained]) -> PooledFit:
     spread = max(begun.chi_squared - sum(single.chi_squared for single in singles), 0.0)
     factor = max(spread / degrees, 1.0) if chdtrc(degrees, spread) < _CHANCE else 1.0
     rise = factor * allowed_rise(sum(each.freedom for each in every))
-    found = profiled(pool, begun, rise, shared, partial(without_tension, pool))
+    points = [pool.place(number, POINT) for number in range(len(every))]
+    wanted = [*shared, *(k for k in points if contact_points and k in pool.free)]
+    found = profiled(pool, begun, rise, wanted, partial(without_tension, pool))
     modulus, tension = found.estimate(MODULUS, "Pa"), found.estimate(TENSION, "N/m")
-    bounds = pool.parts(pool.deviations(found.best.parameters))
     curves = []
     for number, part in enumerate(pool.parts(found.best.parameters)):
         each, member, single = every[number], pool.members[number], singles[number]
-        point, held = float(part[POINT]), POINT not in member.free
-        end = point if held else None
+        point = found.estimate(points[number], "m")
         curves.append(
             PooledCurve(
                 name=each.posed.name,
                 model=described(member.indenter),
-                contact_point=Estimate(point, end, end, "m", float(bounds[number][POINT]), held),
+                contact_point=point,
                 offset=float(part[OFFSET]),
                 slope=float(part[SLOPE]),
                 noise=member.noise,
@@ -212,7 +221,7 @@ def _fitted(every: Sequence[Explained]) -> PooledFit:
                 tension_alone=float(single.parameters[TENSION]),
                 messages=(
                     *each.messages,
-                    *plausible(each.posed, point, modulus.value, tension.value),
+                    *plausible(each.posed, point.value, modulus.value, tension.value),
                 ),
             )
         )
@@ -230,6 +239,7 @@ def _fitted(every: Sequence[Explained]) -> PooledFit:
         curves=tuple(curves),
         agreement=_agreement(curves, spread, degrees, factor),
         agree=factor == 1,
+        contact_points=contact_points,
         pool=pool,
     )
 

@@ -38,10 +38,13 @@ class Profiled:
         return self.likelihood.deviations(self.best.parameters)
 
     def estimate(self, which: int, unit: str) -> Estimate:
-        """Return what is known of a parameter; of `MODULUS`, E* itself."""
+        """Return what is known of a parameter; of `MODULUS`, E* itself.
+
+        What is not ``wanted`` has no ends.
+        """
         value, bound = float(self.best.parameters[which]), float(self._bound[which])
         held = which not in self.likelihood.free
-        low, high = (value, value) if held else self.ends[which]
+        low, high = (value, value) if held else self.ends.get(which, (None, None))
         found = Estimate(value, low, high, unit, bound, held)
         return found.exponential() if which == MODULUS else found
 

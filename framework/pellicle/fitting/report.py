@@ -85,9 +85,11 @@ def _facts(fit: Fit) -> Table:
 
 def _curves(fit: PooledFit) -> Table:
     each = fit.curves
+    points = [curve.contact_point.to_dict() for curve in each]
+    ends = sheet.estimates("contact point", points, "m")
     columns = [
         sheet.words("curve", [curve.name for curve in each]),
-        sheet.numbers("contact point", [curve.contact_point.value for curve in each], "m"),
+        *(ends if fit.contact_points else ends[:1]),
         sheet.numbers("noise", [curve.noise for curve in each], "N"),
         sheet.numbers("points", [curve.points for curve in each]),
         sheet.numbers("χ²", [curve.chi_squared for curve in each]),
