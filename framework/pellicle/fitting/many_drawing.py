@@ -27,7 +27,7 @@ def pictures(rows: list[dict[str, Any]]) -> list[Drawn]:
     """Return the pictures of what `fit_many` found: one, if any curve was fitted."""
     if not any(name in row for name in _SHARED for row in rows):
         return []
-    said = "Each curve by its place in the table; a bar is the interval, a triangle an open end."
+    said = "A bar is the interval: down to 0, or up to a triangle, where an end is open."
     return [Drawn(partial(_fill, rows), said)]
 
 

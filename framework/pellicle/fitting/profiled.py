@@ -28,11 +28,6 @@ class Profiled:
     messages: tuple[str, ...]
     """By how much the intervals were widened."""
 
-    @property
-    def gain(self) -> float:
-        """By how much tension lowers χ²."""
-        return self.without_tension.chi_squared - self.best.chi_squared
-
     @cached_property
     def _bound(self) -> Array:
         return self.likelihood.deviations(self.best.parameters)
@@ -40,7 +35,7 @@ class Profiled:
     def estimate(self, which: int, unit: str) -> Estimate:
         """Return what is known of a parameter; of `MODULUS`, E* itself.
 
-        What is not ``wanted`` has no ends.
+        What no interval was sought of has no ends.
         """
         value, bound = float(self.best.parameters[which]), float(self._bound[which])
         held = which not in self.likelihood.free

@@ -91,9 +91,9 @@ def _curves(fit: PooledFit) -> Table:
         sheet.words("curve", [curve.name for curve in each]),
         *(ends if fit.contact_points else ends[:1]),
         sheet.numbers("noise", [curve.noise for curve in each], "N"),
-        sheet.numbers("points", [curve.points for curve in each]),
-        sheet.numbers("χ²", [curve.chi_squared for curve in each]),
-        sheet.numbers("χ² alone", [curve.chi_squared_alone for curve in each]),
+        sheet.Filled(Column("points"), [str(curve.points) for curve in each]),
+        sheet.Filled(Column("χ²"), [f"{curve.chi_squared:.5g}" for curve in each]),
+        sheet.Filled(Column("χ² alone"), [f"{curve.chi_squared_alone:.5g}" for curve in each]),
         sheet.numbers("modulus alone", [curve.reduced_modulus_alone for curve in each], "Pa"),
         sheet.numbers("tension alone", [curve.tension_alone for curve in each], "N/m"),
     ]

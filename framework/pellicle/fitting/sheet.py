@@ -73,9 +73,9 @@ def words(name: str, texts: Sequence[str | Cell]) -> Filled:
     return Filled(Column(name, words=True), texts)
 
 
-def numbers(name: str, values: Sequence[float], unit: str = "") -> Filled:
+def numbers(name: str, values: Sequence[float], unit: str) -> Filled:
     """Return a column of numbers, in a unit that brings them near 1 … 1000."""
-    factor, shown = axis_unit(np.array(values), unit) if unit else (1.0, "")
+    factor, shown = axis_unit(np.array(values), unit)
     return Filled(Column(name, shown), [f"{value * factor:.4g}" for value in values])
 
 
