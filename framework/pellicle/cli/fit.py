@@ -62,7 +62,7 @@ def fit(
     ] = False,
     contact_points: Annotated[
         bool,
-        typer.Option("--contact-points", help="Of a pool, also seek intervals of these."),
+        typer.Option("--contact-points", help="With --pool: intervals of contact points."),
     ] = False,
     executor: Annotated[
         str | None,
