@@ -34,7 +34,8 @@ if TYPE_CHECKING:
         PluginError,
         StorageError,
     )
-    from .fitting.fit import Estimate, Fit, fit
+    from .fitting.estimate import Estimate
+    from .fitting.fit import Fit, fit
     from .fitting.many import fit_many
     from .fitting.pooled import PooledCurve, PooledFit, fit_pooled
     from .grid import Grid
@@ -56,7 +57,7 @@ _HOME = {
     "ConfigError": "errors",
     "ConvergenceError": "errors",
     "ConvergenceWarning": "errors",
-    "Estimate": "fitting.fit",
+    "Estimate": "fitting.estimate",
     "Executor": "components",
     "Fit": "fitting.fit",
     "ForceCurve": "components",

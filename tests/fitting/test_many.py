@@ -62,7 +62,7 @@ def folder(tmp_path: Path) -> Path:
 def test_folder(cli: Cli, tmp_path: Path) -> None:
     """A row for each file; those that cannot be fitted say why, and the exit code does."""
     folder(tmp_path)
-    result = cli("day", *OPTIONS, "--fix", "tension=0", "-o", "out", code=1)
+    result = cli("day", *OPTIONS, "--fix", "tension=0", "-o", "out", "--report", code=1)
     assert "4 of 6 curves could not be fitted" in result.stderr
     rows = json.loads(Path("out/fits.json").read_text(encoding="utf-8"))["curves"]
     assert [Path(row["curve"]).name for row in rows] == [f"{letter}.csv" for letter in "abcdef"]
@@ -80,6 +80,10 @@ def test_folder(cli: Cli, tmp_path: Path) -> None:
     lines = Path("out/fits.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("curve,status,reduced_modulus [Pa],reduced_modulus_low [Pa],")
     assert len(lines) == 7
+    page = Path("out/fits.html").read_text(encoding="utf-8")
+    for words in ("2 of 6 curves were fitted", "10 µm", "held", "no contact", "svg+xml"):
+        assert words in page
+    assert page.count(">failed</td>") == 4
 
 
 def test_same_as_alone(tmp_path: Path) -> None:
@@ -174,7 +178,7 @@ def test_simulated_once_here(monkeypatch: pytest.MonkeyPatch) -> None:
         asked.append(settings["executor"])
         return indenter
 
-    monkeypatch.setattr("pellicle.fitting.fit.simulate", simulate)
+    monkeypatch.setattr("pellicle.fitting.posed.simulate", simulate)
     curves = {str(seed): curve(seed) for seed in range(2)}
     common: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "fix": {"tension": 0}}
     there = pl.fit_many(
@@ -243,6 +247,7 @@ def test_radius_of_each(cli: Cli, listed: bool) -> None:
         (("list.csv", *OPTIONS), "has a row without a file"),
         (("a.csv", *OPTIONS, "--spring-constant", "1 m"), "spring_constant"),
         (("a.csv", *OPTIONS, "--pool"), "a pool needs two"),
+        (("a.csv", *OPTIONS, "--contact-points"), "is of a pool"),
         (("a.csv", "none.csv", *OPTIONS, "--pool"), "none.csv: cannot be read"),
         (("a.csv", "b.csv", *OPTIONS, "--pool", "--fix", "contact_point=0"), "is not shared"),
     ],

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import Result
 from numpy.typing import NDArray
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli import app
 from pellicle.fitting import simulation
-from pellicle.fitting.fit import widened
-from pellicle.fitting.interval import Minimum
-from pellicle.fitting.likelihood import MODULUS, TENSION, Likelihood
+from pellicle.fitting.likelihood import MODULUS, POINT, TENSION, Likelihood
 from pellicle.fitting.pool import Pool
+from pellicle.fitting.profiled import widened
+from pellicle.fitting.report import save_report
 from pellicle.fitting.simulated import SimulatedCurve
 
 Array = NDArray[np.float64]
@@ -53,16 +54,17 @@ def measured() -> dict[str, tuple[Array, Array]]:
 @pytest.fixture(scope="module")
 def fit(measured: dict[str, tuple[Array, Array]]) -> pl.PooledFit:
     """Return their pooled fit."""
-    return pooled(measured)
+    return pooled(measured, contact_points=True)
 
 
 def test_errors_reach_the_pooled_bound_and_intervals_shrink_to_it() -> None:
     """Over random curves errors and intervals are those of the Cramér–Rao bound of the pool."""
     random = np.random.default_rng(8)
-    errors, covered, widths, gains = [], [], [], []
+    errors, covered, widths, gains, touched = [], [], [], [], []
     for _ in range(10):
         made = [curve(radius, random, points=100) for radius in RADII]
-        found = pooled({str(number): each[:2] for number, each in enumerate(made)})
+        curves = {str(number): each[:2] for number, each in enumerate(made)}
+        found = pooled(curves, contact_points=True)
         members = [
             Likelihood(z, f, pl.indenter("paraboloid", radius=radius), noise, (0, 1, 2))  # type: ignore[arg-type]
             for (z, f, _, noise), radius in zip(made, RADII, strict=True)
@@ -83,9 +85,15 @@ def test_errors_reach_the_pooled_bound_and_intervals_shrink_to_it() -> None:
             covered.append(estimate.low < truth < estimate.high)
             widths.append((estimate.high - estimate.low) / 2 / deviation)
             gains.append(min(each[which] for each in alone) / bound[which])
+        for own, (_, _, point, _) in zip(found.curves, made, strict=True):
+            estimate = own.contact_point
+            assert estimate.low is not None
+            assert estimate.high is not None
+            touched.append(estimate.low < point < estimate.high)
     # Three standard deviations of the rms of 20 normal numbers, half of them independent.
     assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 1.6
     assert sum(covered) >= 16
+    assert sum(touched) >= 16
     # 1.96, but for the noise that is estimated from 23 points of each curve.
     assert np.mean(widths) == pytest.approx(2.0, rel=0.1)
     # The two radii tell far more than either alone.
@@ -135,15 +143,33 @@ def test_ends_are_where_the_profile_has_risen(fit: pl.PooledFit) -> None:
     """At each end the least χ² is up by the stated rise, and no start finds less."""
     random = np.random.default_rng(3)
     bound = fit.pool.deviations(fit.parameters)
+    points = [curve.contact_point for curve in fit.curves]
     for which, ends in (
         (MODULUS, np.log([fit.reduced_modulus.low, fit.reduced_modulus.high])),
         (TENSION, [fit.tension.low, fit.tension.high]),
+        *((fit.pool.place(at, POINT), [each.low, each.high]) for at, each in enumerate(points)),
     ):
         for end in ends:
             start = fit.parameters + 2 * bound * random.standard_normal(bound.size)
             start[which] = end
-            least = fit.pool.minimise(start, (which,))[1]
+            least = fit.pool.minimise(start, (which,)).chi_squared
             assert least - fit.chi_squared == pytest.approx(fit.rise, rel=0.02)
+
+
+def test_contact_points_are_sought_if_asked(measured: dict[str, tuple[Array, Array]]) -> None:
+    """Without that they have a bound and no ends; those that are held have both."""
+    common = {"indenter": "paraboloid", "radius": list(RADII), "fix": {"tension": TRUE_TENSION}}
+    plain = pl.fit_pooled(measured, **common)  # type: ignore[arg-type]
+    assert plain.curves[0].contact_point.low is None
+    assert plain.curves[0].contact_point.bound > 0
+    told = pl.fit_pooled(measured, contact_points=True, **common)  # type: ignore[arg-type]
+    for curve in told.curves:
+        point = curve.contact_point
+        assert point.low is not None
+        assert point.high is not None
+        # √rise standard deviations, where the noise is known from as few points as here.
+        width = (point.high - point.low) / 2 / point.bound
+        assert width == pytest.approx(np.sqrt(told.rise), rel=0.05)
 
 
 def test_what_is_said(fit: pl.PooledFit) -> None:
@@ -210,30 +236,52 @@ def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> Non
             here = replace(model, unit=radius, coarse=coarser)
             members.append(Likelihood(z, f, here, 0.01 * float(np.ptp(f)), (0, 1, 2)))
         pool = Pool.of(members)
-        best = Minimum(*pool.minimise(pool.joined(starts)))
-        ends.append(widened({MODULUS: (0.0, 0.0)}, pool, best, []))
+        best = pool.minimise(pool.joined(starts))
+        ends.append(widened({MODULUS: (0.0, 0.0)}, pool, best)[0])
     assert ends[0] == {MODULUS: (0.0, 0.0)}
     low, high = ends[1][MODULUS]
     assert low is not None
     assert high == -low == pytest.approx(np.log(1.01), rel=0.05)
 
 
-def test_command(
-    measured: dict[str, tuple[Array, Array]],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """``--pool`` prints, and leaves JSON and a figure."""
-    monkeypatch.chdir(tmp_path)
+def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Result]) -> None:
+    """``--pool`` prints, and leaves JSON, a figure and a page."""
     for number, (position, force) in enumerate(measured.values()):
         rows = np.column_stack([position * 1e6, force * 1e9])
         header = "position [um],force [nN]"
         np.savetxt(f"{number}.csv", rows, delimiter=",", header=header, comments="")
     radii = [text for radius in RADII for text in ("--radius", f"{radius * 1e6:g} um")]
-    arguments = ["fit", "0.csv", "1.csv", "-i", "paraboloid", *radii, "--pool", "-o", "out"]
-    result = CliRunner().invoke(app, arguments)
-    assert result.exit_code == 0, result.output
-    assert "the curves agree" in result.stdout
+    arguments = ("0.csv", "1.csv", "-i", "paraboloid", *radii, "--pool", "-o", "out", "--report")
+    shown = cli(*arguments, "--contact-points").stdout
+    assert "the curves agree" in shown
+    assert "95 % of contact_point" in shown
     said = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
     assert said["reduced_modulus"]["low"] < TRUE_MODULUS < said["reduced_modulus"]["high"]
     assert Path("out/pool.png").stat().st_size > 10_000
+    page = Path("out/pool.html").read_text(encoding="utf-8")
+    for words in (
+        "The curves agree",
+        "0.csv",
+        "5 µm, 40 µm",
+        "modulus alone",
+        "contact point, low",
+    ):
+        assert words in page
+    assert page.count("data:image/svg+xml") == 2
+
+
+def test_page_of_curves_that_disagree(tmp_path: Path) -> None:
+    """What the curves disagree on is said where it is seen first, and not as good news."""
+    random = np.random.default_rng(5)
+    made = [curve(RADII[0], random, modulus=modulus, points=60)[:2] for modulus in (2e3, 4e3)]
+    fit = pl.fit_pooled(
+        {"soft": made[0], "stiff": made[1]},
+        indenter="paraboloid",
+        radius=RADII[0],
+        fix={"tension": TRUE_TENSION},
+    )
+    page = save_report(fit, tmp_path / "pool.html", "Two gels").read_text(encoding="utf-8")
+    notice = re.search(r'<div class="notice bad">.*?do not agree', page, re.DOTALL)
+    assert notice is not None
+    assert "notice good" not in notice[0]
+    assert page.count("held") >= 2

@@ -9,6 +9,7 @@ import numpy as np
 
 from pellicle.operators import Array
 
+from .estimate import Estimate
 from .likelihood import MODULUS, POINT, TENSION, Likelihood
 
 _FACTORS = (1 / 10, 1 / 3, 3.0, 10.0)
@@ -62,7 +63,49 @@ def decidable(now: Design, others: list[Design]) -> bool:
     return any(design.worse < _USELESS for design in [now, *others])
 
 
-def advice(likelihood: Likelihood, parameters: Array) -> str:
+def advice(likelihood: Likelihood, parameters: Array, tension: Estimate) -> str:
+    """Return advice, if both modulus and tension were asked for."""
+    if not {MODULUS, TENSION} <= set(likelihood.free):
+        return ""
+    supposed = _with_tension(likelihood, parameters, tension)
+    text = _advice(likelihood, supposed)
+    if tension.value == supposed[TENSION]:
+        return text
+    return f"for a tension of {supposed[TENSION]:.2g} N/m: {text}"
+
+
+def undecided(
+    modulus: Estimate,
+    tension: Estimate,
+    likelihood: Likelihood,
+    parameters: Array,
+) -> list[str]:
+    """Say why an interval is open."""
+    if modulus.held or tension.held:
+        return []
+    if modulus.low is None or modulus.high is None or tension.high is None:
+        which = "modulus" if modulus.low is None or modulus.high is None else "tension"
+        depth = float(likelihood.position[-1] - parameters[POINT])
+        length = 2 * tension.value / modulus.value
+        text = (
+            f"the curve cannot tell modulus and tension apart: the interval of the {which} is "
+            "open, its value is one of many"
+        )
+        if decidable(*designs(likelihood, _with_tension(likelihood, parameters, tension))):
+            text += f"; the curve is too {'shallow' if length > depth else 'deep'}"
+        return [text]
+    return []
+
+
+def _with_tension(likelihood: Likelihood, parameters: Array, tension: Estimate) -> Array:
+    """Return the parameters, with a tension that the curve could just miss if it shows none."""
+    supposed = parameters.copy()
+    if tension.low is None:
+        supposed[TENSION] = (tension.high or likelihood.scale[TENSION]) / 2
+    return supposed
+
+
+def _advice(likelihood: Likelihood, parameters: Array) -> str:
     """Return in words which experiment would tighten modulus and tension."""
     now, others = designs(likelihood, parameters)
     reached = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -12,10 +11,10 @@ import numpy as np
 
 from pellicle.operators import Array
 from pellicle.plotting import axis_unit
-from pellicle.storage import reported
 
 from .fit import Fit
 from .likelihood import MODULUS, TENSION
+from .pictures import Drawn, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,8 +30,6 @@ _OPEN = 10.0
 """How far an open interval of the modulus is drawn, as a factor."""
 _LEVELS = np.linspace(0, 4, 17)
 _WITHOUT = "without tension"
-SIZE = (5.2, 4.6)
-"""Of a picture [inch]."""
 
 
 def curve(fit: Fit, axes: Axes) -> None:
@@ -101,7 +98,7 @@ def _rises(fit: Fit) -> tuple[Array, Array, Array]:
     for row in nearest:
         start = warm.copy()
         start[MODULUS] = np.log(moduli[row])
-        ridge, _ = held.minimise(start)
+        ridge = held.minimise(start).parameters
         deviation = float(held.deviations(ridge)[TENSION])
         half = _HALF * (deviation if np.isfinite(deviation) else ridge[TENSION])
         lowest = max(ridge[TENSION] - half, 0.0)
@@ -109,14 +106,22 @@ def _rises(fit: Fit) -> tuple[Array, Array, Array]:
         for column, tension in enumerate(tensions[row]):
             start = ridge.copy()
             start[TENSION] = tension
-            rise[row, column] = held.minimise(start, (TENSION,))[1] - fit.chi_squared
+            rise[row, column] = held.minimise(start, (TENSION,)).chi_squared - fit.chi_squared
     return np.repeat(moduli[:, None], _STEPS, axis=1), tensions, rise
 
 
-def pictures(fit: Fit) -> list[Callable[[FigureBase], None]]:
-    """Return what draws the pictures of a fit: the curve, and the map if there is one."""
-    both = not (fit.reduced_modulus.held or fit.tension.held)
-    return [partial(_left, fit), *([partial(_right, fit)] * both)]
+def pictures(fit: Fit) -> list[Drawn]:
+    """Return the pictures of a fit: the curve, and the map if there is one."""
+    drawn = [
+        Drawn(
+            partial(_left, fit),
+            "Data, fit, and the fit without tension; below, what each leaves.",
+        )
+    ]
+    if not (fit.reduced_modulus.held or fit.tension.held):
+        said = "The pairs of modulus and tension that explain the curve."
+        drawn.append(Drawn(partial(_right, fit), said))
+    return drawn
 
 
 def _left(fit: Fit, figure: FigureBase) -> None:
@@ -138,21 +143,7 @@ def save_figure(fit: Fit, path: Path) -> Path:
     StorageError
         The file cannot be written.
     """
-    import matplotlib.style
-    from matplotlib.figure import Figure
-
-    with matplotlib.style.context("default"):
-        drawn = pictures(fit)
-        size = SIZE[0] * len(drawn), SIZE[1]
-        figure = Figure(figsize=size, dpi=150, layout="constrained")
-        for draw, part in zip(
-            drawn, figure.subfigures(1, len(drawn), squeeze=False)[0], strict=True
-        ):
-            draw(part)
-        with reported(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            figure.savefig(path)
-    return path
+    return save(pictures(fit), path)
 
 
 def _units(fit: Fit) -> tuple[float, str, float, str]:

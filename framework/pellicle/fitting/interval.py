@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.optimize import brentq
+from scipy.special import stdtrit
 
 from pellicle.operators import Array
 
-from .likelihood import MODULUS, POINT, REACH, TENSION, ChiSquared
+from .likelihood import MODULUS, POINT, REACH, TENSION, ChiSquared, Minimum
 
+Ends = tuple[float | None, float | None]
+
+CONFIDENCE = 0.95
 _ACCURACY = 2e-3
 """To which an end is found, relative to its distance from the value."""
 _BETTER = 1e-3
 """By this much less χ² a profile has found another minimum."""
-
-
-@dataclass(frozen=True)
-class Minimum:
-    """Parameters of least χ²."""
-
-    parameters: Array
-    chi_squared: float
 
 
 class Better(Exception):  # noqa: N818 - no error: the search goes on from there
@@ -33,9 +27,12 @@ class Better(Exception):  # noqa: N818 - no error: the search goes on from there
         self.minimum = minimum
 
 
-def interval(
-    likelihood: ChiSquared, best: Minimum, which: int, rise: float
-) -> tuple[float | None, float | None]:
+def allowed_rise(freedom: float) -> float:
+    """Return the rise of χ² at the ends of an interval, with the noise known that well."""
+    return float(stdtrit(freedom, (1 + CONFIDENCE) / 2) ** 2)
+
+
+def interval(likelihood: ChiSquared, best: Minimum, which: int, rise: float) -> Ends:
     """Return the ends between which the least χ² at a held parameter is up by at most ``rise``.
 
     None stands for an end that is not reached: tension 0, a modulus or a tension a hundred times
@@ -54,12 +51,12 @@ def interval(
 
 
 def _limits(likelihood: ChiSquared, best: Array, which: int) -> tuple[float, float]:
-    value, scale = float(best[which]), float(likelihood.scale[which])
-    if which == MODULUS:
+    value, scale, kind = float(best[which]), float(likelihood.scale[which]), likelihood.kind(which)
+    if kind == MODULUS:
         return value - REACH, value + REACH
-    if which == TENSION:
+    if kind == TENSION:
         return 0.0, float(np.exp(REACH)) * max(value, scale)
-    reach = 10 * scale if which == POINT else 1e3 * scale
+    reach = 10 * scale if kind == POINT else 1e3 * scale
     return value - reach, value + reach
 
 
@@ -77,10 +74,11 @@ def _end(
         nonlocal warm
         start = warm.copy()
         start[which] = value + share * span
-        warm, chi_squared = likelihood.minimise(start, (which,))
-        if chi_squared < best.chi_squared - _BETTER:
-            raise Better(Minimum(warm, chi_squared))
-        return float(np.sqrt(max(chi_squared - best.chi_squared, 0.0)) - np.sqrt(rise))
+        found = likelihood.minimise(start, (which,))
+        if found.chi_squared < best.chi_squared - _BETTER:
+            raise Better(found)
+        warm = found.parameters
+        return float(np.sqrt(max(found.chi_squared - best.chi_squared, 0.0)) - np.sqrt(rise))
 
     deviation = float(likelihood.deviations(best.parameters)[which])
     inside, below = 0.0, -float(np.sqrt(rise))

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -26,6 +27,18 @@ _BALANCED = 1e-9
 """To which cantilever and solid balance, relative to the range of the force."""
 
 
+class Minimum(NamedTuple):
+    """Parameters of least χ²."""
+
+    parameters: Array
+    chi_squared: float
+
+
+def least(found: Iterable[Minimum]) -> Minimum:
+    """Return the least of several minima."""
+    return min(found, key=lambda each: each.chi_squared)
+
+
 class ChiSquared(ABC):
     """χ² over parameters of which `POINT`, `MODULUS` and `TENSION` come first."""
 
@@ -38,12 +51,11 @@ class ChiSquared(ABC):
         """What each parameter moves by, about."""
 
     @abstractmethod
-    def residuals(self, parameters: Array) -> Array:
-        """Return residuals over the noise; their squares add up to χ²."""
+    def expanded(self, parameters: Array) -> tuple[Array, Array]:
+        """Return residuals over the noise, whose squares add up to χ², and their derivatives.
 
-    @abstractmethod
-    def slopes(self, parameters: Array) -> Array:
-        """Return the derivatives of the residuals in each parameter, a column for each."""
+        The derivatives have a column for each parameter.
+        """
 
     @property
     @abstractmethod
@@ -53,6 +65,18 @@ class ChiSquared(ABC):
     @abstractmethod
     def coarse(self) -> ChiSquared | None:
         """Return the same with force curves of coarser grids; None where none is simulated."""
+
+    def kind(self, which: int) -> int:
+        """Return which parameter of a curve a parameter is."""
+        return which
+
+    def residuals(self, parameters: Array) -> Array:
+        """Return residuals over the noise; their squares add up to χ²."""
+        return self.expanded(parameters)[0]
+
+    def slopes(self, parameters: Array) -> Array:
+        """Return the derivatives of the residuals in each parameter, a column for each."""
+        return self.expanded(parameters)[1]
 
     def chi_squared(self, parameters: Array) -> float:
         """Return the sum of squared residuals."""
@@ -76,12 +100,12 @@ class ChiSquared(ABC):
         bound[list(self.free)] = np.sqrt(variances) * self.scale[list(self.free)]
         return bound
 
-    def minimise(self, start: Array, held: Sequence[int] = ()) -> tuple[Array, float]:
-        """Return the parameters of least χ² near ``start``, some of them held, and that χ²."""
+    def minimise(self, start: Array, held: Sequence[int] = ()) -> Minimum:
+        """Return the least χ² near ``start``, some of the parameters held."""
         free = [k for k in self.free if k not in held]
         best = np.array(start, dtype=float)
         if not free:
-            return best, self.chi_squared(best)
+            return Minimum(best, self.chi_squared(best))
         scale = self.scale[free]
         lowest = np.full(best.size, -np.inf)
         highest = np.full(best.size, np.inf)
@@ -94,11 +118,20 @@ class ChiSquared(ABC):
             parameters[free] = u * scale
             return parameters
 
+        # The optimiser asks for slopes where it has just asked for residuals.
+        slopes: dict[bytes, Array] = {}
+
+        def residuals(u: Array) -> Array:
+            slopes.clear()
+            found, slopes[u.tobytes()] = self.expanded(full(u))
+            return found
+
         def jacobian(u: Array) -> Array:
-            return self.slopes(full(u))[:, free] * scale
+            known = slopes.get(u.tobytes())
+            return (self.slopes(full(u)) if known is None else known)[:, free] * scale
 
         found = least_squares(
-            lambda u: self.residuals(full(u)),
+            residuals,
             np.clip(best[free], lowest[free], highest[free]) / scale,
             jacobian,
             (lowest[free] / scale, highest[free] / scale),
@@ -107,7 +140,7 @@ class ChiSquared(ABC):
             ftol=_TOLERANCE,
             gtol=_TOLERANCE,
         )
-        return full(found.x), 2 * float(found.cost)
+        return Minimum(full(found.x), 2 * float(found.cost))
 
 
 @dataclass(frozen=True)
@@ -168,13 +201,10 @@ class Likelihood(ChiSquared):
         """Return the derivatives of the force, shape (n, 5)."""
         return self._model(self.position, parameters)[1]
 
-    def residuals(self, parameters: Array) -> Array:
-        """Return (model − force) / noise."""
-        return (self._balanced(parameters)[0] - self.force) / self.noise
-
-    def slopes(self, parameters: Array) -> Array:
-        """Return the derivatives of the residuals, shape (n, 5)."""
-        return self._balanced(parameters)[1] / self.noise
+    def expanded(self, parameters: Array) -> tuple[Array, Array]:
+        """Return (model − force) / noise and its derivatives, shapes (n,) and (n, 5)."""
+        force, jacobian = self._balanced(parameters)
+        return (force - self.force) / self.noise, jacobian / self.noise
 
     def _balanced(self, parameters: Array) -> tuple[Array, Array]:
         """Return force and derivatives where the base of the cantilever is, not its tip.

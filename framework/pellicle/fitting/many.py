@@ -8,17 +8,20 @@ import pickle
 from collections.abc import Mapping
 from contextlib import closing
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from pellicle.components import Component, Executor, HasForceCurve, Indenter, Say
-from pellicle.errors import ConfigError, PellicleError
+from pellicle.errors import PellicleError
 from pellicle.plugins import registry
 from pellicle.progress import StudyProgress
 from pellicle.storage import check_writable
 
-from .curve import Curve, Segment
-from .fit import Baseline, Question, cleaned, fitted, modelled, question
+from .curve import Segment
+from .fit import fitted
+from .posed import Posed, posed
+from .question import Baseline
 from .rows import FAILED, FITTED, NOT_RUN, table, write
 from .simulation import GRID_POINTS
 from .sources import Curves, Source, gather
@@ -37,18 +40,21 @@ _BYTES_A_POINT = 2000
 class FitTask:
     """A curve that is to be fitted; it pickles to workers."""
 
-    name: str
     place: int
     """Its row."""
-    curve: Curve
-    asked: Question
+    posed: Posed
     path: Path | None
     """Where the fit is kept."""
 
     @property
+    def name(self) -> str:
+        """What a progress bar calls it."""
+        return self.posed.name
+
+    @property
     def memory(self) -> int:
         """Memory that the fit takes at its peak [bytes], estimated."""
-        return _BYTES_A_POINT * self.curve.force.size
+        return _BYTES_A_POINT * self.posed.curve.force.size
 
 
 class Fitted(NamedTuple):
@@ -154,7 +160,7 @@ def carry_out(
 ) -> Fitted:
     """Fit each source, but for what is done, and leave the files.
 
-    ``options`` are those of `question`. What is interrupted leaves the table of all that was
+    ``options`` are those of `question`.  What is interrupted leaves the table of all that was
     finished.
     """
     chosen = {"type": executor} if isinstance(executor, str) else executor
@@ -162,29 +168,24 @@ def carry_out(
     if directory is not None:
         check_writable(directory / "fits.h5")
     rows: list[dict[str, Any]] = [{"curve": source.name, "status": NOT_RUN} for source in sources]
-    questions = [_asked(source, indenter, options) for source in sources]
+    study = {
+        "cache": cache,
+        "executor": carrier,
+        "grid_points": grid_points,
+        "progress": progress,
+    }
     tasks: list[FitTask] = []
-    for place, (source, asked) in enumerate(zip(sources, questions, strict=True)):
+    for place, each in enumerate(posed(sources, indenter, options)):
         try:
-            if isinstance(source.curve, PellicleError):
-                raise source.curve
-            assert asked is not None
-            curve = cleaned(source.curve, asked.segment)
-            path = _file(directory, curve, asked, grid_points)
+            if isinstance(each, PellicleError):
+                raise each
+            path = _file(directory, each, grid_points)
             if (done := _done(path)) is not None:
                 rows[place] |= done | {"status": FITTED}
                 continue
-            model = modelled(
-                asked,
-                curve,
-                cache=cache,
-                executor=carrier,
-                grid_points=grid_points,
-                progress=progress,
-            )
-            tasks.append(FitTask(source.name, place, curve, model, path))
+            tasks.append(FitTask(place, each.modelled(**study), path))
         except PellicleError as error:
-            rows[place]["status"] = _why(error).replace(f"{source.name}: ", "", 1)
+            rows[place]["status"] = _why(error, sources[place])
     taken = sum(row["status"] == FITTED for row in rows)
     files: tuple[Path, ...] = ()
     try:
@@ -194,7 +195,7 @@ def carry_out(
         ):
             for task, outcome in ends:
                 if isinstance(outcome, Exception):
-                    rows[task.place]["status"] = _why(outcome)
+                    rows[task.place]["status"] = _why(outcome, sources[task.place])
                 else:
                     rows[task.place] |= outcome | {"status": FITTED}
                     if task.path is not None:
@@ -209,36 +210,20 @@ def carry_out(
 
 def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve where a worker is."""
-    return fitted(task.curve, task.asked).to_dict()
+    return fitted(task.posed).to_dict()
 
 
-def _asked(
-    source: Source,
-    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
-    options: Mapping[str, Any],
-) -> Question | None:
-    """Return what is asked of a source that has a curve; raise if that is not allowed."""
-    if isinstance(source.curve, PellicleError):
-        return None
-    is_depth = source.curve.depth is not None
-    try:
-        return question(indenter, source.fields, is_depth=is_depth, **options)
-    except ConfigError as error:
-        raise ConfigError(f"{source.name}: {error}") from None
-
-
-def _file(directory: Path | None, curve: Curve, asked: Question, grid_points: int) -> Path | None:
+def _file(directory: Path | None, posed: Posed, grid_points: int) -> Path | None:
     """Return where a fit is kept."""
     if directory is None:
         return None
-    return directory / "curves" / f"{_identity(curve, asked, grid_points)[:16]}.json"
+    return directory / "curves" / f"{_identity(posed, grid_points)[:16]}.json"
 
 
-def _identity(curve: Curve, asked: Question, grid_points: int) -> str:
+def _identity(posed: Posed, grid_points: int) -> str:
     """Return what tells this curve and what is asked of it from all others."""
-    from pellicle import __version__
-
-    known = hashlib.sha256(__version__.encode())
+    curve, asked = posed.curve, posed.asked
+    known = hashlib.sha256(version("pellicle").encode())
     kernel = asked.material and asked.material.kernel
     for part in (asked.indenter, kernel):
         if isinstance(part, Component):
@@ -263,8 +248,8 @@ def _done(path: Path | None) -> dict[str, Any] | None:
     return found if isinstance(found, dict) else None
 
 
-def _why(error: object) -> str:
+def _why(error: Exception, source: Source) -> str:
     """Return a failure as a line of a table."""
-    said = "; ".join(str(error).splitlines()) or "no reason given"
     ours = isinstance(error, PellicleError)
+    said = "; ".join(source.reason(error).splitlines()) or "no reason given"
     return f"{FAILED}{said if ours else f'{type(error).__name__}: {said}'}"

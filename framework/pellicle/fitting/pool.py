@@ -12,6 +12,7 @@ from pellicle.operators import Array
 
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, ChiSquared, Likelihood
 
+SHARED = [MODULUS, TENSION]
 _OWN = (POINT, OFFSET, SLOPE)
 """Parameters that each curve has for itself."""
 _ALL = 5
@@ -43,14 +44,18 @@ class Pool(ChiSquared):
         """Return all parameters; modulus and tension are those of the first curve."""
         return np.concatenate([parts[0], *(part[list(_OWN)] for part in parts[1:])])
 
+    def place(self, number: int, which: int) -> int:
+        """Return where a parameter of a curve is among those of the pool."""
+        return _places(number)[which]
+
+    def kind(self, which: int) -> int:
+        """Return which parameter of a curve a parameter is."""
+        return which if which < _ALL else _OWN[(which - _ALL) % len(_OWN)]
+
     @cached_property
     def scale(self) -> Array:
         """What each parameter moves by, about."""
         return self.joined([member.scale for member in self.members])
-
-    def without_tension(self) -> Pool:
-        """Return the same with the tension held."""
-        return Pool(self.members, tuple(k for k in self.free if k != TENSION))
 
     @property
     def accuracy(self) -> float:
@@ -65,30 +70,21 @@ class Pool(ChiSquared):
         pairs = zip(coarser, self.members, strict=True)
         return Pool(tuple(made or member for made, member in pairs), self.free)
 
-    def residuals(self, parameters: Array) -> Array:
-        """Return residuals of the same squares as all, six for each curve."""
-        return np.concatenate([rotated[:, _ALL] for rotated in self._rotated(parameters)])
+    def expanded(self, parameters: Array) -> tuple[Array, Array]:
+        """Return residuals of the same squares as all, six for each curve, and their derivatives.
 
-    def slopes(self, parameters: Array) -> Array:
-        """Return the derivatives that belong to `residuals`."""
-        rotated = self._rotated(parameters)
+        A rotation changes neither χ² nor a step of Gauss and Newton, and in the right coordinates
+        six are left of thousands of points: a hundred curves fit into memory.
+        """
+        rotated: list[Array] = []
+        for member, part in zip(self.members, self.parts(parameters), strict=True):
+            residuals, slopes = member.expanded(part)
+            rotated.append(np.asarray(np.linalg.qr(np.column_stack([slopes, residuals]), mode="r")))
         slopes = np.zeros((sum(map(len, rotated)), parameters.size))
         for number, own in enumerate(rotated):
             rows = slice((_ALL + 1) * number, (_ALL + 1) * (number + 1))
             slopes[rows, _places(number)] = own[:, :_ALL]
-        return slopes
-
-    def _rotated(self, parameters: Array) -> list[Array]:
-        """Return slopes and residuals of each curve in the coordinates in which they are fewest.
-
-        A rotation changes neither χ² nor a step of Gauss and Newton, and what is left of thousands
-        of points are six: a hundred curves fit into memory.
-        """
-        rotated: list[Array] = []
-        for member, part in zip(self.members, self.parts(parameters), strict=True):
-            both = np.column_stack([member.slopes(part), member.residuals(part)])
-            rotated.append(np.asarray(np.linalg.qr(both, mode="r")))
-        return rotated
+        return np.concatenate([own[:, _ALL] for own in rotated]), slopes
 
 
 def _places(member: int) -> list[int]:

@@ -2,46 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.special import chdtrc
 
 from pellicle.components import Executor, HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
-from pellicle.operators import Array
 
-from .curve import Curve, Segment
+from .answer import Answer
+from .curve import Segment
 from .design import percent
-from .fit import (
-    CONFIDENCE,
-    Baseline,
-    Estimate,
-    Explained,
-    allowed_rise,
-    cleaned,
-    comparison,
-    described,
-    explain,
-    modelled,
-    of_log,
-    plausible,
-    question,
-    widened,
-    youngs_modulus,
-)
-from .interval import Better, Minimum, interval
+from .estimate import Estimate
+from .explained import Explained, explain
+from .interval import allowed_rise
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
-from .pool import Pool
+from .plausible import plausible
+from .pool import SHARED, Pool
+from .pool_minima import alone, begin, without_tension
+from .posed import posed
+from .profiled import profiled
+from .question import Baseline
+from .simulated import described
 from .simulation import GRID_POINTS
-from .sources import Curves, gather
-from .start import KEPT
-from .written import write_json
+from .sources import Curves, Source, gather
 
-_SHARED = [MODULUS, TENSION]
 _CHANCE = 1e-3
 """A disagreement less likely than this is no chance."""
 
@@ -54,7 +43,7 @@ class PooledCurve:
     model: dict[str, Any]
     """Indenter, and the kernel if it was simulated, as JSON has them."""
     contact_point: Estimate
-    """Position of first touch [m]; its interval is not looked for."""
+    """Position of first touch [m]; its interval only if it was asked for."""
     offset: float
     """Force of the baseline at the first position [N]."""
     slope: float
@@ -81,64 +70,27 @@ class PooledCurve:
 
 
 @dataclass(frozen=True)
-class PooledFit:
+class PooledFit(Answer):
     """What several curves say together of one solid."""
 
-    reduced_modulus: Estimate
-    """E* [Pa]."""
-    tension: Estimate
-    """τ₀ [N/m]."""
-    youngs_modulus: Estimate | None
-    """E = (1 − ν²) E* [Pa], if Poisson's ratio was given."""
+    _does: ClassVar[str] = "these curves do"
+
     curves: tuple[PooledCurve, ...]
-    chi_squared: float
-    """Least sum of squared residuals over the noise, of all curves."""
-    chi_squared_without_tension: float
-    """The same with tension held at 0."""
-    comparison: str
-    """Whether tension is needed, in words."""
     agreement: str
     """Whether the curves agree on one modulus and one tension, in words."""
-    advice: str
-    """The bound that was reached."""
-    messages: tuple[str, ...]
-    """What to be careful of."""
+    agree: bool
+    """The same; where they do not, the intervals are widened."""
+    contact_points: bool
+    """Whether the intervals of the contact points were asked for."""
     pool: Pool
     """The curves and their χ²."""
-    parameters: Array
-    """Parameters of the fit, in the order of `pool`."""
-    parameters_without_tension: Array
-    """The same with tension held at 0."""
-    rise: float
-    """Rise of χ² at the ends of the intervals."""
-
-    def estimates(self) -> dict[str, Estimate]:
-        """Return the shared parameters by name."""
-        return {name: each for name, each in vars(self).items() if isinstance(each, Estimate)}
 
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold."""
-        gain = self.chi_squared_without_tension - self.chi_squared
-        return {name: value.to_dict() for name, value in self.estimates().items()} | {
-            "confidence": CONFIDENCE,
-            "chi_squared": self.chi_squared,
-            "without_tension": {"delta_chi_squared": gain, "delta_aic": gain - 2},
-            "comparison": self.comparison,
+        return super().to_dict() | {
             "agreement": self.agreement,
-            "advice": self.advice,
-            "messages": list(self.messages),
             "curves": [curve.to_dict() for curve in self.curves],
         }
-
-    def save(self, path: str | Path) -> Path:
-        """Write what `to_dict` returns to a JSON file, and return its name.
-
-        Raises
-        ------
-        StorageError
-            The file cannot be written.
-        """
-        return write_json(self.to_dict(), Path(path))
 
 
 def fit_pooled(
@@ -154,6 +106,7 @@ def fit_pooled(
     executor: str | Mapping[str, Any] | Executor = "serial",
     grid_points: int = GRID_POINTS,
     progress: bool = False,
+    contact_points: bool = False,
     **fields: Any,
 ) -> PooledFit:
     """Fit one reduced modulus and one tension to several curves together.
@@ -169,6 +122,9 @@ def fit_pooled(
         As for `fit`.
     fix
         Parameters to hold, of those that are shared: reduced_modulus, tension.
+    contact_points
+        Look for the interval of each contact point too. Each takes searches over the parameters of
+        all curves, so that the time grows with the square of their number.
     **fields
         Of the indenter and, if asked for by files, spring_constant and sensitivity; a list has a
         value for each file: ``radius=["5 um", "20 um"]``.
@@ -180,176 +136,112 @@ def fit_pooled(
     StorageError
         A folder cannot be read.
     """
-    if "contact_point" in (fix or {}):
+    options = {
+        "kernel": kernel,
+        "poissons_ratio": poissons_ratio,
+        "fix": fix,
+        "baseline": baseline,
+        "segment": segment,
+    }
+    return pool_sources(
+        gather(curves, segment, fields),
+        indenter,
+        options,
+        contact_points=contact_points,
+        cache=cache,
+        executor=executor,
+        grid_points=grid_points,
+        progress=progress,
+    )
+
+
+def pool_sources(
+    sources: Sequence[Source],
+    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
+    options: Mapping[str, Any],
+    *,
+    contact_points: bool = False,
+    **study: Any,
+) -> PooledFit:
+    """Return the pooled fit of sources, asked as `fit_source` asks.
+
+    Raises
+    ------
+    PellicleError
+        As for `fit_pooled`.
+    """
+    if "contact_point" in (options["fix"] or {}):
         raise ConfigError(
             "is not shared, each curve has its own; leave it out", "fix.contact_point"
         )
-    sources = gather(curves, segment, fields)
     if len(sources) < 2:
         raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
-    rows, every, ratio = [], [], None
-    for source in sources:
-        measured = source.curve
-        if isinstance(measured, PellicleError):
-            raise measured
-        asked = question(
-            indenter,
-            source.fields,
-            is_depth=measured.depth is not None,
-            kernel=kernel,
-            poissons_ratio=poissons_ratio,
-            fix=fix,
-            baseline=baseline,
-            segment=segment,
-        )
-        ratio = asked.poissons_ratio
+    every = []
+    for source, each in zip(sources, posed(sources, indenter, options), strict=True):
         try:
-            rows.append(cleaned(measured, segment))
-            asked = modelled(
-                asked,
-                rows[-1],
-                cache=cache,
-                executor=executor,
-                grid_points=grid_points,
-                progress=progress,
-            )
-            every.append(explain(rows[-1], asked))
+            if isinstance(each, PellicleError):
+                raise each
+            every.append(explain(each.modelled(**study)))
         except ConfigError as error:
-            raise ConfigError(f"{source.name}: {error}; leave it out") from None
-    return _fitted([source.name for source in sources], rows, every, ratio)
+            raise source.named(error, "; leave it out") from None
+    return _fitted(every, contact_points)
 
 
-def _fitted(
-    names: list[str], rows: list[Curve], every: list[Explained], ratio: float | None
-) -> PooledFit:
+def _fitted(every: Sequence[Explained], contact_points: bool) -> PooledFit:
     pool = Pool.of([each.likelihood for each in every])
-    begun = _begun(pool, every)
+    begun = begin(pool, every)
     singles = [
-        _alone(each, part) for each, part in zip(every, pool.parts(begun.parameters), strict=True)
+        alone(each, part) for each, part in zip(every, pool.parts(begun.parameters), strict=True)
     ]
-    degrees = sum(k in pool.free for k in _SHARED) * (len(every) - 1)
-    rise = allowed_rise(sum(each.freedom for each in every))
+    shared = [k for k in SHARED if k in pool.free]
+    degrees = len(shared) * (len(every) - 1)
     spread = max(begun.chi_squared - sum(single.chi_squared for single in singles), 0.0)
     factor = max(spread / degrees, 1.0) if chdtrc(degrees, spread) < _CHANCE else 1.0
-    best, without, ends = _profiled(pool, begun, rise * factor)
-    messages: list[str] = []
-    ends = widened(ends, pool, best, messages)
-    bound = pool.deviations(best.parameters)
-
-    def estimate(which: int, unit: str) -> Estimate:
-        value = float(best.parameters[which])
-        if which not in pool.free:
-            return Estimate(value, value, value, unit, 0.0, held=True)
-        return Estimate(value, *ends[which], unit, float(bound[which]))
-
-    modulus, tension = of_log(estimate(MODULUS, "Pa")), estimate(TENSION, "N/m")
-    bounds = pool.parts(bound)
+    rise = factor * allowed_rise(sum(each.freedom for each in every))
+    points = [pool.place(number, POINT) for number in range(len(every))]
+    wanted = [*shared, *(k for k in points if contact_points and k in pool.free)]
+    found = profiled(pool, begun, rise, wanted, partial(without_tension, pool))
+    modulus, tension = found.estimate(MODULUS, "Pa"), found.estimate(TENSION, "N/m")
     curves = []
-    for number, part in enumerate(pool.parts(best.parameters)):
-        member, own = pool.members[number], list(every[number].messages)
-        plausible(
-            rows[number],
-            member.indenter,
-            float(part[POINT]),
-            modulus.value,
-            tension.value,
-            own,
-        )
-        point, held = float(part[POINT]), POINT not in member.free
-        end = point if held else None
+    for number, part in enumerate(pool.parts(found.best.parameters)):
+        each, member, single = every[number], pool.members[number], singles[number]
+        point = found.estimate(points[number], "m")
         curves.append(
             PooledCurve(
-                name=names[number],
+                name=each.posed.name,
                 model=described(member.indenter),
-                contact_point=Estimate(point, end, end, "m", float(bounds[number][POINT]), held),
+                contact_point=point,
                 offset=float(part[OFFSET]),
                 slope=float(part[SLOPE]),
                 noise=member.noise,
                 points=member.force.size,
                 chi_squared=member.chi_squared(part),
-                chi_squared_alone=singles[number].chi_squared,
-                reduced_modulus_alone=float(np.exp(singles[number].parameters[MODULUS])),
-                tension_alone=float(singles[number].parameters[TENSION]),
-                messages=tuple(own),
+                chi_squared_alone=single.chi_squared,
+                reduced_modulus_alone=float(np.exp(single.parameters[MODULUS])),
+                tension_alone=float(single.parameters[TENSION]),
+                messages=(
+                    *each.messages,
+                    *plausible(each.posed, point.value, modulus.value, tension.value),
+                ),
             )
         )
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,
-        youngs_modulus=youngs_modulus(modulus, ratio),
-        curves=tuple(curves),
-        chi_squared=best.chi_squared,
-        chi_squared_without_tension=without.chi_squared,
-        comparison=comparison(tension, without.chi_squared - best.chi_squared),
-        agreement=_agreement(curves, spread, degrees, factor),
+        poissons_ratio=every[0].posed.asked.poissons_ratio,
+        chi_squared=found.best.chi_squared,
+        chi_squared_without_tension=found.without_tension.chi_squared,
         advice=_advice(modulus, tension),
-        messages=(*messages, *_open(modulus, tension)),
+        messages=(*found.messages, *_open(modulus, tension)),
+        parameters=found.best.parameters,
+        parameters_without_tension=found.without_tension.parameters,
+        rise=rise,
+        curves=tuple(curves),
+        agreement=_agreement(curves, spread, degrees, factor),
+        agree=factor == 1,
+        contact_points=contact_points,
         pool=pool,
-        parameters=best.parameters,
-        parameters_without_tension=without.parameters,
-        rise=rise * factor,
     )
-
-
-def _begun(pool: Pool, every: Sequence[Explained]) -> Minimum:
-    """Return the least χ² near what the curves that tell most say alone, or near their median."""
-    told = sorted(every, key=lambda each: _uncertainty(each))[:KEPT]
-    median = np.median([each.parameters[_SHARED] for each in every], axis=0)
-    tries = [*(each.parameters[_SHARED] for each in told), median]
-    return _least(_from(pool, [each.parameters for each in every], shared) for shared in tries)
-
-
-def _uncertainty(each: Explained) -> float:
-    return float(each.likelihood.deviations(each.parameters)[MODULUS])
-
-
-def _from(pool: Pool, parts: Sequence[Array], shared: Array) -> Minimum:
-    """Return the least χ² near parameters of each curve, modulus and tension replaced."""
-    begun = []
-    for member, part in zip(pool.members, parts, strict=True):
-        start = part.copy()
-        start[_SHARED] = shared
-        begun.append(member.minimise(start, _SHARED)[0])
-    return Minimum(*pool.minimise(pool.joined(begun)))
-
-
-def _least(found: Iterable[Minimum]) -> Minimum:
-    return min(found, key=lambda each: each.chi_squared)
-
-
-def _alone(each: Explained, part: Array) -> Minimum:
-    """Return the least χ² of a curve by itself."""
-    return _least(Minimum(*each.likelihood.minimise(start)) for start in (each.parameters, part))
-
-
-def _profiled(
-    pool: Pool, best: Minimum, rise: float
-) -> tuple[Minimum, Minimum, dict[int, tuple[float | None, float | None]]]:
-    """Return the minimum with and without tension, and the intervals of what is shared."""
-    while True:
-        without = _without_tension(pool, best)
-        if TENSION in pool.free and without.chi_squared <= best.chi_squared + 1e-6:
-            best = without
-        try:
-            shared = [k for k in _SHARED if k in pool.free]
-            return best, without, {k: interval(pool, best, k, rise) for k in shared}
-        except Better as better:
-            found = Minimum(*pool.minimise(better.minimum.parameters))
-            best = _least([found, better.minimum])
-
-
-def _without_tension(pool: Pool, best: Minimum) -> Minimum:
-    """Return the least χ² without tension, near the pool's and near each curve's by itself."""
-    held = pool.without_tension()
-    parts = pool.parts(best.parameters)
-    for part in parts:
-        part[TENSION] = 0.0
-    own = [
-        member.minimise(part, (TENSION,))[0]
-        for member, part in zip(pool.members, parts, strict=True)
-    ]
-    shared = np.median([each[_SHARED] for each in own], axis=0)
-    return _least([Minimum(*held.minimise(held.joined(parts))), _from(held, own, shared)])
 
 
 def _agreement(curves: Sequence[PooledCurve], spread: float, degrees: int, factor: float) -> str:

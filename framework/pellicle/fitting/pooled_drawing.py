@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,13 +10,15 @@ import numpy as np
 
 from pellicle.operators import Array
 from pellicle.plotting import axis_unit
-from pellicle.storage import reported
 
-from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood
+from .likelihood import MODULUS, OFFSET, POINT, SLOPE, Likelihood
+from .pictures import Drawn, save
+from .pool import SHARED
 from .pooled import PooledFit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import FigureBase
 
 _STEPS = 15
 _BEYOND = 0.4
@@ -59,7 +62,7 @@ def profile(fit: PooledFit, which: int, axes: Axes) -> None:
     for at in np.argsort(np.abs(values - estimate.value)):
         start = warm.copy()
         start[which] = np.log(values[at]) if which == MODULUS else values[at]
-        rises[at] = fit.pool.minimise(start, (which,))[1] - fit.chi_squared
+        rises[at] = fit.pool.minimise(start, (which,)).chi_squared - fit.chi_squared
     scale, unit = axis_unit(values, estimate.unit)
     axes.plot(values * scale, rises, "C0-")
     axes.axhline(fit.rise, color="0.3", linewidth=0.8, linestyle="--")
@@ -70,6 +73,33 @@ def profile(fit: PooledFit, which: int, axes: Axes) -> None:
     axes.set(xlabel=f"{name} [{unit}]", ylabel="Δχ²", ylim=(0, 3 * fit.rise))
 
 
+def pictures(fit: PooledFit) -> list[Drawn]:
+    """Return the pictures of a pooled fit: its curves, and the profiles of what was fitted."""
+    return [
+        Drawn(
+            partial(_left, fit),
+            "Data and fit of each curve, depth and force over its largest; below, what is left.",
+        ),
+        Drawn(
+            partial(_right, fit),
+            "The rise of the least χ² where a parameter is held; dotted, the ends of its interval.",
+        ),
+    ]
+
+
+def _left(fit: PooledFit, figure: FigureBase) -> None:
+    cells = figure.add_gridspec(4, 1)
+    upper = figure.add_subplot(cells[:3])
+    curves(fit, upper)
+    residuals(fit, figure.add_subplot(cells[3], sharex=upper))
+
+
+def _right(fit: PooledFit, figure: FigureBase) -> None:
+    free = [which for which in SHARED if which in fit.pool.free]
+    for number, which in enumerate(free):
+        profile(fit, which, figure.add_subplot(len(free), 1, number + 1))
+
+
 def save_figure(fit: PooledFit, path: Path) -> Path:
     """Write the figure of a pooled fit and return its file.
 
@@ -78,23 +108,7 @@ def save_figure(fit: PooledFit, path: Path) -> Path:
     StorageError
         The file cannot be written.
     """
-    import matplotlib.style
-    from matplotlib.figure import Figure
-
-    free = [which for which in (MODULUS, TENSION) if which in fit.pool.free]
-    with matplotlib.style.context("default"):
-        figure = Figure(figsize=(10.4, 4.6), dpi=150, layout="constrained")
-        cells = figure.add_gridspec(4, 2, width_ratios=(3, 2))
-        upper = figure.add_subplot(cells[:3, 0])
-        curves(fit, upper)
-        residuals(fit, figure.add_subplot(cells[3, 0], sharex=upper))
-        for number, which in enumerate(free):
-            rows = slice(2 * number, 2 * number + 2) if len(free) == 2 else slice(None)
-            profile(fit, which, figure.add_subplot(cells[rows, 1]))
-        with reported(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            figure.savefig(path)
-    return path
+    return save(pictures(fit), path)
 
 
 def _each(fit: PooledFit) -> list[tuple[Likelihood, Array]]:

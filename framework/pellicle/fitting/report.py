@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 
-from pellicle.inputs import inputs
-from pellicle.page import Code, Column, Notice, Picture, Section, Table, Text, page
-from pellicle.plotting import axis_unit, svg
-from pellicle.storage import aside, reported
+from pellicle.page import Column, Notice, Section, Table, Text
+from pellicle.plotting import axis_unit
 
-from . import drawing
-from .fit import CONFIDENCE, Estimate, Fit
-
-_CAPTIONS = (
-    "Data, fit, and the fit without tension; below, what each leaves.",
-    "The pairs of modulus and tension that explain the curve.",
-)
+from . import drawing, pooled_drawing, sheet
+from .answer import Answer
+from .estimate import Estimate
+from .fit import Fit
+from .interval import CONFIDENCE
+from .pooled import PooledFit
 
 
-def save_report(fit: Fit, path: Path, title: str) -> Path:
+def save_report(fit: Fit | PooledFit, path: Path, title: str) -> Path:
     """Write the page of a fit, one file that loads nothing, and return its name.
 
     Raises
@@ -30,37 +25,26 @@ def save_report(fit: Fit, path: Path, title: str) -> Path:
     StorageError
         The file cannot be written.
     """
-    made = page(
-        title,
-        [
-            Section("Result", [*_said(fit), _estimates(fit)]),
-            Section("Figures", _pictures(fit)),
-            Section("What would tell more", [Text(_sentence(fit.advice))] if fit.advice else []),
-            Section("Inputs", [_model(fit), _facts(fit)]),
-            Section("As JSON", [Code(fit.to_json(), "All numbers, SI.", f"{path.stem}.json")]),
-        ],
-        f"Fit of pellicle {version('pellicle')}, "
-        f"{datetime.now(UTC).isoformat(' ', timespec='seconds').replace('+00:00', ' UTC')}",
-    )
-    with reported(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with aside(path) as part:
-            part.write_text(made, encoding="utf-8")
-    return path
+    if isinstance(fit, PooledFit):
+        messages = [f"{curve.name}: {said}" for curve in fit.curves for said in curve.messages]
+        agreement = Notice(sheet.sentence(fit.agreement), good=fit.agree)
+        said = [agreement, *sheet.careful([*fit.messages, *messages])]
+        found, drawn = [_estimates(fit), _curves(fit)], pooled_drawing.pictures(fit)
+        told = [sheet.model([curve.model for curve in fit.curves])]
+    else:
+        said, found, drawn = sheet.careful(fit.messages), [_estimates(fit)], drawing.pictures(fit)
+        told = [sheet.model([fit.model()]), _facts(fit)]
+    comparison = Notice(sheet.sentence(fit.comparison), good=True)
+    sections = [
+        Section("Result", [comparison, *said, *found]),
+        Section("Figures", sheet.pictures(drawn)),
+        Section("What would tell more", [Text(sheet.sentence(fit.advice))] if fit.advice else []),
+        Section("Inputs", told),
+    ]
+    return sheet.save(path, title, "Fit", sections, fit.to_dict())
 
 
-def _said(fit: Fit) -> list[Notice]:
-    said = [Notice(_sentence(fit.comparison), good=True)]
-    if fit.messages:
-        said.append(Notice("To be careful of:", good=False, details=fit.messages))
-    return said
-
-
-def _sentence(words: str) -> str:
-    return f"{words[:1].upper()}{words[1:]}."
-
-
-def _estimates(fit: Fit) -> Table:
+def _estimates(fit: Answer) -> Table:
     heads = ["value", "low", "high", "unit", "bound"]
     columns = [
         Column("parameter", words=True),
@@ -88,18 +72,6 @@ def _row(estimate: Estimate) -> list[str]:
     return [value, *ends, unit, bound]
 
 
-def _pictures(fit: Fit) -> list[Picture]:
-    drawn = (svg(draw, drawing.SIZE) for draw in drawing.pictures(fit))
-    return [Picture(each, said, said) for each, said in zip(drawn, _CAPTIONS, strict=False)]
-
-
-def _model(fit: Fit) -> Table:
-    told = {name: part for name, part in fit.model().items() if name != "accuracy"}
-    columns = [Column(head, words=True) for head in ("field", "value", "meaning")]
-    caption = "What was pressed in, and what was known of the solid."
-    return Table(caption, columns, [[i.name, i.value, i.meaning] for i in inputs(told)])
-
-
 def _facts(fit: Fit) -> Table:
     factor, unit = axis_unit(np.array([fit.noise]), "N")
     rows = [
@@ -109,3 +81,20 @@ def _facts(fit: Fit) -> Table:
         ["χ² without tension", f"{fit.chi_squared_without_tension:.5g}"],
     ]
     return Table("What the curve holds.", [Column(n, words=True) for n in ("what", "value")], rows)
+
+
+def _curves(fit: PooledFit) -> Table:
+    each = fit.curves
+    points = [curve.contact_point.to_dict() for curve in each]
+    ends = sheet.estimates("contact point", points, "m")
+    columns = [
+        sheet.words("curve", [curve.name for curve in each]),
+        *(ends if fit.contact_points else ends[:1]),
+        sheet.numbers("noise", [curve.noise for curve in each], "N"),
+        sheet.Filled(Column("points"), [str(curve.points) for curve in each]),
+        sheet.Filled(Column("χ²"), [f"{curve.chi_squared:.5g}" for curve in each]),
+        sheet.Filled(Column("χ² alone"), [f"{curve.chi_squared_alone:.5g}" for curve in each]),
+        sheet.numbers("modulus alone", [curve.reduced_modulus_alone for curve in each], "Pa"),
+        sheet.numbers("tension alone", [curve.tension_alone for curve in each], "N/m"),
+    ]
+    return sheet.table("Each curve in the pool, and what it says alone.", columns)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from pellicle.components import ForceCurve, Indenter
+from pellicle.components import Component, ForceCurve, HasForceCurve, Indenter
 from pellicle.operators import Array
 
 SCALE = 0.1
@@ -88,3 +88,13 @@ class SimulatedCurve:
         out[1, touching] = force * (rate_u - rate_x * x * slope) / d * self.unit
         out[2, touching] = force * rate_x / width * self.unit
         return ForceCurve(*out)
+
+
+def described(curve: HasForceCurve) -> dict[str, Any]:
+    """Return indenter and, if it was simulated, kernel of a force curve, as JSON has them."""
+    if isinstance(curve, SimulatedCurve):
+        said = {"kernel": dict(curve.kernel), "accuracy": curve.accuracy}
+        return {"indenter": curve.indenter.model_dump(mode="json", exclude_none=True), **said}
+    if isinstance(curve, Component):
+        return {"indenter": curve.model_dump(mode="json", exclude_none=True)}
+    return {"indenter": {"type": type(curve).__name__}}

@@ -43,7 +43,7 @@ def simulate(
     solid: Solid,
     deepest: float,
     *,
-    cache: Path | None = None,
+    cache: str | Path | None = None,
     executor: str | Mapping[str, Any] | Executor = "serial",
     grid_points: int = GRID_POINTS,
     progress: bool = False,
@@ -80,7 +80,7 @@ def simulate(
     planned = plan(indenter, solid, deepest, grid_points)
     if isinstance(executor, str):
         executor = {"type": executor}
-    folder = cache or platformdirs.user_cache_path("pellicle")
+    folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
     table = _table(planned.study(executor), folder / "force-curves", progress)
     forces = table["force"].values.reshape(2, planned.depths.size, _RATIOS.size)
     if not (forces > 0).all():

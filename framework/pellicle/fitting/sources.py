@@ -30,6 +30,14 @@ class Source:
     fields: Mapping[str, Any]
     """Of the indenter."""
 
+    def reason(self, error: Exception) -> str:
+        """Return an error without the name of the source, where it begins with it."""
+        return str(error).removeprefix(f"{self.name}: ")
+
+    def named(self, error: ConfigError, hint: str = "") -> ConfigError:
+        """Return an error that names the source, and a hint what to do."""
+        return ConfigError(f"{self.name}: {self.reason(error)}{hint}")
+
 
 def gather(curves: Curves, segment: str, fields: Mapping[str, Any]) -> list[Source]:
     """Return all curves, in order.

@@ -1,0 +1,59 @@
+"""The command line: parses and prints, nothing else. One file for each command.
+
+Heavy imports are inside the commands, so that ``pellicle --help`` is there at once.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+from pellicle.errors import PellicleError
+
+from . import fit, new, plot, plugins, run, schema, show, validate
+from .exits import BAD_INPUT, INTERRUPTED
+
+
+def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    typer.echo(f"warning: {message}", err=True)
+
+
+class _Group(TyperGroup):
+    """Turns errors into one message and an exit code: no traceback reaches a user."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            with warnings.catch_warnings():
+                warnings.showwarning = _show_warning
+                return super().invoke(ctx)
+        except PellicleError as error:
+            for line in str(error).splitlines():
+                typer.echo(f"error: {line}", err=True)
+            raise typer.Exit(BAD_INPUT) from None
+        except KeyboardInterrupt:
+            typer.echo("interrupted", err=True)
+            raise typer.Exit(INTERRUPTED) from None
+
+
+app = typer.Typer(
+    cls=_Group,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help="Contact mechanics of soft solids under a tensed skin.",
+)
+
+# In the order of the help.
+for command in (
+    run.run,
+    fit.fit,
+    plugins.plugins,
+    schema.schema,
+    new.new,
+    show.show,
+    plot.plot,
+    validate.validate,
+):
+    app.command()(command)

@@ -1,0 +1,3 @@
+"""Exit codes."""
+
+NOT_CONVERGED, BAD_INPUT, INTERRUPTED = 1, 2, 130

@@ -1,0 +1,51 @@
+"""``pellicle new``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from pellicle.errors import ConfigError, StorageError
+
+
+def new(
+    path: Annotated[
+        Path | None,
+        typer.Argument(help="File to write, indent.toml; with --plugin, the component's name."),
+    ] = None,
+    plugin: Annotated[
+        str | None,
+        typer.Option(
+            "--plugin",
+            metavar="FAMILY",
+            help="Write the package of a kernel, indenter, solver, correction, output or executor.",
+        ),
+    ] = None,
+) -> None:
+    """Write a commented starter file, or the package of a plugin."""
+    if plugin is None:
+        _write_starter(path or Path("indent.toml"))
+        return
+    from pellicle.scaffold import write_plugin
+
+    if path is None:
+        raise ConfigError(f"is missing; for example: pellicle new --plugin {plugin} mine", "NAME")
+    folder = write_plugin(plugin, str(path), Path())
+    typer.echo(f"wrote {folder}; next: cd {folder}, pip install -e ., python -m pytest")
+
+
+def _write_starter(path: Path) -> None:
+    from importlib.resources import files
+
+    from pellicle.storage import reported
+
+    text = files("pellicle").joinpath("starter.toml").read_text(encoding="utf-8")
+    with reported(path):
+        try:
+            with path.open("x", encoding="utf-8") as file:
+                file.write(text)
+        except FileExistsError:
+            raise StorageError(f"{path} exists already; give another name") from None
+    typer.echo(f"wrote {path}; next: pellicle run {path}")

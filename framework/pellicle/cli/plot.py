@@ -1,0 +1,44 @@
+"""``pellicle plot``."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+class Format(StrEnum):
+    """File formats of figures."""
+
+    PNG = "png"
+    SVG = "svg"
+    PDF = "pdf"
+
+
+def plot(
+    results: Annotated[
+        Path, typer.Argument(help="Result file (.h5), or the folder or study.h5 of a study.")
+    ],
+    directory: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder; that of the result.")
+    ] = None,
+    formats: Annotated[
+        list[Format] | None, typer.Option("--format", help="png, svg or pdf; repeat for several.")
+    ] = None,
+) -> None:
+    """Draw the figures of a result or of a study."""
+    from pellicle.plotting import save_figures, save_study_figures
+    from pellicle.result import load
+    from pellicle.study import is_table, read
+
+    chosen = [str(format_) for format_ in formats or [Format.PNG]]
+    if is_table(results):
+        table, folder = read(results)
+        files = save_study_figures(table, directory or folder, "study", chosen)
+    else:
+        folder = directory or results.parent
+        files = save_figures(load(results), folder, results.stem, chosen)
+    for path in files:
+        typer.echo(f"wrote {path}")

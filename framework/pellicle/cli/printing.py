@@ -1,0 +1,33 @@
+"""Tables and JSON on the terminal."""
+
+from __future__ import annotations
+
+import sys
+
+from rich.console import Console
+from rich.table import Table
+
+
+def print_table(
+    names: list[str], rows: list[dict[str, str]], heads: dict[str, str] | None = None
+) -> None:
+    """Print rows under names, or under what ``heads`` has in their place."""
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for name in names:
+        table.add_column((heads or {}).get(name, name), overflow="fold")
+    for row in rows:
+        table.add_row(*(row[name] for name in names))
+    # Into a pipe nothing is cut or folded.
+    console = Console(markup=False, highlight=False)
+    if not console.is_terminal:
+        console.width = 1000
+        console.soft_wrap = True
+    console.print(table)
+
+
+def print_json(value: object) -> None:
+    """Print JSON."""
+    import json
+
+    json.dump(value, sys.stdout, indent=2, ensure_ascii=False)
+    sys.stdout.write("\n")

@@ -1,0 +1,96 @@
+"""What is printed of results and of studies, and the exit code that they deserve."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import typer
+
+from .exits import NOT_CONVERGED
+from .printing import print_table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from pellicle.result import Result
+
+
+def print_origin(data: xr.Dataset) -> None:
+    """Print where a result comes from."""
+    for name in ("title", "date", "versions"):
+        typer.echo(f"{name + ':':10}{data.attrs.get(name, '')}")
+
+
+def print_steps(result: Result) -> None:
+    """Print a row for each step."""
+    data = result.dataset
+    areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
+    asked = [name for name in ("mean_plane_depth", "stiffness") if name in data]
+    if "contact_radius" in result.configuration["loading"]:
+        asked.insert(0, "contact_radius")
+    names = ["depth", "force", *areas, *asked, "iterations"]
+    rows = []
+    for index in range(data.sizes["step"]):
+        step = data.isel(step=index)
+        row = {name: f"{step[name].item():.6g}" for name in names}
+        status = "converged" if step["converged"].item() else "NOT CONVERGED"
+        rows.append({"step": str(index + 1), **row, "status": status})
+    print_table(["step", *names, "status"], rows, _heads(data, names))
+    for index, (converged, status) in enumerate(
+        zip(data["converged"], data["status"], strict=True)
+    ):
+        if converged and status != "converged":
+            typer.echo(f"step {index + 1}: {status.item()}", err=True)
+
+
+def print_contact(result: Result) -> None:
+    """Print a second table, of the shape of the contact."""
+    from pellicle.dataset import OF_THE_CONTACT
+
+    data = result.dataset
+    # Files of earlier versions do not say it.
+    names = [name for name in OF_THE_CONTACT if name in data]
+    if not names:
+        return
+    typer.echo("contact:")
+    rows = [
+        {"step": str(index + 1), **{name: f"{data[name].values[index]:.6g}" for name in names}}
+        for index in range(data.sizes["step"])
+    ]
+    print_table(["step", *names], rows, _heads(data, names))
+
+
+def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
+    from pellicle.dataset import header
+
+    return {name: header(name, data[name]) for name in names}
+
+
+def print_runs(table: xr.Dataset) -> None:
+    """Print a row for each run of a study: its parameters, its last step and how it ended."""
+    from pellicle.study import rows
+
+    found = rows(table)
+    names = list(found[0])
+    units = {name: table[name].attrs.get("units", "1") for name in names if name in table}
+    heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
+    print_table(names, found, heads)
+
+
+def exit_by_convergence(result: Result) -> None:
+    """Exit unless all steps of a run converged, and say which did not."""
+    for index, message in result.failures():
+        typer.echo(f"step {index + 1} did not converge: {message}", err=True)
+    if not result.converged:
+        raise typer.Exit(NOT_CONVERGED)
+
+
+def exit_by_status(table: xr.Dataset) -> None:
+    """Exit unless all runs of a study converged, and say which did not."""
+    from pellicle.study import failures, reasons
+
+    if message := failures(table):
+        for reason in reasons(table):
+            typer.echo(reason, err=True)
+        typer.echo(message, err=True)
+        raise typer.Exit(NOT_CONVERGED)

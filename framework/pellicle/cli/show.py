@@ -1,0 +1,53 @@
+"""``pellicle show``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from .exits import NOT_CONVERGED
+from .results import (
+    exit_by_convergence,
+    exit_by_status,
+    print_contact,
+    print_origin,
+    print_runs,
+    print_steps,
+)
+
+if TYPE_CHECKING:
+    from pellicle.result import Result
+
+
+def show(
+    results: Annotated[
+        Path, typer.Argument(help="Result file (.h5), or the folder or study.h5 of a study.")
+    ],
+) -> None:
+    """Print the steps of a result, or the runs of a study, and where it comes from."""
+    from pellicle.result import load
+    from pellicle.study import is_table, read
+
+    if is_table(results):
+        table, _ = read(results)
+        print_origin(table)
+        print_runs(table)
+        exit_by_status(table)
+        return
+    result = load(results)
+    print_origin(result.dataset)
+    wanted, done = _steps_wanted(result), result.dataset.sizes["step"]
+    print_steps(result)
+    print_contact(result)
+    exit_by_convergence(result)
+    if done < wanted:
+        typer.echo(f"interrupted: {done} of {wanted} steps are there; run it again", err=True)
+        raise typer.Exit(NOT_CONVERGED)
+
+
+def _steps_wanted(result: Result) -> int:
+    from pellicle.loading import Loading
+
+    return len(Loading(**result.configuration["loading"]).values)

@@ -1,0 +1,89 @@
+"""A curve as it is fitted: its rows, what is asked of it, and an indenter with a force curve."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pellicle.components import HasForceCurve, Indenter
+from pellicle.errors import ConfigError, PellicleError
+
+from .curve import Curve, Segment, clean
+from .likelihood import POINT
+from .measured import Measured
+from .question import Question, question
+from .simulation import simulate
+from .sources import Source
+from .start import BEFORE
+
+
+@dataclass(frozen=True)
+class Posed:
+    """A curve and what is asked of it; it pickles to workers."""
+
+    name: str
+    curve: Curve
+    asked: Question
+
+    def modelled(self, **study: Any) -> Posed:
+        """Return the same with an indenter that has a force curve, simulated if need be.
+
+        ``study`` goes to `simulate`.
+
+        Raises
+        ------
+        ConfigError, ConvergenceError, StorageError
+            As for `simulate`.
+        """
+        asked, position = self.asked, self.curve.position
+        if asked.material is None:
+            return self
+        span = float(np.ptp(position))
+        held = POINT not in asked.free
+        reach = float(position[-1]) - asked.held[POINT] if held else (1 + BEFORE) * span
+        # Where nothing reaches contact, the fit itself says so.
+        deepest = reach if reach > 0 else span
+        made = simulate(asked.indenter, asked.material, deepest, **study)
+        return replace(self, asked=replace(asked, indenter=made, material=None))
+
+
+def posed(
+    sources: Sequence[Source],
+    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
+    options: Mapping[str, Any],
+) -> list[Posed | PellicleError]:
+    """Return each source as it is fitted, or why it cannot be.
+
+    ``options`` are those of `question`.
+
+    Raises
+    ------
+    ConfigError, PluginError
+        An argument is not allowed.
+    """
+    found: list[Posed | PellicleError] = []
+    for source in sources:
+        measured = source.curve
+        if isinstance(measured, PellicleError):
+            found.append(measured)
+            continue
+        is_depth = measured.depth is not None
+        try:
+            asked = question(indenter, source.fields, is_depth=is_depth, **options)
+        except ConfigError as error:
+            raise error if len(sources) == 1 else source.named(error) from None
+        try:
+            found.append(Posed(source.name, _cleaned(measured, asked.segment), asked))
+        except ConfigError as error:
+            found.append(error)
+    return found
+
+
+def _cleaned(measured: Measured, segment: Segment) -> Curve:
+    """Return the rows of a measured curve that are fitted."""
+    place = measured.position if measured.depth is None else measured.depth
+    made = clean(place, measured.force, segment, measured.stiffness)  # type: ignore[arg-type]
+    return replace(made, messages=(*measured.messages, *made.messages))
