@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
@@ -17,10 +16,20 @@ from pellicle.components import Output
 from pellicle.errors import ConfigError
 from pellicle.model import Model
 from pellicle.operators import Array
-from pellicle.plotting import save_figure
 from pellicle_plugins.analytic.twin import exact
 
-from .drawing import Drawing, Texts, along, finite, label, one_axis, scaled, set_scales, write_csv
+from .drawing import (
+    Graph,
+    Log,
+    Reference,
+    Texts,
+    along,
+    finite,
+    label,
+    one_axis,
+    scaled,
+    set_scales,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,7 +55,7 @@ class Published(Model):
         return self
 
 
-class Curves(Drawing):
+class Curves(Graph):
     """One number against another over the runs, one curve for each value of an axis.
 
     ``x`` and ``y`` are arithmetic over the columns of the table, the numbers of the configuration
@@ -63,26 +72,12 @@ class Curves(Drawing):
     series: Annotated[
         tuple[str, ...], Field(description="name of each y in the legend; its expression if absent")
     ] = ()
-    by: Annotated[
-        str | None, Field(description="axis of the study each value of which has its own curve")
-    ] = None
     over: Annotated[
         str | None,
         Field(description="axis, such as indenter.seed, over which mean and range are drawn"),
     ] = None
-    label: Annotated[
-        str | None,
-        Field(description="name of a curve of by; {expression} in it is replaced by its value"),
-    ] = None
-    x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
-    y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
-    log: Annotated[
-        tuple[Literal["x", "y"], ...], Field(description="axes that are logarithmic: x, y")
-    ] = ()
-    reference: Annotated[
-        Literal["axisymmetric"] | None,
-        Field(description="draw the same expressions of the semi-analytic solution too"),
-    ] = None
+    log: Log = ()
+    reference: Reference = None
     extrapolate: Annotated[
         bool,
         Field(
@@ -104,18 +99,9 @@ class Curves(Drawing):
             raise ConfigError(f"{self.over!r} is by already; give another axis", "over")
         return self
 
-    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure and its numbers."""
-        rows: list[dict[str, object]] = []
+    def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        """Draw, and yield the rows of the numbers drawn."""
         true = exact(runs) if self.reference else None
-
-        def fill(axes: Axes) -> None:
-            rows.extend(self._fill(axes, runs, true))
-
-        files = save_figure(lambda figure: fill(figure.add_subplot()), stem, self.formats)
-        return (*files, write_csv(stem.with_name(f"{stem.name}.csv"), rows))
-
-    def _fill(self, axes: Axes, runs: Runs, true: Runs | None) -> Iterator[dict[str, object]]:
         table = runs.table
         for field, chosen in (("by", self.by), ("over", self.over)):
             one_axis(table.sizes, chosen, field)

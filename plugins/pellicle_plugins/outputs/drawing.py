@@ -19,7 +19,7 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle.expression import evaluate
 from pellicle.model import nearest
 from pellicle.operators import Array
-from pellicle.plotting import axis_unit
+from pellicle.plotting import axis_unit, save_figure
 from pellicle.result import Result
 
 if TYPE_CHECKING:
@@ -37,6 +37,15 @@ Texts = Annotated[
     tuple[str, ...], BeforeValidator(_several, json_schema_input_type=str | tuple[str, ...])
 ]
 """One text, or a list of them."""
+Formats = Annotated[
+    tuple[Literal["png", "svg", "pdf"], ...],
+    Field(min_length=1, description="file formats to write: png, svg, pdf"),
+]
+Log = Annotated[tuple[Literal["x", "y"], ...], Field(description="axes that are logarithmic: x, y")]
+Reference = Annotated[
+    Literal["axisymmetric"] | None,
+    Field(description="draw the same expressions of the semi-analytic solution too"),
+]
 
 
 class Drawing(Output):
@@ -45,11 +54,18 @@ class Drawing(Output):
     name: Annotated[
         str, Field(pattern=r"^[\w-]*$", description="ending of the file names; its type if absent")
     ] = ""
-    formats: Annotated[
-        tuple[Literal["png", "svg", "pdf"], ...],
-        Field(min_length=1, description="file formats to write: png, svg, pdf"),
-    ] = ("png",)
+    formats: Formats = ("png",)
     title: Annotated[str, Field(description="title of the figure")] = ""
+    by: Annotated[
+        str | None,
+        Field(description="axis of the study, or step: each value has its own curve or panel"),
+    ] = None
+    label: Annotated[
+        str | None,
+        Field(
+            description="name of a curve or a panel; {expression} in it is replaced by its value"
+        ),
+    ] = None
 
     @abstractmethod
     def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
@@ -67,35 +83,45 @@ class Drawing(Output):
         """Draw the runs of a study and return the files."""
         return self.draw(Runs.of_study(table, place.directory), self._stem(place))
 
+    def picked(self, table: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+        """Yield the name of each curve or panel and the point of the table that it shows.
+
+        Of the other axes it is the first value, of the steps the last.
+        """
+        one_axis(table.sizes, self.by, "by")
+        first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
+        for at in along(table, self.by):
+            here = table.isel({**first, **at})
+            yield label(self.label, here, self.by), here
+
+    def steps(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
+        """Yield the name of each curve or panel and the fields that it shows, if they are there."""
+        for name, here in self.picked(runs.table):
+            step = _step_of(runs, here)
+            if step is not None:
+                yield name, step
+
     def _stem(self, place: Place) -> Path:
         return place.file(f"-{self.name or self.type}")  # type: ignore[attr-defined]
 
 
-class FieldDrawing(Drawing):
-    """Draws the fields of one step for each value of an axis.
+class Graph(Drawing):
+    """Draws one number against another."""
 
-    Of the other axes of a study the first value is drawn, and of the steps the last.
-    """
+    x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
+    y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
 
-    by: Annotated[
-        str | None,
-        Field(description="axis of the study, or step: each value has its own curve or panel"),
-    ] = None
-    label: Annotated[
-        str | None,
-        Field(
-            description="name of a curve or a panel; {expression} in it is replaced by its value"
-        ),
-    ] = None
+    @abstractmethod
+    def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        """Draw, and yield the rows of the numbers drawn."""
 
-    def steps(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
-        """Yield the name of each curve or panel and the fields that it shows, if they are there."""
-        one_axis(runs.table.sizes, self.by, "by")
-        for at in along(runs.table, self.by):
-            picked = pick(runs.table, at)
-            step = step_of(runs, picked)
-            if step is not None:
-                yield label(self.label, picked, self.by), step
+    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the figure and its numbers."""
+        rows: list[dict[str, object]] = []
+        files = save_figure(
+            lambda figure: rows.extend(self.fill(figure.add_subplot(), runs)), stem, self.formats
+        )
+        return (*files, write_csv(stem, rows))
 
 
 def one_axis(dims: Iterable[object], chosen: str | None, field: str) -> None:
@@ -110,13 +136,7 @@ def along(table: xr.Dataset, dim: str | None) -> list[dict[str, int]]:
     return [{dim: index} for index in range(table.sizes[dim])] if dim else [{}]
 
 
-def pick(table: xr.Dataset, at: dict[str, int]) -> xr.Dataset:
-    """Return one point of a table: of the other axes the first value, of the steps the last."""
-    first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
-    return table.isel({**first, **at})
-
-
-def step_of(runs: Runs, picked: xr.Dataset) -> xr.Dataset | None:
+def _step_of(runs: Runs, picked: xr.Dataset) -> xr.Dataset | None:
     """Return the fields of the step that a point of the table stands for, if they are there."""
     try:
         run = runs.open(str(picked["run"].item()))
@@ -172,8 +192,9 @@ def set_scales(axes: Axes, log: Sequence[str]) -> None:
     axes.grid(alpha=0.3)
 
 
-def write_csv(path: Path, rows: Sequence[dict[str, object]], heads: Sequence[str] = ()) -> Path:
-    """Write the numbers that were drawn; ``heads`` are there even if no row is."""
+def write_csv(stem: Path, rows: Sequence[dict[str, object]], heads: Sequence[str] = ()) -> Path:
+    """Write the numbers drawn beside their figure; ``heads`` are there even if no row is."""
+    path = stem.with_name(f"{stem.name}.csv")
     heads = list(dict.fromkeys([*heads, *(head for row in rows for head in row)]))
     with storage.reported(path), path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, heads)

@@ -16,7 +16,7 @@ from pellicle.components import Output
 from pellicle.expression import evaluate
 from pellicle.plotting import axis_unit, extent, save_figure
 
-from .drawing import FieldDrawing, scaled
+from .drawing import Drawing, scaled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +26,7 @@ _PANEL = 2.7
 _COLUMNS = 4
 
 
-class Maps(FieldDrawing):
+class Maps(Drawing):
     """A field over the domain, one panel for each value of an axis.
 
     Of the other axes of a study the first value is drawn, and of the steps the last. ``field`` is
