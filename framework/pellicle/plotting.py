@@ -106,6 +106,8 @@ FIGURES: dict[str, Callable[[Result, Axes], None]] = {
     "area_force": area_force,
 }
 """What is drawn of a run, by the ending of the file name."""
+STUDY_FIGURES = "force", "contact_fraction"
+"""Variables that are drawn of a study, by the same."""
 
 
 def save_figures(
@@ -136,9 +138,7 @@ def save_study_figures(
     """
     if "force" not in table:
         return ()
-    drawings = {
-        what: partial(study_curves, table, variable=what) for what in ("force", "contact_fraction")
-    }
+    drawings = {what: partial(study_curves, table, variable=what) for what in STUDY_FIGURES}
     return _save(drawings, directory, name, formats)
 
 

@@ -18,7 +18,7 @@ import pytest
 from pydantic import ConfigDict, Field, SerializationInfo, model_serializer
 
 import pellicle as pl
-from pellicle import storage, testing
+from pellicle import testing
 from pellicle.components import FAMILIES, Component
 from pellicle.plugins import registry
 from pellicle.testing import component as component_rules
@@ -609,8 +609,8 @@ class Output(pl.Output):
 
     type: Literal["broken"] = "broken"
 
-    def open(self, place: Any) -> None:
-        storage.check_writable(place.file(".json"))
+    def endings(self) -> tuple[str, ...]:
+        return (".json",)
 
     def close(self, place: Any, result: Any) -> Any:
         path = place.file(".json")
@@ -649,6 +649,13 @@ class Littering(Output):
     def close(self, place: Any, result: Any) -> Any:
         place.file(".log").write_text("done")
         return super().close(place, result)
+
+
+class Untold(Output):
+    """Leaves and names a file that it tells nobody of beforehand."""
+
+    def endings(self) -> tuple[str, ...]:
+        return ("-*.json",)
 
 
 class Empty(Output):
@@ -700,6 +707,7 @@ OUTPUTS = {
     LosesLast: "loses_no_step",
     Nameless: "leaves_the_files_it_names",
     Littering: "leaves_the_files_it_names",
+    Untold: "leaves_the_files_it_names",
     Empty: "leaves_the_files_it_names",
     Own: "leaves_the_files_it_names",
     Once: "leaves_the_files_it_names",

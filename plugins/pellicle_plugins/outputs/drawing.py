@@ -7,7 +7,7 @@ import re
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field
@@ -51,6 +51,9 @@ Reference = Annotated[
 class Drawing(Output):
     """Draws the runs of a study, or the steps of one run."""
 
+    leaves_numbers: ClassVar[bool] = True
+    """Whether the numbers drawn are written as CSV beside the figure."""
+
     name: Annotated[
         str, Field(pattern=r"^[\w-]*$", description="ending of the file names; its type if absent")
     ] = ""
@@ -71,17 +74,18 @@ class Drawing(Output):
     def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the files, whose names begin with ``stem``, and return them."""
 
-    def open(self, place: Place) -> None:
-        """Find out before computing whether the files can be written."""
-        storage.check_writable(self._stem(place))
+    def endings(self) -> tuple[str, ...]:
+        """Return those of the figure and of its numbers."""
+        kinds = (*self.formats, "csv") if self.leaves_numbers else self.formats
+        return tuple(f"{self._ending}.{kind}" for kind in kinds)
 
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Draw the steps of a run and return the files."""
-        return self.draw(Runs.of_result(result), self._stem(place))
+        return self.draw(Runs.of_result(result), place.file(self._ending))
 
     def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
         """Draw the runs of a study and return the files."""
-        return self.draw(Runs.of_study(table, place.directory), self._stem(place))
+        return self.draw(Runs.of_study(table, place.directory), place.file(self._ending))
 
     def picked(self, table: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
         """Yield the name of each curve or panel and the point of the table that it shows.
@@ -101,8 +105,9 @@ class Drawing(Output):
             if step is not None:
                 yield name, step
 
-    def _stem(self, place: Place) -> Path:
-        return place.file(f"-{self.name or self.type}")  # type: ignore[attr-defined]
+    @property
+    def _ending(self) -> str:
+        return f"-{self.name or self.type}"  # type: ignore[attr-defined]
 
 
 class Graph(Drawing):

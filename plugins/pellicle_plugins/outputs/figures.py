@@ -6,9 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from pellicle import hookimpl, storage
+from pellicle import hookimpl
 from pellicle.components import Output, Place
-from pellicle.plotting import save_figures, save_study_figures
+from pellicle.plotting import FIGURES, STUDY_FIGURES, save_figures, save_study_figures
 from pellicle.result import Result
 
 from .drawing import Formats
@@ -23,9 +23,10 @@ class Figures(Output):
     type: Literal["figures"] = "figures"
     formats: Formats = ("png",)
 
-    def open(self, place: Place) -> None:
-        """Find out before computing whether the files can be written."""
-        storage.check_writable(place.file("-pressure.png"))
+    def endings(self) -> tuple[str, ...]:
+        """Return those of the figures of a run and of a study."""
+        names = dict.fromkeys((*FIGURES, *STUDY_FIGURES))
+        return tuple(f"-{name}.{format_}" for name in names for format_ in self.formats)
 
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Draw the result and return the files."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import ceil
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -33,6 +33,8 @@ class Maps(Drawing):
     arithmetic over the fields and numbers of a run: ``contact`` is drawn black on white, and
     ``displacement - depth - gap`` is the profile of the indenter.
     """
+
+    leaves_numbers: ClassVar[bool] = False
 
     type: Literal["maps"] = "maps"
     field: Annotated[str, Field(description="expression for what is drawn")] = "pressure"
