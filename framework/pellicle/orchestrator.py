@@ -129,6 +129,8 @@ def execute(
         finally:
             if steps:
                 result = Result.join(steps)
+                # They are in the result now: each once in memory.
+                steps.clear()
                 for output in outputs:
                     files.extend(output.close(place, result))
     return Executed(result, tuple(files), taken)

@@ -51,6 +51,8 @@ def pressure_map(result: Result, axes: Axes, step: int = -1) -> None:
         cmap="viridis",
         vmin=0.0,
         interpolation="nearest",
+        # The other stage makes a colour of each cell before it takes those to show.
+        interpolation_stage="data",
     )
     axes.set_facecolor("0.93")
     axes.set(xlabel=f"x [{length_name}]", ylabel=f"y [{length_name}]")
