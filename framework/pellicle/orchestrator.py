@@ -26,6 +26,7 @@ from .operators import Array, Operator, make_operator
 from .plugins import registry
 from .problem import Equilibrium, Problem, Stiffness, measure, measure_stiffness
 from .progress import Bar, Progress
+from .resolution import warn_of_cells
 from .result import Result, Solution, Status
 
 if TYPE_CHECKING:
@@ -186,6 +187,7 @@ def _problems(run: Run) -> list[Problem]:
         Kernel, indenter or loading do not fit the grid.
     """
     operator = make_operator(run.kernel, run.grid)
+    warn_of_cells(run.kernel.compliance, run.grid)
     profile = _profile(run)
 
     def each(prescribed: Literal["depth", "force"], values: Iterable[float]) -> list[Problem]:
