@@ -48,6 +48,8 @@ class Component(Model):
     """What all families share."""
 
     family: ClassVar[str]
+    libraries: ClassVar[tuple[str, ...]] = ()
+    """Distributions that it computes with, beside numpy and scipy; results say their versions."""
 
 
 class Kernel(Component):

@@ -7,9 +7,9 @@ import re
 import time
 import warnings
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from datetime import UTC, datetime
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -129,8 +129,9 @@ def execute(
             ) from None
         finally:
             if steps:
+                # What has been solved with and, once joined, the single steps make room.
+                problems.clear()
                 result = Result.join(steps)
-                # They are in the result now: each once in memory.
                 steps.clear()
                 for output in outputs:
                     files.extend(output.close(place, result))
@@ -442,10 +443,12 @@ def now_with(runs: Iterable[Run]) -> dict[str, str]:
         for registered in family.values()
         if registered.component in used
     }
-    versions = {"pellicle": version("pellicle"), "numpy": version("numpy")} | {
-        "scipy": version("scipy"),
-        **owners,
-    }
+    libraries = sorted({name for component in used for name in component.libraries})
+    versions = {name: version(name) for name in ("pellicle", "numpy", "scipy")} | owners
+    for name in libraries:
+        # A worker that is handed what a library read may be without it.
+        with suppress(PackageNotFoundError):
+            versions[name] = version(name)
     return {
         "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -64,6 +65,16 @@ def test_provenance_of_components_within_components(monkeypatch: pytest.MonkeyPa
     coated = CONFIGURATION | {"kernel": {"type": "coated", "substrate": substrate}, "outputs": []}
     versions = pl.run(coated, progress=False).dataset.attrs["versions"]
     assert "other-package 9.9" in versions.split(", ")
+
+
+def test_provenance_names_what_components_compute_with(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The versions are those of numpy, scipy, and the libraries of a component; none if absent."""
+    inner = registry().components["indenter"]["paraboloid"].component
+    monkeypatch.setattr(inner, "libraries", ("xarray", "pellicle-no-such-library"))
+    run = CONFIGURATION | {"outputs": [], "loading": {"depth": 0.0}}
+    versions = pl.run(run, progress=False).dataset.attrs["versions"].split(", ")
+    used = ("pellicle", "numpy", "scipy", "xarray")
+    assert versions == [f"{name} {version(name)}" for name in used]
 
 
 def test_converged(result: pl.Result) -> None:

@@ -58,6 +58,12 @@ class Unfinished(Paraboloid):
     type: Literal["unfinished"] = "unfinished"
 
 
+class Wishful(Paraboloid):
+    """Shape of a library that nobody has."""
+
+    libraries: ClassVar[tuple[str, ...]] = ("pellicle-no-such-library",)
+
+
 class NoType(pl.AreaCorrection):
     """Correction that has no type."""
 
@@ -173,6 +179,7 @@ GENERAL: dict[str, tuple[Callable[[], Any], str]] = {
     "other JSON": (partial(Forgetful, radius=1e-3), "goes_through_json"),
     "no TOML": (partial(Holey, radius=1e-3), "goes_through_toml"),
     "other schema": (partial(Hospitable, radius=1e-3), "schema_tells_the_fields"),
+    "no such library": (partial(Wishful, radius=1e-3), "libraries_are_installed"),
     "unknown fields": (partial(Welcoming, radius=1e-3), "unknown_field_is_refused"),
     "not registered": (partial(Stranger, radius=1e-3), "is_registered"),
     "type is taken": (partial(Usurper, radius=1e-3), "is_registered"),
