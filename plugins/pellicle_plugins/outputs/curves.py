@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle import hookimpl
 from pellicle.analysis import Extrapolation, extrapolate
@@ -22,9 +22,7 @@ from .drawing import (
     Graph,
     Log,
     Reference,
-    Texts,
     along,
-    finite,
     label,
     one_axis,
     scaled,
@@ -38,6 +36,16 @@ if TYPE_CHECKING:
 _MARKERS = "os^Dv<>P"
 _LINES = ("-", "--", ":", "-.")
 _GRIDS = 3
+
+
+def _several(value: object) -> object:
+    return (value,) if isinstance(value, str) else value
+
+
+_Texts = Annotated[
+    tuple[str, ...], BeforeValidator(_several, json_schema_input_type=str | tuple[str, ...])
+]
+"""One text, or a list of them."""
 
 
 class Published(Model):
@@ -67,7 +75,7 @@ class Curves(Graph):
     type: Literal["curves"] = "curves"
     x: Annotated[str, Field(description="expression for the horizontal axis")] = "depth"
     y: Annotated[
-        Texts, Field(min_length=1, description="expression, or several, for the vertical axis")
+        _Texts, Field(min_length=1, description="expression, or several, for the vertical axis")
     ] = ("force",)
     series: Annotated[
         tuple[str, ...], Field(description="name of each y in the legend; its expression if absent")
@@ -191,7 +199,7 @@ class Curves(Graph):
                 "by",
             )
         values = [column.values.ravel().astype(float) for column in columns]
-        return _Curve(*finite(*values))
+        return _Curve(*_finite(*values))
 
 
 @dataclass(frozen=True)
@@ -309,6 +317,12 @@ def _enough(x: xr.DataArray) -> None:
             f"vary the grid over at least {_GRIDS}",
             "extrapolate",
         )
+
+
+def _finite(*columns: Array) -> list[Array]:
+    """Return the columns without the rows that have a NaN or an infinite value."""
+    good = np.all([np.isfinite(column) for column in columns], axis=0)
+    return [column[good] for column in columns]
 
 
 def _at(column: xr.DataArray, at: dict[str, int]) -> xr.DataArray:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
 from pellicle import storage
 from pellicle.columns import Runs, names
@@ -18,7 +18,6 @@ from pellicle.components import Output, Place
 from pellicle.errors import ConfigError, StorageError
 from pellicle.expression import evaluate
 from pellicle.model import nearest
-from pellicle.operators import Array
 from pellicle.plotting import axis_unit, save_figure
 from pellicle.result import Result
 
@@ -29,14 +28,6 @@ if TYPE_CHECKING:
 _PLACEHOLDER = re.compile(r"\{([^{}]+)\}")
 
 
-def _several(value: object) -> object:
-    return (value,) if isinstance(value, str) else value
-
-
-Texts = Annotated[
-    tuple[str, ...], BeforeValidator(_several, json_schema_input_type=str | tuple[str, ...])
-]
-"""One text, or a list of them."""
 Formats = Annotated[
     tuple[Literal["png", "svg", "pdf"], ...],
     Field(min_length=1, description="file formats to write: png, svg, pdf"),
@@ -206,9 +197,3 @@ def write_csv(stem: Path, rows: Sequence[dict[str, object]], heads: Sequence[str
         writer.writeheader()
         writer.writerows(rows)
     return path
-
-
-def finite(*columns: Array) -> list[Array]:
-    """Return the columns without the rows that have a NaN or an infinite value."""
-    good = np.all([np.isfinite(column) for column in columns], axis=0)
-    return [column[good] for column in columns]

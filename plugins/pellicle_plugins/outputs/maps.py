@@ -73,6 +73,7 @@ class Maps(Drawing):
             (1.0, "") if yes_or_no else scaled(self.field, panels[0][2], self.field_label)
         )
         values = values[np.isfinite(values)] * factor
+        low, high = (values.min(), values.max()) if values.size and not yes_or_no else (0.0, 1.0)
         for axes, (title, run, field) in zip(all_axes, panels, strict=False):
             length, unit = axis_unit(np.append(run["x"].values, run["y"].values), "m")
             image = axes.imshow(
@@ -80,8 +81,8 @@ class Maps(Drawing):
                 origin="lower",
                 extent=extent(run["x"].values * length, run["y"].values * length),
                 cmap="binary" if yes_or_no else "viridis",
-                vmin=values.min(initial=0.0) if yes_or_no else values.min(),
-                vmax=1 if yes_or_no else values.max(),
+                vmin=low,
+                vmax=high,
                 interpolation="nearest" if yes_or_no else None,
             )
             axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")

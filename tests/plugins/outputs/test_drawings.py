@@ -116,3 +116,11 @@ def test_semi_analytic_twin_is_only_of_what_has_one(tmp_path: Path) -> None:
     del run["study"]
     with pytest.raises(pl.ConfigError, match=r"'quadric'.*have no axisymmetric solution"):
         pl.run(run, directory=tmp_path, progress=False)
+
+
+def test_map_of_nothing_finite_is_empty(tmp_path: Path) -> None:
+    """An expression that is infinite or NaN everywhere is drawn as an empty panel."""
+    run = {key: value for key, value in study().items() if key != "study"}
+    nowhere = {"type": "maps", "field": "1 / (0 * depth + 0 * pressure)"}
+    pl.run(run | {"outputs": [nowhere]}, directory=tmp_path, progress=False)
+    assert (tmp_path / "run-maps.png").stat().st_size > 0
