@@ -12,6 +12,7 @@ from pydantic import Field
 from pellicle import Run, displacement, hookimpl
 from pellicle.columns import Runs, names
 from pellicle.components import Output
+from pellicle.errors import StorageError
 from pellicle.expression import evaluate
 from pellicle.operators import Array
 
@@ -40,9 +41,14 @@ class Compliance(Graph):
     def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
         """Draw, and yield the rows of the numbers drawn."""
         for number, (name, picked) in enumerate(self.picked(runs.table)):
-            run = Run.from_json(runs.open(str(picked["run"].item())).attrs["configuration"])
+            try:
+                said = runs.open(str(picked["run"].item())).attrs["configuration"]
+            except StorageError:
+                continue
+            run = Run.from_json(said)
             q, of_cells = of_cells_along_x(run)
-            shown = np.unique(np.geomspace(1, q.size, _SYMBOLS).astype(int)) - 1
+            # A grid one cell across has no waves.
+            shown = np.unique(np.geomspace(1, max(1, q.size), _SYMBOLS).astype(int)) - 1
             for values, what, style in (
                 (of_cells, "cells", "o"),
                 (run.kernel.compliance(q), "symbol", "-"),

@@ -178,10 +178,10 @@ def scaled(text: str, values: xr.DataArray, given: str | None) -> tuple[float, s
 
 
 def set_scales(axes: Axes, log: Sequence[str]) -> None:
-    """Make axes logarithmic, or begin at zero where nothing is below."""
+    """Make axes logarithmic that show anything positive, others begin at zero or below."""
     for which in ("x", "y"):
         low, _ = getattr(axes, f"get_{which}lim")()
-        if which in log:
+        if which in log and np.isfinite(getattr(axes.dataLim, f"minpos{which}")):
             getattr(axes, f"set_{which}scale")("log")
         elif low < 0 and getattr(axes.dataLim, f"{which}0") >= 0:
             getattr(axes, f"set_{which}lim")(**{"left" if which == "x" else "bottom": 0.0})

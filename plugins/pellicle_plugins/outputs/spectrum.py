@@ -48,7 +48,9 @@ class SpectrumOutput(Drawing):
         return (*files, write_csv(stem, list(_rows(found)), _HEADS))
 
     def _fill(self, axes: Axes, found: list[tuple[str, dict[str, Spectrum]]]) -> None:
-        highest = max((of.density.max() for _, each in found for of in each.values()), default=0.0)
+        highest = max(
+            (of.density.max(initial=0.0) for _, each in found for of in each.values()), default=0.0
+        )
         for number, (name, each) in enumerate(found):
             for surface, of in each.items():
                 # Rings that hold nothing but round-off would set the scale.
