@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from . import memory
+from . import memory, storage
 from .area_search import Reached, reach_area
 from .components import Component, Monitor, Output, Place
 from .config import Run
@@ -129,10 +129,9 @@ def execute(
             ) from None
         finally:
             if steps:
-                # What has been solved with and, once joined, the single steps make room.
+                # What has been solved with makes room.
                 problems.clear()
-                result = Result.join(steps)
-                steps.clear()
+                result = Result(storage.joined(steps))
                 for output in outputs:
                     files.extend(output.close(place, result))
     return Executed(result, tuple(files), taken)

@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
+from pellicle import storage
 from pellicle.plugins import Origin, registry
 
 CONFIGURATION: dict[str, Any] = {
@@ -87,8 +88,8 @@ def test_converged(result: pl.Result) -> None:
 def test_steps_join_in_order(result: pl.Result) -> None:
     """Joining datasets of one step each gives the dataset of all."""
     parts = [result.dataset.isel(step=[index]) for index in range(2)]
-    xr.testing.assert_identical(pl.Result.join(parts).dataset, result.dataset)
-    xr.testing.assert_identical(pl.Result.join(parts[:1]).dataset, parts[0])
+    xr.testing.assert_identical(storage.joined(list(parts)), result.dataset)
+    xr.testing.assert_identical(storage.joined(parts[:1]), parts[0])
 
 
 def test_save_where_nothing_can_be_written(result: pl.Result, tmp_path: Path) -> None:
