@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -90,6 +92,24 @@ def test_steps_join_in_order(result: pl.Result) -> None:
     parts = [result.dataset.isel(step=[index]) for index in range(2)]
     xr.testing.assert_identical(storage.joined(list(parts)), result.dataset)
     xr.testing.assert_identical(storage.joined(parts[:1]), parts[0])
+
+
+def test_steps_are_joined_with_one_field_twice_at_a_time() -> None:
+    """Joining uses up the list, and takes much less than another copy of all."""
+    tracemalloc.start()
+    try:
+        fields = {name: (("step", "x", "y"), np.ones((1, 64, 64))) for name in "abcdef"}
+        steps = [xr.Dataset(fields).copy(deep=True) for _ in range(4)]
+        del fields
+        whole = sum(step.nbytes for step in steps)
+        before, _ = tracemalloc.get_traced_memory()
+        tracemalloc.reset_peak()
+        joined = storage.joined(steps)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert (steps, joined.sizes["step"]) == ([], 4)
+    assert peak - before < 0.4 * whole
 
 
 def test_save_where_nothing_can_be_written(result: pl.Result, tmp_path: Path) -> None:
