@@ -297,9 +297,10 @@ class Output(Component):
     def open(self, place: Place) -> None:
         """Prepare; raise StorageError if it is plain that nothing can be written.
 
-        Here the folder is tried.
+        Here the folder of its first file is tried.
         """
-        storage.check_writable(place.file(self.endings()[0]))
+        for ending in self.endings()[:1]:
+            storage.check_writable(place.file(ending))
 
     def resume(self, place: Place) -> xr.Dataset | None:
         """Return the steps that an earlier process finished of the same run, if there are any."""
