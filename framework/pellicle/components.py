@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from . import storage
 from .model import Model
 from .operators import Array
 from .problem import Problem
@@ -47,6 +48,8 @@ class Component(Model):
     """What all families share."""
 
     family: ClassVar[str]
+    libraries: ClassVar[tuple[str, ...]] = ()
+    """Distributions that it computes with, beside numpy and scipy; results say their versions."""
 
 
 class Kernel(Component):
@@ -273,13 +276,31 @@ class Output(Component):
     `resume` says, are not solved again; `step` of the other outputs gets them all the same.
 
     In a study, an output that has a `study` of its own is called by the study alone; any other is
-    called by each run.
+    called by each run. `endings` says what files it leaves.
     """
 
     family: ClassVar[str] = "output"
 
+    @property
+    def draws_studies(self) -> bool:
+        """Whether a study calls it, once; any other is called by each run of the study."""
+        return type(self).study is not Output.study
+
+    def endings(self) -> tuple[str, ...]:
+        """Return what `Place.file` is given for the files that it leaves, of a run or of a study.
+
+        ``*`` stands for anything, as the number of a step. Outputs that would write the same file
+        are refused. Here ``-type*``, or ``-name*`` if there is a field ``name`` that says one.
+        """
+        return (f"-{getattr(self, 'name', '') or getattr(self, 'type', '')}*",)
+
     def open(self, place: Place) -> None:
-        """Prepare; raise StorageError if it is plain that nothing can be written."""
+        """Prepare; raise StorageError if it is plain that nothing can be written.
+
+        Here the folder of its first file is tried.
+        """
+        for ending in self.endings()[:1]:
+            storage.check_writable(place.file(ending))
 
     def resume(self, place: Place) -> xr.Dataset | None:
         """Return the steps that an earlier process finished of the same run, if there are any."""

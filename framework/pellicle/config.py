@@ -15,6 +15,7 @@ from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import Field, model_validator
 
+from .clashes import refuse_clashes
 from .components import AreaCorrection, Component, Indenter, Kernel, Output, Solver
 from .errors import ConfigError
 from .fields import FromRegistry
@@ -77,24 +78,8 @@ class Run(Model):
         return self
 
     @model_validator(mode="after")
-    def _each_output_once(self) -> Self:
-        seen: set[tuple[str, str]] = set()
-        for index, output in enumerate(self.outputs or ()):
-            type_ = getattr(output, "type", "")
-            name = getattr(output, "name", None) or type_
-            if (type_, name) in seen:
-                if "name" in type(output).model_fields:
-                    raise ConfigError(
-                        f"{name!r} is the name of another {type_!r}, and both would write the same "
-                        "files; give each a name of its own",
-                        f"outputs.{index}.name",
-                    )
-                raise ConfigError(
-                    f"{type_!r} is there already, and both would write the same files; leave one "
-                    "out",
-                    f"outputs.{index}.type",
-                )
-            seen.add((type_, name))
+    def _each_file_once(self) -> Self:
+        refuse_clashes(self.outputs or ())
         return self
 
     @classmethod

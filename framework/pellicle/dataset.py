@@ -44,6 +44,7 @@ DESCRIPTIONS = {
     "status": ("", "how the step ended"),
     "wall_time": ("s", "time that the step took"),
 }
+"""Unit and meaning of each variable of a result."""
 
 OF_THE_CONTACT = (
     "mean_contact_pressure",
@@ -55,7 +56,6 @@ OF_THE_CONTACT = (
     "perimeter",
 )
 """What is told of the contact beside its area, in a table of its own."""
-"""Unit and meaning of each variable of a result."""
 
 
 def step_dataset(

@@ -10,11 +10,16 @@ from pathlib import Path, PurePosixPath
 from .errors import ConfigError, shown
 from .grid import Grid
 
-# Peak of a run with all outputs in float64 arrays: a tenth to a third above what was measured at
-# N = 1024 with one step and four (free 24.9 and 49.9 arrays of N², periodic 19.3 and 42.9).
-_PADDED_ARRAYS = 4
-_CELL_ARRAYS = 9
-_ARRAYS_PER_STEP = 9
+# Peak of a run with the standard outputs, in float64 arrays of N²: what is solved with beside the
+# steps that are kept, or what is joined and written. Above all that was measured with active_set at
+# N = 256 … 2048 with one to ten steps (Linux, glibc), contact over most of the domain included.
+_SOLVING, _SOLVING_PADDED, _SOLVING_STEP = 13.2, 2.75, 3.5
+_WRITING, _WRITING_STEP = 9.0, 5.3
+# Smaller arrays stay with the process when freed, and what is larger does not fit in their place.
+_GIVEN_BACK = 32 * 2**20
+_KEPT_STEP = 3.4
+# Figures, buffers [bytes].
+_FIXED = 4e6
 
 # Files of a control group: its limit, its usage, and the line of memory.stat with its file cache.
 _VERSION_2 = "memory.max", "memory.current", "inactive_file"
@@ -22,13 +27,16 @@ _VERSION_1 = "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_f
 
 
 def estimate(grid: Grid, steps: int) -> float:
-    """Return the memory [bytes] that a run on ``grid`` needs at its peak."""
+    """Return the memory [bytes] that a run on ``grid`` needs at its peak, beside the libraries."""
     try:
         cells = float(grid.points[0] * grid.points[1])
     except OverflowError:
         return math.inf
-    padded = 4 * cells if grid.boundary == "free" else cells
-    return 8 * (_PADDED_ARRAYS * padded + (_CELL_ARRAYS + _ARRAYS_PER_STEP * steps) * cells)
+    padded = 4 if grid.boundary == "free" else 1
+    kept = _KEPT_STEP if 8 * cells < _GIVEN_BACK else 0.0
+    solving = _SOLVING + _SOLVING_PADDED * padded + _SOLVING_STEP * steps
+    writing = _WRITING + (_WRITING_STEP + kept) * steps
+    return _FIXED + 8 * cells * max(solving, writing)
 
 
 def available(root: Path = Path("/")) -> float | None:

@@ -17,6 +17,7 @@ from .errors import ConfigError
 from .grid import Grid
 from .hankel import Tabulated
 from .influence import cell_coefficients
+from .resolution import warn_of_cells
 
 Array = NDArray[np.float64]
 Float = TypeVar("Float", np.float32, np.float64)
@@ -210,6 +211,11 @@ def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array
     ------
     ConfigError
         The pressure is not a finite real array of the grid's shape.
+
+    Warns
+    -----
+    UserWarning
+        The cells are too wide for the kernel.
     """
     given = np.asarray(pressure)
     if given.shape != grid.shape or given.dtype.kind not in "fiu":
@@ -220,7 +226,9 @@ def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array
         )
     if not np.isfinite(given).all():
         raise ConfigError("holds NaN or infinite values; give finite ones in Pa", "pressure")
-    return make_operator(kernel, grid)(given.astype(np.float64))
+    operator = make_operator(kernel, grid)
+    warn_of_cells(kernel.compliance, grid)
+    return operator(given.astype(np.float64))
 
 
 def _wrap(cells: Array, padded: tuple[int, ...]) -> Array:

@@ -7,15 +7,15 @@ import re
 import time
 import warnings
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from datetime import UTC, datetime
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from . import memory
+from . import memory, storage
 from .area_search import Reached, reach_area
 from .components import Component, Monitor, Output, Place
 from .config import Run
@@ -26,6 +26,7 @@ from .operators import Array, Operator, make_operator
 from .plugins import registry
 from .problem import Equilibrium, Problem, Stiffness, measure, measure_stiffness
 from .progress import Bar, Progress
+from .resolution import warn_of_cells
 from .result import Result, Solution, Status
 
 if TYPE_CHECKING:
@@ -128,7 +129,9 @@ def execute(
             ) from None
         finally:
             if steps:
-                result = Result.join(steps)
+                # What has been solved with makes room.
+                problems.clear()
+                result = Result(storage.joined(steps))
                 for output in outputs:
                     files.extend(output.close(place, result))
     return Executed(result, tuple(files), taken)
@@ -184,6 +187,7 @@ def _problems(run: Run) -> list[Problem]:
         Kernel, indenter or loading do not fit the grid.
     """
     operator = make_operator(run.kernel, run.grid)
+    warn_of_cells(run.kernel.compliance, run.grid)
     profile = _profile(run)
 
     def each(prescribed: Literal["depth", "force"], values: Iterable[float]) -> list[Problem]:
@@ -438,10 +442,12 @@ def now_with(runs: Iterable[Run]) -> dict[str, str]:
         for registered in family.values()
         if registered.component in used
     }
-    versions = {"pellicle": version("pellicle"), "numpy": version("numpy")} | {
-        "scipy": version("scipy"),
-        **owners,
-    }
+    libraries = sorted({name for component in used for name in component.libraries})
+    versions = {name: version(name) for name in ("pellicle", "numpy", "scipy")} | owners
+    for name in libraries:
+        # A worker that is handed what a library read may be without it.
+        with suppress(PackageNotFoundError):
+            versions[name] = version(name)
     return {
         "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),

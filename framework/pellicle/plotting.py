@@ -51,6 +51,8 @@ def pressure_map(result: Result, axes: Axes, step: int = -1) -> None:
         cmap="viridis",
         vmin=0.0,
         interpolation="nearest",
+        # The other stage makes a colour of each cell before it takes those to show.
+        interpolation_stage="data",
     )
     axes.set_facecolor("0.93")
     axes.set(xlabel=f"x [{length_name}]", ylabel=f"y [{length_name}]")
@@ -106,6 +108,8 @@ FIGURES: dict[str, Callable[[Result, Axes], None]] = {
     "area_force": area_force,
 }
 """What is drawn of a run, by the ending of the file name."""
+STUDY_FIGURES = "force", "contact_fraction"
+"""Variables that are drawn of a study, by the same."""
 
 
 def save_figures(
@@ -136,9 +140,7 @@ def save_study_figures(
     """
     if "force" not in table:
         return ()
-    drawings = {
-        what: partial(study_curves, table, variable=what) for what in ("force", "contact_fraction")
-    }
+    drawings = {what: partial(study_curves, table, variable=what) for what in STUDY_FIGURES}
     return _save(drawings, directory, name, formats)
 
 

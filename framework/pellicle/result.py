@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -84,11 +83,6 @@ class Result:
 
     dataset: xr.Dataset
     """Dimensions (step, x, y); units in the attributes of each variable."""
-
-    @classmethod
-    def join(cls, steps: Sequence[xr.Dataset]) -> Result:
-        """Return the result made of datasets of one step each."""
-        return cls(storage.joined(steps))
 
     @property
     def configuration(self) -> dict[str, Any]:

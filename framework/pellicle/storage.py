@@ -18,6 +18,7 @@ import socket
 import tempfile
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -136,22 +137,31 @@ def fields(path: Path, names: Sequence[str], step: int) -> tuple[dict[str, Any],
     raise StorageError(f"{path} does not hold that many steps; run it again")
 
 
-def joined(steps: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Return datasets of consecutive steps as one."""
+def joined(steps: list[xr.Dataset]) -> xr.Dataset:
+    """Return datasets of consecutive steps as one.
+
+    The list is used up: of the fields, only the one that is being joined is in memory twice.
+    """
     import xarray as xr
 
     if len(steps) == 1:
-        return steps[0]
+        return steps.pop()
     # Coordinates are the same in all steps, so nothing needs comparing.
-    return xr.concat(
-        steps,
-        "step",
-        data_vars="all",
+    concat: Any = partial(
+        xr.concat,
+        dim="step",
         coords="minimal",
         compat="override",
         join="override",
         combine_attrs="override",
     )
+    fields = {}
+    for name in [str(n) for n, variable in steps[0].data_vars.items() if variable.ndim > 1]:
+        fields[name] = concat([step[name] for step in steps])
+        steps[:] = [step.drop_vars(name) for step in steps]
+    scalars = concat(steps, data_vars="all")
+    steps.clear()
+    return xr.Dataset({**fields, **scalars.data_vars}, scalars.coords, scalars.attrs)
 
 
 def table(path: Path) -> xr.Dataset:
@@ -261,7 +271,7 @@ def _join(path: Path, tails: Sequence[Path], *more: xr.Dataset) -> None:
     import h5py
 
     with aside(path) as part:
-        image = io.BytesIO(path.read_bytes())
+        image = _with_room(path, sum(tail.stat().st_size for tail in tails) + _bytes(more))
         with h5py.File(image, "r+") as file:
             for tail in tails:
                 with _readable(tail), h5py.File(tail) as source:
@@ -273,6 +283,19 @@ def _join(path: Path, tails: Sequence[Path], *more: xr.Dataset) -> None:
     with reported(path):
         for tail in _tails(path):
             tail.unlink()
+
+
+def _with_room(path: Path, room: int) -> io.BytesIO:
+    """Return the content of a file in memory, with room to grow by without being copied."""
+    size = path.stat().st_size
+    image = io.BytesIO(bytes(size + room + _SMALL))
+    with path.open("rb") as file, image.getbuffer() as whole:
+        file.readinto(whole[:size])
+    return image
+
+
+def _bytes(datasets: Sequence[xr.Dataset]) -> int:
+    return sum(dataset.nbytes for dataset in datasets)
 
 
 def _grows(stored: h5py.Dataset) -> bool:

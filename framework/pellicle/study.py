@@ -200,7 +200,7 @@ def _carry_out(
     study: Study, directory: Path, progress: bool, overwrite: bool, threads: int | None
 ) -> Carried:
     place = Place(directory, "study", study.to_json(), overwrite=overwrite)
-    outputs = [o for o in standard_outputs(study.points[0].run.outputs) if _by_study(o)]
+    outputs = [o for o in standard_outputs(study.points[0].run.outputs) if o.draws_studies]
     for output in outputs:
         output.open(place)
     storage.check_writable(directory / "runs" / "run.h5")
@@ -355,13 +355,9 @@ def _statuses(made: xr.Dataset) -> Any:
     return status.reshape(-1, status.shape[-1])
 
 
-def _by_study(output: Output) -> bool:
-    return type(output).study is not Output.study
-
-
 def _by_run(named: Sequence[Output]) -> tuple[Output, ...]:
     """Return the outputs that each run calls itself: its file is there in any case."""
-    return tuple(o for o in named if not _by_study(o) and getattr(o, "type", "") != "hdf5")
+    return tuple(o for o in named if not o.draws_studies and getattr(o, "type", "") != "hdf5")
 
 
 def _collect(task: RunTask, rows: table.Table) -> int:

@@ -13,6 +13,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from . import axes, memory
+from .clashes import refuse_clashes_with_study
 from .columns import FIELDS, constants
 from .components import Executor
 from .config import Run, read
@@ -183,6 +184,10 @@ class Study(Model):
         with paths_relative_to(None):
             self._points = tuple(self._make_points())
         self._check_derived()
+        try:
+            refuse_clashes_with_study(self.points[0].run.outputs or ())
+        except ConfigError as error:
+            raise error.within("run") from None
         return self
 
     @property

@@ -128,15 +128,15 @@ KEYS_AND_TYPES = {
     ),
     "one output twice": (
         "outputs=[{type='hdf5'}, {type='csv'}, {type='hdf5'}]",
-        ["outputs.2.type: 'hdf5' is there already", "the same files", "leave one out"],
+        ["outputs.2.type: 'hdf5' would write NAME.h5, as outputs.0 ('hdf5')", "leave one out"],
     ),
     "two outputs of one name": (
         "outputs=[{type='maps', name='a'}, {type='maps', name='b'}, {type='maps', name='a'}]",
-        ["outputs.2.name: 'a' is the name of another 'maps'", "give each a name of its own"],
+        ["outputs.2.name: 'maps' would write NAME-a.png, as outputs.0", "give it another name"],
     ),
     "two outputs without a name": (
         "outputs=[{type='maps', field='gap'}, {type='maps', name='maps'}]",
-        ["outputs.1.name: 'maps' is the name of another 'maps'", "the same files"],
+        ["outputs.1.name: 'maps' would write NAME-maps.png, as outputs.0 ('maps') does"],
     ),
     "text wanted": ("title=1", ["title: 1 is not allowed; give text in quotes"]),
     "whole number wanted": (

@@ -18,9 +18,30 @@ def _grid(points: int, boundary: str = "free") -> pl.Grid:
 @pytest.mark.parametrize("boundary", ["free", "periodic"])
 def test_estimate_grows_with_cells_and_steps(boundary: str) -> None:
     """Twice the points take four times the memory, and steps that are kept take more."""
-    small = memory.estimate(_grid(64, boundary), 1)
-    assert memory.estimate(_grid(128, boundary), 1) == pytest.approx(4 * small)
-    assert memory.estimate(_grid(64, boundary), 10) > 2 * small
+    large = memory.estimate(_grid(4096, boundary), 1)
+    assert memory.estimate(_grid(8192, boundary), 1) == pytest.approx(4 * large, rel=1e-2)
+    assert memory.estimate(_grid(4096, boundary), 10) > 2 * large
+
+
+# MB at their peak, of fresh processes after a run of 16 × 16 cells: solver active_set, all standard
+# outputs, a paraboloid that touches 12 % (free) and 69 % (periodic) of the domain; x86-64, glibc.
+MEASURED = {
+    ("free", 256): {1: 17.2, 3: 21.3, 8: 32.3, 10: 41.5},
+    ("free", 512): {1: 54.3, 2: 65.0, 3: 71.9, 5: 101.9, 8: 129.6, 10: 183.9},
+    ("free", 1024): {1: 206.4, 3: 269.3, 6: 431.2},
+    ("periodic", 256): {1: 12.2, 3: 21.7, 8: 38.6, 10: 41.1},
+    ("periodic", 512): {1: 36.5, 2: 47.8, 3: 63.3, 5: 97.5, 8: 135.7, 10: 199.9},
+    ("periodic", 1024): {1: 158.5, 3: 248.3},
+    ("periodic", 2048): {1: 604.0},
+}
+
+
+@pytest.mark.parametrize(("boundary", "points"), MEASURED)
+def test_estimate_is_over_what_was_measured_but_not_by_much(boundary: str, points: int) -> None:
+    """It is never under; the fit is looser where steps are small enough for libc to keep them."""
+    for steps, megabytes in MEASURED[boundary, points].items():
+        ratio = memory.estimate(_grid(points, boundary), steps) / (megabytes * 1e6)
+        assert 1.0 < ratio < (1.45 if steps > 5 else 1.25)
 
 
 def test_estimate_holds_at_least_the_result() -> None:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from dataclasses import replace
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray as xr
 
 import pellicle as pl
+from pellicle import storage
 from pellicle.plugins import Origin, registry
 
 CONFIGURATION: dict[str, Any] = {
@@ -66,6 +70,16 @@ def test_provenance_of_components_within_components(monkeypatch: pytest.MonkeyPa
     assert "other-package 9.9" in versions.split(", ")
 
 
+def test_provenance_names_what_components_compute_with(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The versions are those of numpy, scipy, and the libraries of a component; none if absent."""
+    inner = registry().components["indenter"]["paraboloid"].component
+    monkeypatch.setattr(inner, "libraries", ("xarray", "pellicle-no-such-library"))
+    run = CONFIGURATION | {"outputs": [], "loading": {"depth": 0.0}}
+    versions = pl.run(run, progress=False).dataset.attrs["versions"].split(", ")
+    used = ("pellicle", "numpy", "scipy", "xarray")
+    assert versions == [f"{name} {version(name)}" for name in used]
+
+
 def test_converged(result: pl.Result) -> None:
     """A result has converged only if every step has."""
     assert result.converged
@@ -76,8 +90,26 @@ def test_converged(result: pl.Result) -> None:
 def test_steps_join_in_order(result: pl.Result) -> None:
     """Joining datasets of one step each gives the dataset of all."""
     parts = [result.dataset.isel(step=[index]) for index in range(2)]
-    xr.testing.assert_identical(pl.Result.join(parts).dataset, result.dataset)
-    xr.testing.assert_identical(pl.Result.join(parts[:1]).dataset, parts[0])
+    xr.testing.assert_identical(storage.joined(list(parts)), result.dataset)
+    xr.testing.assert_identical(storage.joined(parts[:1]), parts[0])
+
+
+def test_steps_are_joined_with_one_field_twice_at_a_time() -> None:
+    """Joining uses up the list, and takes much less than another copy of all."""
+    tracemalloc.start()
+    try:
+        fields = {name: (("step", "x", "y"), np.ones((1, 64, 64))) for name in "abcdef"}
+        steps = [xr.Dataset(fields).copy(deep=True) for _ in range(4)]
+        del fields
+        whole = sum(step.nbytes for step in steps)
+        before, _ = tracemalloc.get_traced_memory()
+        tracemalloc.reset_peak()
+        joined = storage.joined(steps)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert (steps, joined.sizes["step"]) == ([], 4)
+    assert peak - before < 0.4 * whole
 
 
 def test_save_where_nothing_can_be_written(result: pl.Result, tmp_path: Path) -> None:

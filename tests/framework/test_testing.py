@@ -18,7 +18,7 @@ import pytest
 from pydantic import ConfigDict, Field, SerializationInfo, model_serializer
 
 import pellicle as pl
-from pellicle import storage, testing
+from pellicle import testing
 from pellicle.components import FAMILIES, Component
 from pellicle.plugins import registry
 from pellicle.testing import component as component_rules
@@ -56,6 +56,12 @@ class Unfinished(Paraboloid):
     """Shape without a full stop"""  # noqa: D400
 
     type: Literal["unfinished"] = "unfinished"
+
+
+class Wishful(Paraboloid):
+    """Shape of a library that nobody has."""
+
+    libraries: ClassVar[tuple[str, ...]] = ("pellicle-no-such-library",)
 
 
 class NoType(pl.AreaCorrection):
@@ -173,6 +179,7 @@ GENERAL: dict[str, tuple[Callable[[], Any], str]] = {
     "other JSON": (partial(Forgetful, radius=1e-3), "goes_through_json"),
     "no TOML": (partial(Holey, radius=1e-3), "goes_through_toml"),
     "other schema": (partial(Hospitable, radius=1e-3), "schema_tells_the_fields"),
+    "no such library": (partial(Wishful, radius=1e-3), "libraries_are_installed"),
     "unknown fields": (partial(Welcoming, radius=1e-3), "unknown_field_is_refused"),
     "not registered": (partial(Stranger, radius=1e-3), "is_registered"),
     "type is taken": (partial(Usurper, radius=1e-3), "is_registered"),
@@ -609,8 +616,8 @@ class Output(pl.Output):
 
     type: Literal["broken"] = "broken"
 
-    def open(self, place: Any) -> None:
-        storage.check_writable(place.file(".json"))
+    def endings(self) -> tuple[str, ...]:
+        return (".json",)
 
     def close(self, place: Any, result: Any) -> Any:
         path = place.file(".json")
@@ -649,6 +656,13 @@ class Littering(Output):
     def close(self, place: Any, result: Any) -> Any:
         place.file(".log").write_text("done")
         return super().close(place, result)
+
+
+class Untold(Output):
+    """Leaves and names a file that it tells nobody of beforehand."""
+
+    def endings(self) -> tuple[str, ...]:
+        return ("-*.json",)
 
 
 class Empty(Output):
@@ -700,6 +714,7 @@ OUTPUTS = {
     LosesLast: "loses_no_step",
     Nameless: "leaves_the_files_it_names",
     Littering: "leaves_the_files_it_names",
+    Untold: "leaves_the_files_it_names",
     Empty: "leaves_the_files_it_names",
     Own: "leaves_the_files_it_names",
     Once: "leaves_the_files_it_names",

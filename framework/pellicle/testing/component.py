@@ -7,6 +7,7 @@ import json
 import pickle
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
+from importlib.metadata import PackageNotFoundError, version
 from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import ValidationError
@@ -158,6 +159,17 @@ def schema_tells_the_fields(component: Component) -> None:
     require(_table(component).keys() <= fields, f"a component is written as {_table(component)}")
 
 
+def libraries_are_installed(component: Component) -> None:
+    """Each of the class's `libraries`, whose version a result says, is a distribution here."""
+    for name in component.libraries:
+        try:
+            version(name)
+        except PackageNotFoundError:
+            raise AssertionError(
+                f"{name!r} is not installed; give the name that pip installs it by"
+            ) from None
+
+
 def is_registered(component: Component) -> None:
     """A plugin that is installed here registers the class under its type."""
     family, type_ = component.family, _table(component)["type"]
@@ -197,4 +209,5 @@ RULES: list[Rule] = [
     goes_through_toml,
     unknown_field_is_refused,
     schema_tells_the_fields,
+    libraries_are_installed,
 ]

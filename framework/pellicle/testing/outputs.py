@@ -9,6 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+from pellicle.clashes import matches
 from pellicle.components import Output, Place
 from pellicle.config import Run
 from pellicle.errors import StorageError
@@ -28,10 +29,10 @@ _STEPS = 2
 def check_output(output: Output) -> None:
     """Check that an output keeps its contract.
 
-    Beside what all components keep: it leaves exactly the files that it names, also where the run
-    was cut short and is repeated; each step leaves a trace in them, unless a `study` of
-    its own chooses what is shown; a folder that cannot be written is known before anything is
-    computed; and it works in a run.
+    Beside what all components keep: it leaves exactly the files that it names, and that `endings`
+    tells, also where the run was cut short and is repeated; each step leaves a trace in them,
+    unless a `study` of its own chooses what is shown; a folder that cannot be written is known
+    before anything is computed; and it works in a run.
 
     Raises
     ------
@@ -85,7 +86,7 @@ def _left(place: Place) -> dict[str, bytes]:
 
 
 def leaves_the_files_it_names(output: Output) -> None:
-    """Cut short, and repeated with all steps, a run leaves exactly the files that are named."""
+    """Cut short, and repeated with all steps, a run leaves what is named and endings() tells."""
     with _place() as place:
         for steps in range(1, _STEPS + 1):
             named = _leave(output, place, _dataset().isel(step=slice(steps)))
@@ -102,11 +103,16 @@ def leaves_the_files_it_names(output: Output) -> None:
                     name.startswith(place.name),
                     f"{name} does not begin with {place.name!r}; use place.file(…)",
                 )
+                told = output.endings()
+                require(
+                    any(matches(name.removeprefix(place.name), ending) for ending in told),
+                    f"{name} is left, and endings() tells {told}",
+                )
 
 
 def loses_no_step(output: Output) -> None:
     """What is left behind differs if any of the steps does, unless study() chooses."""
-    if type(output).study is not Output.study:
+    if output.draws_studies:
         return
     whole = _dataset()
     left = _content(output, whole)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from math import ceil, floor
-from typing import Annotated, Literal, Self, get_args
+from typing import Annotated, ClassVar, Literal, Self, get_args
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -39,6 +39,8 @@ class Topography(Measured):
     lies under the domain is filled, levelled and interpolated to the cells.
     Reading needs the extra ``topography``.
     """
+
+    libraries: ClassVar[tuple[str, ...]] = ("SurfaceTopography",)
 
     type: Literal["topography"] = "topography"
     path: Annotated[InputPath, Field(description="file that SurfaceTopography can read")]

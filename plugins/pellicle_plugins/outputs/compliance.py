@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
@@ -13,11 +12,11 @@ from pydantic import Field
 from pellicle import Run, displacement, hookimpl
 from pellicle.columns import Runs, names
 from pellicle.components import Output
+from pellicle.errors import StorageError
 from pellicle.expression import evaluate
 from pellicle.operators import Array
-from pellicle.plotting import save_figure
 
-from .drawing import Drawing, along, label, one_axis, pick, set_scales, write_csv
+from .drawing import Graph, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 _SYMBOLS = 40
 
 
-class Compliance(Drawing):
+class Compliance(Graph):
     """Compliance of the cells against the kernel's symbol, over the wavenumber.
 
     Symbols are the Fourier transform of the displacement under a pressure on one cell, along x,
@@ -38,34 +37,18 @@ class Compliance(Drawing):
     type: Literal["compliance"] = "compliance"
     x: Annotated[str, Field(description="expression for the horizontal axis")] = "q"
     y: Annotated[str, Field(description="expression for the vertical axis")] = "compliance"
-    by: Annotated[
-        str | None, Field(description="axis of the study each value of which has its own curve")
-    ] = None
-    label: Annotated[
-        str | None,
-        Field(description="name of a curve; {expression} in it is replaced by its value"),
-    ] = None
-    x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
-    y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
 
-    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure and its numbers."""
-        rows: list[dict[str, object]] = []
-
-        def fill(axes: Axes) -> None:
-            rows.extend(self._fill(axes, runs))
-
-        files = save_figure(lambda figure: fill(figure.add_subplot()), stem, self.formats)
-        return (*files, write_csv(stem.with_name(f"{stem.name}.csv"), rows))
-
-    def _fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
-        one_axis(runs.table.sizes, self.by, "by")
-        for number, at in enumerate(along(runs.table, self.by)):
-            picked = pick(runs.table, at)
-            run = Run.from_json(runs.open(str(picked["run"].item())).attrs["configuration"])
-            name = label(self.label, picked, self.by)
+    def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        """Draw, and yield the rows of the numbers drawn."""
+        for number, (name, picked) in enumerate(self.picked(runs.table)):
+            try:
+                said = runs.open(str(picked["run"].item())).attrs["configuration"]
+            except StorageError:
+                continue
+            run = Run.from_json(said)
             q, of_cells = of_cells_along_x(run)
-            shown = np.unique(np.geomspace(1, q.size, _SYMBOLS).astype(int)) - 1
+            # A grid one cell across has no waves.
+            shown = np.unique(np.geomspace(1, max(1, q.size), _SYMBOLS).astype(int)) - 1
             for values, what, style in (
                 (of_cells, "cells", "o"),
                 (run.kernel.compliance(q), "symbol", "-"),

@@ -24,9 +24,9 @@ class Csv(Output):
 
     type: Literal["csv"] = "csv"
 
-    def open(self, place: Place) -> None:
-        """Find out before computing whether the file can be written."""
-        storage.check_writable(place.file(".csv"))
+    def endings(self) -> tuple[str, ...]:
+        """Return that of the table."""
+        return (".csv",)
 
     def step(self, place: Place, step: xr.Dataset) -> None:
         """Write the row of the step, the first with a header."""

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle import hookimpl
 from pellicle.analysis import Extrapolation, extrapolate
@@ -17,10 +16,18 @@ from pellicle.components import Output
 from pellicle.errors import ConfigError
 from pellicle.model import Model
 from pellicle.operators import Array
-from pellicle.plotting import save_figure
 from pellicle_plugins.analytic.twin import exact
 
-from .drawing import Drawing, Texts, along, finite, label, one_axis, scaled, set_scales, write_csv
+from .drawing import (
+    Graph,
+    Log,
+    Reference,
+    along,
+    label,
+    one_axis,
+    scaled,
+    set_scales,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,6 +36,16 @@ if TYPE_CHECKING:
 _MARKERS = "os^Dv<>P"
 _LINES = ("-", "--", ":", "-.")
 _GRIDS = 3
+
+
+def _several(value: object) -> object:
+    return (value,) if isinstance(value, str) else value
+
+
+_Texts = Annotated[
+    tuple[str, ...], BeforeValidator(_several, json_schema_input_type=str | tuple[str, ...])
+]
+"""One text, or a list of them."""
 
 
 class Published(Model):
@@ -46,7 +63,7 @@ class Published(Model):
         return self
 
 
-class Curves(Drawing):
+class Curves(Graph):
     """One number against another over the runs, one curve for each value of an axis.
 
     ``x`` and ``y`` are arithmetic over the columns of the table, the numbers of the configuration
@@ -58,31 +75,17 @@ class Curves(Drawing):
     type: Literal["curves"] = "curves"
     x: Annotated[str, Field(description="expression for the horizontal axis")] = "depth"
     y: Annotated[
-        Texts, Field(min_length=1, description="expression, or several, for the vertical axis")
+        _Texts, Field(min_length=1, description="expression, or several, for the vertical axis")
     ] = ("force",)
     series: Annotated[
         tuple[str, ...], Field(description="name of each y in the legend; its expression if absent")
     ] = ()
-    by: Annotated[
-        str | None, Field(description="axis of the study each value of which has its own curve")
-    ] = None
     over: Annotated[
         str | None,
         Field(description="axis, such as indenter.seed, over which mean and range are drawn"),
     ] = None
-    label: Annotated[
-        str | None,
-        Field(description="name of a curve of by; {expression} in it is replaced by its value"),
-    ] = None
-    x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
-    y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
-    log: Annotated[
-        tuple[Literal["x", "y"], ...], Field(description="axes that are logarithmic: x, y")
-    ] = ()
-    reference: Annotated[
-        Literal["axisymmetric"] | None,
-        Field(description="draw the same expressions of the semi-analytic solution too"),
-    ] = None
+    log: Log = ()
+    reference: Reference = None
     extrapolate: Annotated[
         bool,
         Field(
@@ -104,18 +107,9 @@ class Curves(Drawing):
             raise ConfigError(f"{self.over!r} is by already; give another axis", "over")
         return self
 
-    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure and its numbers."""
-        rows: list[dict[str, object]] = []
+    def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        """Draw, and yield the rows of the numbers drawn."""
         true = exact(runs) if self.reference else None
-
-        def fill(axes: Axes) -> None:
-            rows.extend(self._fill(axes, runs, true))
-
-        files = save_figure(lambda figure: fill(figure.add_subplot()), stem, self.formats)
-        return (*files, write_csv(stem.with_name(f"{stem.name}.csv"), rows))
-
-    def _fill(self, axes: Axes, runs: Runs, true: Runs | None) -> Iterator[dict[str, object]]:
         table = runs.table
         for field, chosen in (("by", self.by), ("over", self.over)):
             one_axis(table.sizes, chosen, field)
@@ -205,7 +199,7 @@ class Curves(Drawing):
                 "by",
             )
         values = [column.values.ravel().astype(float) for column in columns]
-        return _Curve(*finite(*values))
+        return _Curve(*_finite(*values))
 
 
 @dataclass(frozen=True)
@@ -323,6 +317,12 @@ def _enough(x: xr.DataArray) -> None:
             f"vary the grid over at least {_GRIDS}",
             "extrapolate",
         )
+
+
+def _finite(*columns: Array) -> list[Array]:
+    """Return the columns without the rows that have a NaN or an infinite value."""
+    good = np.all([np.isfinite(column) for column in columns], axis=0)
+    return [column[good] for column in columns]
 
 
 def _at(column: xr.DataArray, at: dict[str, int]) -> xr.DataArray:

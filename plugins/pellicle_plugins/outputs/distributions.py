@@ -15,7 +15,7 @@ from pellicle.columns import Runs
 from pellicle.components import Output
 from pellicle.plotting import axis_unit, save_figure
 
-from .drawing import FieldDrawing, set_scales, write_csv
+from .drawing import Drawing, Log, set_scales, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +26,7 @@ _HEADS = "curve", "series", "lower", "upper", "mean", "density"
 _FIELDS = {"pressure": "Pa", "gap": "m"}
 
 
-class Distributions(FieldDrawing):
+class Distributions(Drawing):
     """Probability densities of the pressure in contact and of the gap outside it.
 
     Each counts the cells of its own part and integrates to 1. The bins are written as CSV beside
@@ -36,15 +36,13 @@ class Distributions(FieldDrawing):
 
     type: Literal["distributions"] = "distributions"
     bins: Annotated[int, Field(ge=1, description="number of bins, from 0 to the highest")] = 50
-    log: Annotated[
-        tuple[Literal["x", "y"], ...], Field(description="axes that are logarithmic: x, y")
-    ] = ()
+    log: Log = ()
 
     def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
         found = [(name, self._of(step)) for name, step in self.steps(runs)]
         files = save_figure(lambda figure: self._fill(figure, found), stem, self.formats, _SIZE)
-        return (*files, write_csv(stem.with_name(f"{stem.name}.csv"), list(_rows(found)), _HEADS))
+        return (*files, write_csv(stem, list(_rows(found)), _HEADS))
 
     def _of(self, step: xr.Dataset) -> dict[str, Distribution]:
         contact = step["contact"].values

@@ -7,10 +7,10 @@ import re
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
 from pellicle import storage
 from pellicle.columns import Runs, names
@@ -18,8 +18,7 @@ from pellicle.components import Output, Place
 from pellicle.errors import ConfigError, StorageError
 from pellicle.expression import evaluate
 from pellicle.model import nearest
-from pellicle.operators import Array
-from pellicle.plotting import axis_unit
+from pellicle.plotting import axis_unit, save_figure
 from pellicle.result import Result
 
 if TYPE_CHECKING:
@@ -29,54 +28,28 @@ if TYPE_CHECKING:
 _PLACEHOLDER = re.compile(r"\{([^{}]+)\}")
 
 
-def _several(value: object) -> object:
-    return (value,) if isinstance(value, str) else value
-
-
-Texts = Annotated[
-    tuple[str, ...], BeforeValidator(_several, json_schema_input_type=str | tuple[str, ...])
+Formats = Annotated[
+    tuple[Literal["png", "svg", "pdf"], ...],
+    Field(min_length=1, description="file formats to write: png, svg, pdf"),
 ]
-"""One text, or a list of them."""
+Log = Annotated[tuple[Literal["x", "y"], ...], Field(description="axes that are logarithmic: x, y")]
+Reference = Annotated[
+    Literal["axisymmetric"] | None,
+    Field(description="draw the same expressions of the semi-analytic solution too"),
+]
 
 
 class Drawing(Output):
     """Draws the runs of a study, or the steps of one run."""
 
+    leaves_numbers: ClassVar[bool] = True
+    """Whether the numbers drawn are written as CSV beside the figure."""
+
     name: Annotated[
         str, Field(pattern=r"^[\w-]*$", description="ending of the file names; its type if absent")
     ] = ""
-    formats: Annotated[
-        tuple[Literal["png", "svg", "pdf"], ...],
-        Field(min_length=1, description="file formats to write: png, svg, pdf"),
-    ] = ("png",)
+    formats: Formats = ("png",)
     title: Annotated[str, Field(description="title of the figure")] = ""
-
-    @abstractmethod
-    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the files, whose names begin with ``stem``, and return them."""
-
-    def open(self, place: Place) -> None:
-        """Find out before computing whether the files can be written."""
-        storage.check_writable(self._stem(place))
-
-    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
-        """Draw the steps of a run and return the files."""
-        return self.draw(Runs.of_result(result), self._stem(place))
-
-    def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
-        """Draw the runs of a study and return the files."""
-        return self.draw(Runs.of_study(table, place.directory), self._stem(place))
-
-    def _stem(self, place: Place) -> Path:
-        return place.file(f"-{self.name or self.type}")  # type: ignore[attr-defined]
-
-
-class FieldDrawing(Drawing):
-    """Draws the fields of one step for each value of an axis.
-
-    Of the other axes of a study the first value is drawn, and of the steps the last.
-    """
-
     by: Annotated[
         str | None,
         Field(description="axis of the study, or step: each value has its own curve or panel"),
@@ -88,14 +61,63 @@ class FieldDrawing(Drawing):
         ),
     ] = None
 
+    @abstractmethod
+    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the files, whose names begin with ``stem``, and return them."""
+
+    def endings(self) -> tuple[str, ...]:
+        """Return those of the figure and of its numbers."""
+        kinds = (*self.formats, "csv") if self.leaves_numbers else self.formats
+        return tuple(f"{self._ending}.{kind}" for kind in kinds)
+
+    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
+        """Draw the steps of a run and return the files."""
+        return self.draw(Runs.of_result(result), place.file(self._ending))
+
+    def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
+        """Draw the runs of a study and return the files."""
+        return self.draw(Runs.of_study(table, place.directory), place.file(self._ending))
+
+    def picked(self, table: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+        """Yield the name of each curve or panel and the point of the table that it shows.
+
+        Of the other axes it is the first value, of the steps the last.
+        """
+        one_axis(table.sizes, self.by, "by")
+        first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
+        for at in along(table, self.by):
+            here = table.isel({**first, **at})
+            yield label(self.label, here, self.by), here
+
     def steps(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
         """Yield the name of each curve or panel and the fields that it shows, if they are there."""
-        one_axis(runs.table.sizes, self.by, "by")
-        for at in along(runs.table, self.by):
-            picked = pick(runs.table, at)
-            step = step_of(runs, picked)
+        for name, here in self.picked(runs.table):
+            step = _step_of(runs, here)
             if step is not None:
-                yield label(self.label, picked, self.by), step
+                yield name, step
+
+    @property
+    def _ending(self) -> str:
+        return f"-{self.name or self.type}"  # type: ignore[attr-defined]
+
+
+class Graph(Drawing):
+    """Draws one number against another."""
+
+    x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
+    y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
+
+    @abstractmethod
+    def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        """Draw, and yield the rows of the numbers drawn."""
+
+    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the figure and its numbers."""
+        rows: list[dict[str, object]] = []
+        files = save_figure(
+            lambda figure: rows.extend(self.fill(figure.add_subplot(), runs)), stem, self.formats
+        )
+        return (*files, write_csv(stem, rows))
 
 
 def one_axis(dims: Iterable[object], chosen: str | None, field: str) -> None:
@@ -110,13 +132,7 @@ def along(table: xr.Dataset, dim: str | None) -> list[dict[str, int]]:
     return [{dim: index} for index in range(table.sizes[dim])] if dim else [{}]
 
 
-def pick(table: xr.Dataset, at: dict[str, int]) -> xr.Dataset:
-    """Return one point of a table: of the other axes the first value, of the steps the last."""
-    first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
-    return table.isel({**first, **at})
-
-
-def step_of(runs: Runs, picked: xr.Dataset) -> xr.Dataset | None:
+def _step_of(runs: Runs, picked: xr.Dataset) -> xr.Dataset | None:
     """Return the fields of the step that a point of the table stands for, if they are there."""
     try:
         run = runs.open(str(picked["run"].item()))
@@ -162,27 +178,22 @@ def scaled(text: str, values: xr.DataArray, given: str | None) -> tuple[float, s
 
 
 def set_scales(axes: Axes, log: Sequence[str]) -> None:
-    """Make axes logarithmic, or begin at zero where nothing is below."""
+    """Make axes logarithmic that show anything positive, others begin at zero or below."""
     for which in ("x", "y"):
         low, _ = getattr(axes, f"get_{which}lim")()
-        if which in log:
+        if which in log and np.isfinite(getattr(axes.dataLim, f"minpos{which}")):
             getattr(axes, f"set_{which}scale")("log")
         elif low < 0 and getattr(axes.dataLim, f"{which}0") >= 0:
             getattr(axes, f"set_{which}lim")(**{"left" if which == "x" else "bottom": 0.0})
     axes.grid(alpha=0.3)
 
 
-def write_csv(path: Path, rows: Sequence[dict[str, object]], heads: Sequence[str] = ()) -> Path:
-    """Write the numbers that were drawn; ``heads`` are there even if no row is."""
+def write_csv(stem: Path, rows: Sequence[dict[str, object]], heads: Sequence[str] = ()) -> Path:
+    """Write the numbers drawn beside their figure; ``heads`` are there even if no row is."""
+    path = stem.with_name(f"{stem.name}.csv")
     heads = list(dict.fromkeys([*heads, *(head for row in rows for head in row)]))
     with storage.reported(path), path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, heads)
         writer.writeheader()
         writer.writerows(rows)
     return path
-
-
-def finite(*columns: Array) -> list[Array]:
-    """Return the columns without the rows that have a NaN or an infinite value."""
-    good = np.all([np.isfinite(column) for column in columns], axis=0)
-    return [column[good] for column in columns]

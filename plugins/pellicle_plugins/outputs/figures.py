@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Literal
 
-from pydantic import Field
-
-from pellicle import hookimpl, storage
+from pellicle import hookimpl
 from pellicle.components import Output, Place
-from pellicle.plotting import save_figures, save_study_figures
+from pellicle.plotting import FIGURES, STUDY_FIGURES, save_figures, save_study_figures
 from pellicle.result import Result
+
+from .drawing import Formats
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,14 +21,12 @@ class Figures(Output):
     """Pressure map, profiles through the centre, force and area curves."""
 
     type: Literal["figures"] = "figures"
-    formats: Annotated[
-        tuple[Literal["png", "svg", "pdf"], ...],
-        Field(min_length=1, description="file formats to write: png, svg, pdf"),
-    ] = ("png",)
+    formats: Formats = ("png",)
 
-    def open(self, place: Place) -> None:
-        """Find out before computing whether the files can be written."""
-        storage.check_writable(place.file("-pressure.png"))
+    def endings(self) -> tuple[str, ...]:
+        """Return those of the figures of a run and of a study."""
+        names = dict.fromkeys((*FIGURES, *STUDY_FIGURES))
+        return tuple(f"-{name}.{format_}" for name in names for format_ in self.formats)
 
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Draw the result and return the files."""

@@ -20,10 +20,14 @@ class Hdf5(Output):
 
     type: Literal["hdf5"] = "hdf5"
 
+    def endings(self) -> tuple[str, ...]:
+        """Return that of the file."""
+        return (".h5",)
+
     def open(self, place: Place) -> None:
         """Refuse to replace the result of another configuration."""
+        super().open(place)
         path = place.file(".h5")
-        storage.check_writable(path)
         if place.overwrite or not path.exists():
             return
         remedy = "choose another folder (-o DIR), or allow it to be replaced (--overwrite)"

@@ -32,7 +32,7 @@ from pellicle.page import (
     side,
 )
 from pellicle.page import Field as Shown
-from pellicle.plotting import FIGURES, axis_unit, study_curves, svg
+from pellicle.plotting import FIGURES, STUDY_FIGURES, axis_unit, study_curves, svg
 from pellicle.result import Result
 from pellicle.study import each_run, failures, reasons, standing
 from pellicle.table import verdict
@@ -82,9 +82,9 @@ class Html(Output):
         ),
     ] = 64
 
-    def open(self, place: Place) -> None:
-        """Find out before computing whether the page can be written."""
-        storage.check_writable(place.file(".html"))
+    def endings(self) -> tuple[str, ...]:
+        """Return that of the page."""
+        return (".html",)
 
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Write the page of a run."""
@@ -306,7 +306,7 @@ def _pictures_of(result: Result) -> list[Picture]:
 
 
 def _pictures_of_study(table: xr.Dataset) -> list[Picture]:
-    names = ("force", "contact_fraction") if "force" in table else ()
+    names = STUDY_FIGURES if "force" in table else ()
     return [
         _picture(
             partial(study_curves, table, variable=name),

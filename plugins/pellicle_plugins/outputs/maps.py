@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import ceil
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -16,7 +16,7 @@ from pellicle.components import Output
 from pellicle.expression import evaluate
 from pellicle.plotting import axis_unit, extent, save_figure
 
-from .drawing import FieldDrawing, scaled
+from .drawing import Drawing, scaled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,13 +26,15 @@ _PANEL = 2.7
 _COLUMNS = 4
 
 
-class Maps(FieldDrawing):
+class Maps(Drawing):
     """A field over the domain, one panel for each value of an axis.
 
     Of the other axes of a study the first value is drawn, and of the steps the last. ``field`` is
     arithmetic over the fields and numbers of a run: ``contact`` is drawn black on white, and
     ``displacement - depth - gap`` is the profile of the indenter.
     """
+
+    leaves_numbers: ClassVar[bool] = False
 
     type: Literal["maps"] = "maps"
     field: Annotated[str, Field(description="expression for what is drawn")] = "pressure"
@@ -71,6 +73,7 @@ class Maps(FieldDrawing):
             (1.0, "") if yes_or_no else scaled(self.field, panels[0][2], self.field_label)
         )
         values = values[np.isfinite(values)] * factor
+        low, high = (values.min(), values.max()) if values.size and not yes_or_no else (0.0, 1.0)
         for axes, (title, run, field) in zip(all_axes, panels, strict=False):
             length, unit = axis_unit(np.append(run["x"].values, run["y"].values), "m")
             image = axes.imshow(
@@ -78,8 +81,8 @@ class Maps(FieldDrawing):
                 origin="lower",
                 extent=extent(run["x"].values * length, run["y"].values * length),
                 cmap="binary" if yes_or_no else "viridis",
-                vmin=values.min(initial=0.0) if yes_or_no else values.min(),
-                vmax=1 if yes_or_no else values.max(),
+                vmin=low,
+                vmax=high,
                 interpolation="nearest" if yes_or_no else None,
             )
             axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")

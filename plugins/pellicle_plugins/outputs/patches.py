@@ -15,7 +15,7 @@ from pellicle.components import Output
 from pellicle.plotting import axis_unit, extent, save_figure
 from pellicle.result import Result
 
-from .drawing import FieldDrawing, write_csv
+from .drawing import Drawing, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +28,7 @@ _SIZE = 10.0, 4.2
 _HEADS = "curve", "step", "patch", "area [m2]", "force [N]", "neighbours"
 
 
-class PatchesOutput(FieldDrawing):
+class PatchesOutput(Drawing):
     """Patches of contact, the last that is drawn as a map, and how many are larger than an area.
 
     Cells in contact that share an edge are of one patch; on a periodic grid also across the edge
@@ -50,7 +50,7 @@ class PatchesOutput(FieldDrawing):
         found = [(name, step, self._patches(step)) for name, step in self.steps(runs)]
         files = save_figure(lambda figure: self._fill(figure, found), stem, self.formats, _SIZE)
         rows = [row for each in found for row in _rows(*each)]
-        return (*files, write_csv(stem.with_name(f"{stem.name}.csv"), rows, _HEADS))
+        return (*files, write_csv(stem, rows, _HEADS))
 
     def _patches(self, step: xr.Dataset) -> Patches:
         return analysis.patches(step["contact"], Result(step).grid, self.connectivity)

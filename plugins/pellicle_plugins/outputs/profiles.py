@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
@@ -12,10 +11,9 @@ from pellicle import hookimpl
 from pellicle.columns import Runs, names
 from pellicle.components import Output
 from pellicle.expression import evaluate
-from pellicle.plotting import save_figure
 from pellicle_plugins.analytic.twin import exact_line
 
-from .drawing import FieldDrawing, scaled, set_scales, write_csv
+from .drawing import Graph, Reference, scaled, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,7 +23,7 @@ _ACROSS = {"x": "y", "y": "x"}
 _SYMBOLS = 90
 
 
-class Profiles(FieldDrawing):
+class Profiles(Graph):
     """Fields along x or y through the centre, one curve for each value of an axis.
 
     Of the other axes of a study the first value is drawn, and of the steps the last. ``x`` and
@@ -39,24 +37,10 @@ class Profiles(FieldDrawing):
         str | None, Field(description="expression for the horizontal axis; the position if absent")
     ] = None
     y: Annotated[str, Field(description="expression for the vertical axis")] = "pressure"
-    x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
-    y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
-    reference: Annotated[
-        Literal["axisymmetric"] | None,
-        Field(description="draw the same expressions of the semi-analytic solution too"),
-    ] = None
+    reference: Reference = None
 
-    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure and its numbers."""
-        rows: list[dict[str, object]] = []
-
-        def fill(axes: Axes) -> None:
-            rows.extend(self._fill(axes, runs))
-
-        files = save_figure(lambda figure: fill(figure.add_subplot()), stem, self.formats)
-        return (*files, write_csv(stem.with_name(f"{stem.name}.csv"), rows))
-
-    def _fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+    def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        """Draw, and yield the rows of the numbers drawn."""
         factors: tuple[float, float] | None = None
         for number, (name, run) in enumerate(self.steps(runs)):
             line = run.isel({_ACROSS[self.along]: run.sizes[_ACROSS[self.along]] // 2})

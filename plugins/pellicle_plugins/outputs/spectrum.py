@@ -15,7 +15,7 @@ from pellicle.components import Output
 from pellicle.plotting import save_figure
 from pellicle.result import Result
 
-from .drawing import FieldDrawing, write_csv
+from .drawing import Drawing, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +26,7 @@ _HEADS = "curve", "series", "wavenumber [rad/m]", "density [m4]", "wave_vectors"
 _ROUND_OFF = 1e-24
 
 
-class SpectrumOutput(FieldDrawing):
+class SpectrumOutput(Drawing):
     """Radially averaged power spectral densities of the indenter and of the displaced surface.
 
     `pellicle.analysis.spectrum` says how they are defined, and what a free boundary has them
@@ -45,10 +45,12 @@ class SpectrumOutput(FieldDrawing):
             self._fill(axes, found)
 
         files = save_figure(lambda figure: fill(figure.add_subplot()), stem, self.formats)
-        return (*files, write_csv(stem.with_name(f"{stem.name}.csv"), list(_rows(found)), _HEADS))
+        return (*files, write_csv(stem, list(_rows(found)), _HEADS))
 
     def _fill(self, axes: Axes, found: list[tuple[str, dict[str, Spectrum]]]) -> None:
-        highest = max((of.density.max() for _, each in found for of in each.values()), default=0.0)
+        highest = max(
+            (of.density.max(initial=0.0) for _, each in found for of in each.values()), default=0.0
+        )
         for number, (name, each) in enumerate(found):
             for surface, of in each.items():
                 # Rings that hold nothing but round-off would set the scale.

@@ -35,9 +35,9 @@ class Vtk(Output):
 
     type: Literal["vtk"] = "vtk"
 
-    def open(self, place: Place) -> None:
-        """Find out before computing whether the files can be written."""
-        storage.check_writable(place.file(".pvd"))
+    def endings(self) -> tuple[str, ...]:
+        """Return those of the list and of the steps."""
+        return ".pvd", "-*.vts"
 
     def step(self, place: Place, step: xr.Dataset) -> None:
         """Write the file of the step."""

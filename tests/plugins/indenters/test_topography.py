@@ -167,6 +167,7 @@ def test_rough_run_under_tension_converges() -> None:
         progress=False,
     )
     assert result.converged
+    assert ", SurfaceTopography " in result.dataset.attrs["versions"]
     data = result.dataset.isel(step=0)
     profile = (data["displacement"] - data["depth"] - data["gap"]).values
     touching = profile[data["contact"].values]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
+from pellicle.errors import ConvergenceWarning
+from pellicle.plugins import registry
 
 TENSION, RADIUS = "kernel.tension", "indenter.radius"
 
@@ -116,3 +119,51 @@ def test_semi_analytic_twin_is_only_of_what_has_one(tmp_path: Path) -> None:
     del run["study"]
     with pytest.raises(pl.ConfigError, match=r"'quadric'.*have no axisymmetric solution"):
         pl.run(run, directory=tmp_path, progress=False)
+
+
+def test_map_of_nothing_finite_is_empty(tmp_path: Path) -> None:
+    """An expression that is infinite or NaN everywhere is drawn as an empty panel."""
+    run = {key: value for key, value in study().items() if key != "study"}
+    nowhere = {"type": "maps", "field": "1 / (0 * depth + 0 * pressure)"}
+    pl.run(run | {"outputs": [nowhere]}, directory=tmp_path, progress=False)
+    assert (tmp_path / "run-maps.png").stat().st_size > 0
+
+
+@pytest.mark.parametrize("type_", ["compliance", "spectrum"])
+def test_a_single_cell_has_no_waves_to_draw(type_: str, tmp_path: Path) -> None:
+    """The figure and a table of no rows are there all the same."""
+    run = {
+        "grid": {"points": 1, "size": "1 mm"},
+        "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
+        "indenter": {"type": "flat_punch", "radius": "2 mm"},
+        "loading": {"depth": "1 um"},
+        "outputs": [{"type": type_}],
+    }
+    with warnings.catch_warnings():
+        # The contact reaches the edge of the domain.
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        pl.run(run, directory=tmp_path, progress=False)
+    assert rows(tmp_path / f"run-{type_}.csv") == []
+    assert (tmp_path / f"run-{type_}.png").stat().st_size > 0
+
+
+def test_symbol_is_drawn_of_the_runs_that_are_there(tmp_path: Path) -> None:
+    """The figure of a study that was interrupted shows what was done."""
+    table = carried(tmp_path)
+    gone = str(table["run"].values[0, 0])
+    (tmp_path / "runs" / f"{gone}.h5").unlink()
+    place = pl.Place(tmp_path, "study", table.attrs["configuration"])
+    output = registry().make(pl.Output, {"type": "compliance", "by": TENSION})
+    output.study(place, table)
+    assert {row["curve"] for row in rows(tmp_path / "study-compliance.csv")} == {
+        "kernel.tension = 1 N/m"
+    }
+
+
+def test_logarithmic_axes_of_nothing_positive(tmp_path: Path) -> None:
+    """Curves through runs without contact are drawn, on axes that are not logarithmic."""
+    run = {key: value for key, value in study().items() if key not in ("study", "outputs")}
+    nothing = {"loading": {"depth": [0.0, 0.0]}}
+    curves = {"type": "curves", "log": ["x", "y"]}
+    pl.run(run | nothing | {"outputs": [curves]}, directory=tmp_path, progress=False)
+    assert [float(row["y"]) for row in rows(tmp_path / "run-curves.csv")] == [0.0, 0.0]
