@@ -200,7 +200,7 @@ def test_depth_of_the_mean_plane(solver: str) -> None:
 
 @pytest.mark.parametrize(("depth", "across"), [(1e-7, 0), (1e-6, 2)])
 def test_contact_of_few_cells_is_said(depth: float, across: int) -> None:
-    """Where a smooth body touches no cell, or hardly any, its force is far off, and that is said."""
+    """Where a smooth body touches no cell, or hardly any, its force is off, and that is said."""
     smooth = SMOOTH | {"kernel": BARE, "grid": {"points": 32, "size": 1e-3}}
     found = pl.run(smooth | {"loading": {"depth": [0.0, depth, 2e-5]}}, progress=False).dataset
     none, few, many = (str(status) for status in found["status"].values)
