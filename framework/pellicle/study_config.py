@@ -336,7 +336,7 @@ class Study(Model):
         there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - absent
         there |= {f"contact_area_{getattr(each, 'type', '')}" for each in run.corrections}
         there |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
-        taken = {*DESCRIPTIONS, *FUNCTIONS, *CONSTANTS, "run", "step", "x", "y"}
+        taken = {*FUNCTIONS, *CONSTANTS, "status", "run", "step", "x", "y"}
         problems: list[Problem] = []
         for name, text in self.derived.items():
             try:

@@ -143,7 +143,7 @@ def test_areas_along_an_axis() -> None:
     assert coordinate.attributes["units"] == "m2"
 
 
-@pytest.mark.parametrize("name", ["force", "status", "run", "step", "x", "stiffness", "pi", "sqrt"])
+@pytest.mark.parametrize("name", ["force", "status", "run", "step", "x", "gap", "pi", "sqrt"])
 def test_derived_replaces_no_column(name: str) -> None:
     """A derived column that would stand in place of another one is refused before any run."""
     with pytest.raises(pl.ConfigError, match=rf"derived\.{name}: '{name}' has a meaning already"):
