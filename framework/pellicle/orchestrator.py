@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 STANDARD_OUTPUTS = ("hdf5", "csv", "figures")
 # A prescribed contact area that whole cells miss by more than this share is not what was asked.
 _AREA_TOLERANCE = 0.05
-# Cells across the contact of one smooth body; on fewer its force was seen to be off by 20 to 100 %.
-_FEWEST = 3
 
 
 def run(
@@ -325,7 +323,7 @@ def _solve_steps(
             **_asked(run, problem, found, step, stiffness),
             "iterations": step.solution.iterations,
             "operator_applications": used,
-            "converged": status in (Status.CONVERGED, Status.NEAREST_AREA, Status.FEW_CELLS),
+            "converged": status in (Status.CONVERGED, Status.NEAREST_AREA),
             "status": message,
             "wall_time": time.perf_counter() - started,
         }
@@ -413,18 +411,7 @@ def _judge(
         )
     if step.how == "nearest":
         return Status.NEAREST_AREA, Status.NEAREST_AREA.value.format(measure=step.missed)
-    # Who prescribes an area of a few cells knows of them.
-    smooth = run.indenter.footprint == "unbounded" and not _areas(run)
-    across = _cells_across(found.contact)
-    if smooth and step.problem.value > 0 and across < _FEWEST:
-        return Status.FEW_CELLS, Status.FEW_CELLS.value.format(measure=across)
     return Status.CONVERGED, Status.CONVERGED.value
-
-
-def _cells_across(contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> int:
-    """Return the number of cells across a contact where it is widest, along x or y, the fewer."""
-    along = [axis for axis in (0, 1) if contact.shape[axis] > 1]
-    return min((int(contact.sum(axis).max()) for axis in along), default=_FEWEST)
 
 
 def _touches_edge(contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> bool:

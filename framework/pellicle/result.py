@@ -26,10 +26,6 @@ class Status(Enum):
         "converged; the contact area misses the prescribed one by {measure:.1e}, and no load "
         "brings a nearer number of whole cells: more points do"
     )
-    FEW_CELLS = (
-        "converged; but the contact is {measure:.0f} cells across, and force, depth and area may "
-        "be off by tens of per cent: more points do"
-    )
     NOT_FINITE = (
         "the pressure became NaN or infinite; check the kernel's compliance and the profile for "
         "extreme values"

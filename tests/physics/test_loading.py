@@ -196,26 +196,3 @@ def test_depth_of_the_mean_plane(solver: str) -> None:
             # The mean displacement is 0, so the mean gap is the height of the mean plane.
             gap = float(data["gap"].mean())
             assert gap == pytest.approx(-data["mean_plane_depth"].item(), rel=1e-9)
-
-
-@pytest.mark.parametrize(("depth", "across"), [(1e-7, 0), (1e-6, 2)])
-def test_contact_of_few_cells_is_said(depth: float, across: int) -> None:
-    """Where a smooth body touches no cell, or hardly any, its force is off, and that is said."""
-    smooth = SMOOTH | {"kernel": BARE, "grid": {"points": 32, "size": 1e-3}}
-    found = pl.run(smooth | {"loading": {"depth": [0.0, depth, 2e-5]}}, progress=False).dataset
-    none, few, many = (str(status) for status in found["status"].values)
-    assert none == many == "converged"
-    assert few.startswith(f"converged; but the contact is {across} cells across")
-    hertz = 4 / 3 * 1e4 * np.sqrt(1e-3) * np.array([depth, 2e-5]) ** 1.5
-    few_off, many_off = np.abs(found["force"].values[1:] / hertz - 1)
-    assert few_off > 0.1
-    assert many_off < 0.02
-
-
-def test_few_cells_of_a_rough_punch_are_as_they_should_be() -> None:
-    """A rough punch touches in islands of few cells, and who prescribes them knows."""
-    for base, loading in ((ROUGH, {"depth": 1e-6}), (SMOOTH, {"contact_area": 4 * 1.25e-5**2})):
-        assert (
-            str(pl.run(base | {"loading": loading}, progress=False).dataset["status"][0].item())
-            == "converged"
-        )
