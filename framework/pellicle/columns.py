@@ -44,8 +44,14 @@ def names(data: xr.Dataset) -> dict[str, Any]:
     said = json.loads(data.attrs.get(FIRST_RUN, data.attrs["configuration"]))
     varied = tuple(f"{name}." for name in data.coords)
     fixed = {key: value for key, value in constants(said).items() if not key.startswith(varied)}
-    numeric = {str(name): data[name] for name in data.variables if data[name].dtype.kind in "biuf"}
-    return {**fixed, **numeric}
+    numeric = {str(name): data[name] for name in data.variables if data[name].dtype.kind in "iuf"}
+    # Truth values are numbers here, which numpy would not subtract.
+    truths = {
+        str(name): data[name].astype(float)
+        for name in data.variables
+        if data[name].dtype.kind == "b"
+    }
+    return {**fixed, **numeric, **truths}
 
 
 def derive(table: xr.Dataset, expressions: Mapping[str, str]) -> xr.Dataset:

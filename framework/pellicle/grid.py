@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Final, Literal, Self
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
-from .errors import shown
+from .errors import ConfigError, shown
 from .model import Model
 from .units import Length
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Boundary = Literal["free", "periodic"]
+
+_LARGEST: Final = 1e100
 
 
 def _pair(value: object) -> object:
@@ -52,6 +54,16 @@ class Grid(Model):
             '"periodic": the domain repeats in both directions'
         ),
     ] = "free"
+
+    @model_validator(mode="after")
+    def _measurable(self) -> Self:
+        if not 1 / _LARGEST < min(self.size) <= max(self.size) < _LARGEST:
+            raise ConfigError(
+                f"{self.size[0]:g} × {self.size[1]:g} m has cells whose area is beyond the numbers "
+                "that a computer has; check the unit",
+                "size",
+            )
+        return self
 
     @property
     def shape(self) -> tuple[int, int]:

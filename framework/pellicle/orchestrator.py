@@ -370,11 +370,12 @@ def _asked(
         "residual_area": step.missed,
         "stiffness": stiffness.value if stiffness else np.nan,
     }
+    periodic = run.grid.boundary == "periodic"
     corrected = {
-        f"contact_area_{correction.type}": correction.area(  # type: ignore[attr-defined]
-            found.contact, run.grid.spacing
-        )
-        for correction in run.corrections
+        f"contact_area_{each.type}": (  # type: ignore[attr-defined]
+            each.periodic_area if periodic else each.area
+        )(found.contact, run.grid.spacing)
+        for each in run.corrections
     }
     return corrected | {name: loading[name] for name in loading if name in run.loading.brings}
 

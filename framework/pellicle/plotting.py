@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
@@ -21,18 +22,25 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MOST_NAMED = 10
+_PREFIXABLE = re.compile(r"[^\W\d_]+(?:/.*|\*(?!\*).*)?")
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f"}
 
 
 def axis_unit(values: Array, unit: str) -> tuple[float, str]:
-    """Return the factor and the name that bring ``values`` (in ``unit``) near 1 … 1000."""
+    """Return the factor and the name that bring ``values`` (in ``unit``) near 1 … 1000.
+
+    A unit that begins with a power, as m⁴ does, takes no prefix: the power would be of it too. Only
+    areas do, whose prefix is chosen so.
+    """
     finite = np.abs(np.asarray(values)[np.isfinite(values)])
     highest = float(finite.max(initial=0.0))
-    if unit == "m2":
+    if unit in ("m2", "m**2"):
         # The prefix of a square counts twice: 1 mm² is 1e-6 m²; down to 0.01 mm² reads well.
         exponent = 3 * int(np.floor(np.log10(10 * np.sqrt(highest)) / 3)) if highest else 0
         exponent = min(max(exponent, -15), 0)
         return 10.0 ** (-2 * exponent), f"{_PREFIXES[exponent]}m²"
+    if not _PREFIXABLE.fullmatch(unit):
+        return 1.0, unit
     exponent = 3 * int(np.floor(np.log10(highest) / 3)) if highest else 0
     exponent = min(max(exponent, -15), 9)
     return 10.0**-exponent, f"{_PREFIXES[exponent]}{unit}"

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import storage
+from .errors import StorageError
 from .grid import Grid
 
 if TYPE_CHECKING:
@@ -121,6 +122,17 @@ def load(path: str | Path) -> Result:
     Raises
     ------
     StorageError
-        No such file, not a result, or of another schema version.
+        No such file, not a result, damaged, or of another schema version.
     """
-    return Result(storage.read(Path(path)))
+    dataset = storage.read(Path(path))
+    if missing := _ALWAYS - {*map(str, dataset.variables)}:
+        raise StorageError(
+            f"{path}: lacks {', '.join(sorted(missing))}, so it is damaged; run it again"
+        )
+    return Result(dataset)
+
+
+_ALWAYS = {"step", "x", "y", "pressure", "displacement", "gap", "contact"} | {
+    *("depth", "force", "contact_area", "iterations", "converged", "status")
+}
+"""Variables without which there is no result, whatever the version that wrote it."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import glob
 import io
+import json
 import os
 import re
 import socket
@@ -201,6 +202,7 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
                 f"{path}: schema version {version}, and this pellicle reads {SCHEMA_VERSION}; "
                 f"read it with what wrote it ({known['versions']}), or run it again"
             )
+        json.loads(known["configuration"])
         if kind == "result" and "axes" in known:
             raise StorageError(
                 f"{path}: the table of a study, not a result; open it with xarray, or give one "

@@ -19,7 +19,7 @@ from .components import Executor
 from .config import Run, read
 from .dataset import DESCRIPTIONS
 from .errors import ConfigError, Problem, shown
-from .expression import evaluate
+from .expression import CONSTANTS, FUNCTIONS, evaluate
 from .fields import FromRegistry, json_schema
 from .loading import ON_DEMAND
 from .model import Model, paths_relative_to, replaced
@@ -341,11 +341,16 @@ class Study(Model):
         there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - absent
         there |= {f"contact_area_{getattr(each, 'type', '')}" for each in run.corrections}
         there |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
+        taken = {*FUNCTIONS, *CONSTANTS, "status", "run", "step", "x", "y"}
         problems: list[Problem] = []
         for name, text in self.derived.items():
             try:
-                if name in there:
-                    raise ConfigError(f"{shown(name)} is a column already; give another name")
+                if name in there | taken:
+                    raise ConfigError(f"{shown(name)} has a meaning already; give another name")
+                if not name.isidentifier():
+                    raise ConfigError(
+                        f"{shown(name)} is no name; give one of letters, digits and _"
+                    )
                 evaluate(text, dict.fromkeys(there - {*FIELDS}, np.float64(1.0)))
             except ConfigError as error:
                 problems.extend(error.within(f"derived.{name}").problems)

@@ -40,6 +40,11 @@ _NUMBER_AND_UNIT = re.compile(
 )
 
 
+def _root(one: Any) -> str:
+    """Return the unit that a quantity is reduced to, such as radian."""
+    return str(one.to_root_units().units)
+
+
 @cache
 def _registry() -> pint.UnitRegistry[Any]:
     # pint takes a fifth of a second to import: only a text with a unit pays for it.
@@ -126,10 +131,13 @@ class Quantity:
 
     def _convert(self, number: str, unit: str, value: str) -> float:
         registry = _registry()
+        why = ""
         try:
-            factor = float(registry.Quantity(1.0, unit).to(self.unit).magnitude)
-            # In decimal "10 um" is 1e-05; in binary it would be 9.999999999999999e-06.
-            return float(Decimal(number) * Decimal(repr(factor)))
+            one = registry.Quantity(1.0, unit)
+            factor = float(one.to(self.unit).magnitude)
+            # Per cent, decibels and counts have no dimension in pint, as an angle has none.
+            if _root(one) != _root(registry.Quantity(1.0, self.unit)):
+                why = f"measures {_root(one)}, not {self._dimension()}"
         except Exception as error:
             # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
             kind = type(error).__name__
@@ -138,10 +146,17 @@ class Quantity:
                 if kind == "DimensionalityError"
                 else f"has no unit that is known ({shown(unit)})"
             )
-            raise ValueError(f"{shown(value)} {why}; give {self._wanted()}") from None
+        if why:
+            raise ValueError(f"{shown(value)} {why}; give {self._wanted()}")
+        if not math.isfinite(float(number)) or float(number) == 0:
+            # Its exponent may be beyond those of a decimal.
+            return float(number)
+        # In decimal "10 um" is 1e-05; in binary it would be 9.999999999999999e-06.
+        return float(Decimal(number) * Decimal(repr(factor)))
 
     def _dimension(self) -> str:
-        return str(_registry().Unit(self.unit).dimensionality)
+        dimension = str(_registry().Unit(self.unit).dimensionality)
+        return "an angle" if dimension == "dimensionless" else dimension
 
     def powers(self) -> tuple[int, int]:
         """Return the powers of Pa and of m that make the unit, whatever it has of seconds."""

@@ -106,6 +106,38 @@ def test_interval_ends_are_where_the_profile_has_risen() -> None:
             assert found.fun - fit.chi_squared == pytest.approx(fit.rise, rel=0.02)
 
 
+def test_interval_ends_of_a_cone_without_tension() -> None:
+    """Where the best tension is 0 a cone has no useful bound, and intervals all the same."""
+    cone = pl.indenter("cone", half_angle="70 degree")
+    assert isinstance(cone, pl.HasForceCurve)
+    depth = np.linspace(-0.3e-6, 1e-6, 120)
+    force = MODULUS_TRUE * cone.force_curve(depth, 0.0).force
+    force += 0.01 * force.max() * np.random.default_rng(2).standard_normal(depth.size)
+    fit = pl.fit(depth + 1e-6, force, indenter=cone)
+    assert fit.tension.value == 0
+    assert fit.contact_point.bound > 1e-3
+    assert fit.tension.high is not None
+    step = np.array([5e-9, 0.01, fit.tension.high / 5, 0, 0])
+    for which, end in (
+        (POINT, fit.contact_point.low),
+        (POINT, fit.contact_point.high),
+        (TENSION, fit.tension.high),
+    ):
+        free = [k for k in (POINT, MODULUS, TENSION) if k != which]
+
+        def chi_squared(
+            u: Array, which: int = which, free: list[int] = free, end: float | None = end
+        ) -> float:
+            parameters = fit.parameters.copy()
+            parameters[which] = end
+            parameters[free] += u * step[free]
+            parameters[TENSION] = abs(parameters[TENSION])
+            return fit.likelihood.chi_squared(parameters)
+
+        found = minimize(chi_squared, [0.0, 0.0], method="Nelder-Mead", options={"xatol": 1e-4})
+        assert found.fun - fit.chi_squared == pytest.approx(fit.rise, rel=0.02)
+
+
 def test_exact_curves_give_the_truth() -> None:
     """Without noise all parameters come back, for every indenter whose shape tells them apart."""
     depth = np.linspace(-0.5e-6, 2e-6, 300)

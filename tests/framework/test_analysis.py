@@ -142,6 +142,20 @@ def test_empty_and_full_contact(boundary: str) -> None:
         assert ellipse(full, grid).semi_major_axis == pytest.approx(12 / np.sqrt(3), rel=1e-12)
 
 
+@pytest.mark.parametrize("along", [0, 1])
+def test_line_contact(along: int) -> None:
+    """A strip across a period has two straight borders and no ellipse; a free one has ends too."""
+    points, size = [(32, 1), (1, 32)][along], [(32.0, 5.0), (5.0, 32.0)][along]
+    strip = np.zeros(32, dtype=bool)
+    strip[[0, 1, 2, 30, 31]] = True
+    contact = strip.reshape(points)
+    periodic = pl.Grid(points=points, size=size, boundary="periodic")
+    assert perimeter(contact, periodic) == pytest.approx(2 * 5.0, rel=1e-12)
+    assert np.isnan(list(vars(ellipse(contact, periodic)).values())).all()
+    free = pl.Grid(points=points, size=size)
+    assert perimeter(contact, free) == pytest.approx(2 * (3 + 5.0) + 2 * (2 + 5.0), rel=1e-12)
+
+
 @pytest.mark.parametrize("spacing", [(1.0, 1.0), (1.0, 0.6)])
 def test_perimeter_of_a_disc(spacing: tuple[float, float]) -> None:
     """It is 2πa to 1 %, on cells of any shape, and the same wherever it lies in a period."""

@@ -91,3 +91,20 @@ def test_what_nobody_explains_is_there() -> None:
 def test_in_words(value: Any, unit: str, words: str) -> None:
     """Numbers get a prefix; what is no number is as it is."""
     assert in_words(value, unit) == words
+
+
+@pytest.mark.parametrize(
+    ("values", "unit", "words"),
+    [
+        (1e-8, "m**2", "0.01 mm²"),
+        ([1e-12, 4e-12], "m2", "1, 4 µm²"),
+        (2e-11, "N*m", "20 pN*m"),
+        (9e7, "Pa/m", "90 MPa/m"),
+        (3e-24, "m4", "3e-24 m4"),
+        (3e-9, "m**3", "3e-09 m**3"),
+        (5e6, "1/m", "5e+06 1/m"),
+    ],
+)
+def test_prefix_of_a_power(values: object, unit: str, words: str) -> None:
+    """10 nm² is 1e-17 m², not 1e-8: a prefix is raised with the unit that it stands before."""
+    assert in_words(values, unit) == words

@@ -119,6 +119,21 @@ def test_save_where_nothing_can_be_written(result: pl.Result, tmp_path: Path) ->
         result.save(tmp_path / "file" / "result.h5")
 
 
+@pytest.mark.parametrize("lost", ["force", "pressure", "converged"])
+def test_load_of_a_result_that_lost_a_part(result: pl.Result, tmp_path: Path, lost: str) -> None:
+    """A file without what every result has is damaged, and that is said before it is used."""
+    pl.Result(result.dataset.drop_vars(lost)).save(tmp_path / "part.h5")
+    with pytest.raises(pl.StorageError, match=rf"part\.h5: lacks {lost}, so it is damaged"):
+        pl.load(tmp_path / "part.h5")
+
+
+def test_load_of_a_garbled_configuration(result: pl.Result, tmp_path: Path) -> None:
+    """A configuration that is no JSON any more makes the file unreadable, in words."""
+    pl.Result(result.dataset.assign_attrs(configuration='{"grid')).save(tmp_path / "bad.h5")
+    with pytest.raises(pl.StorageError, match=r"bad\.h5: not a readable result file"):
+        pl.load(tmp_path / "bad.h5")
+
+
 def test_load_of_nothing(tmp_path: Path) -> None:
     """Loading a file that is not there is a StorageError that names the path."""
     with pytest.raises(pl.StorageError, match=r"none\.h5: no such file"):

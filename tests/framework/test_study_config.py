@@ -143,6 +143,20 @@ def test_areas_along_an_axis() -> None:
     assert coordinate.attributes["units"] == "m2"
 
 
+@pytest.mark.parametrize("name", ["force", "status", "run", "step", "x", "gap", "pi", "sqrt"])
+def test_derived_replaces_no_column(name: str) -> None:
+    """A derived column that would stand in place of another one is refused before any run."""
+    with pytest.raises(pl.ConfigError, match=rf"derived\.{name}: '{name}' has a meaning already"):
+        Study(run=RUN, vary={TENSION: [0, 1]}, derived={name: "2 * depth"})
+
+
+@pytest.mark.parametrize("name", ["", ".", "/", "a/b", "a b", "1st", "a.b"])
+def test_derived_has_a_name(name: str) -> None:
+    """A name that no expression can use, or no file, is refused before any run."""
+    with pytest.raises(pl.ConfigError, match="is no name; give one of letters"):
+        Study(run=RUN, vary={TENSION: [0, 1]}, derived={name: "2 * depth"})
+
+
 def test_derived_names_what_the_loading_brings() -> None:
     """An expression may name the stiffness where it is asked for, and only there."""
     derived = {"reduced": "stiffness / contact_radius"}

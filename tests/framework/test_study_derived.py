@@ -29,6 +29,7 @@ kernel.tension = ["0.5 N/m", "1 N/m"]
 [study.derived]
 s = "2 * kernel.tension / kernel.reduced_modulus"
 pull = "force / (s * depth)"
+missed = "1 - converged - -converged * 2"
 """
 
 
@@ -47,7 +48,8 @@ def test_derived_columns(tmp_path: Path) -> None:
         rows = list(csv.DictReader(file))
     np.testing.assert_allclose([float(row["pull"]) for row in rows], wanted.ravel(), rtol=1e-14)
     assert {float(row["s"]) for row in rows} == {1e-4, 2e-4}
+    assert {float(row["missed"]) for row in rows} == {2.0}
     shown = CliRunner().invoke(app, ["show", str(folder)])
     head, *lines = [line.split() for line in shown.output.splitlines()[3:]]
-    assert head[-3:] == ["s", "pull", "status"]
-    assert [line[-2] for line in lines] == [f"{last:.6g}" for last in wanted[:, -1]]
+    assert head[-4:] == ["s", "pull", "missed", "status"]
+    assert [line[-3] for line in lines] == [f"{last:.6g}" for last in wanted[:, -1]]

@@ -589,6 +589,13 @@ class Skewed(Correction):
         return cell * (np.count_nonzero(contact) - 0.1 * switches)
 
 
+class Seamed(Correction):
+    """Takes the edge of a periodic domain for a border."""
+
+    def periodic_area(self, contact: Any, spacing: Any) -> float:
+        return float(self.area(contact, spacing))
+
+
 class Microscopic(Correction):
     """Sees nothing of cells wider than 30 µm."""
 
@@ -604,6 +611,7 @@ CORRECTIONS = {
     Excessive: "area_is_near_the_count",
     Unscaled: "area_scales_with_the_cells",
     Skewed: "area_does_not_depend_on_the_view",
+    Seamed: "periodic_area_has_no_seam",
     Microscopic: "goes_into_the_result",
 }
 

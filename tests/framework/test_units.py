@@ -84,6 +84,13 @@ def test_not_finite(given: object) -> None:
         TENSION(given)
 
 
+def test_exponent_beyond_decimals() -> None:
+    """A power of ten beyond any number is not finite, or 0, and no fault of the unit."""
+    with pytest.raises(ValueError, match="is not finite"):
+        TENSION("1e99999999999999999999 N/m")
+    assert TENSION("1e-99999999999999999999 N/m") == 0
+
+
 def test_integer_beyond_floats() -> None:
     """A whole number too large for a float is refused, not an overflow."""
     with pytest.raises(ValueError, match="is not finite"):
@@ -102,6 +109,21 @@ def test_other_dimension(unit: str) -> None:
     """A unit of another dimension is refused with both dimensions named."""
     with pytest.raises(ValueError, match=r"measures \[.*not \[mass\] / \[time\] \*\* 2"):
         TENSION(f"1 {unit}")
+
+
+@pytest.mark.parametrize("unit", ["%", "percent", "dB", "Np", "octave", "count", "sr", "m/m", "um"])
+def test_no_angle(unit: str) -> None:
+    """What has no dimension is not for that an angle: a slope of 5 % is not 0.05 rad."""
+    with pytest.raises(ValueError, match=r"measures .*, not an angle; give .*'70 degree'"):
+        Quantity("rad")(f"5 {unit}")
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"), [("90°", 0.5), ("0.25 turn", 0.5), ("100 gon", 0.5)]
+)
+def test_angle(given: str, expected: float) -> None:
+    """Whatever measures an angle is one; in multiples of π."""
+    assert Quantity("rad")(given) == pytest.approx(expected * math.pi, rel=1e-14)
 
 
 @pytest.mark.parametrize("unit", ["foo", "N/", "N/m)", "2 N/m", "N + m", "N/0", "__import__('os')"])

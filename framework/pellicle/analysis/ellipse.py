@@ -46,8 +46,8 @@ def ellipse(contact: ArrayLike, grid: Grid) -> Ellipse:
     Returns
     -------
     Of no contact: semi-axes 0, centre and angle NaN. On a periodic grid positions are seen from
-    the circular mean of the contact along each axis; a contact that has none, such as full contact,
-    has no ellipse: all NaN.
+    the circular mean of the contact along each axis; a contact that has none, such as full contact
+    or a line contact, has no ellipse: all NaN.
     """
     inside = np.asarray(contact, dtype=bool)
     if not inside.any():
@@ -81,6 +81,8 @@ def ellipse(contact: ArrayLike, grid: Grid) -> Ellipse:
 
 def _circular_mean(points: Array, weights: Array, length: float) -> float:
     """Return the mean of positions on a circle of a length; NaN if there is none."""
+    if points.size == 1:
+        return nan
     resultant = np.average(np.exp(2j * pi / length * points), weights=weights)
     return nan if abs(resultant) < _NO_CENTRE else float(np.angle(resultant)) * length / (2 * pi)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import atan2, hypot, pi
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from pellicle.grid import Grid
 
@@ -17,7 +17,8 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
     diagonals of the cells (Cauchy–Crofton; Legland, Kiêu & Devaux 2007). A border that runs in all
     directions alike, as that of a disc, is right in the mean; a straight one comes out at most
     5.2 % short (along an axis) or 2.6 % long, on square cells. The length of the cell edges
-    between contact and no contact would be 27 % too long for a disc.
+    between contact and no contact would be 27 % too long for a disc. On a grid one cell across,
+    where borders run along the axes only, it is just that length.
 
     On a free boundary the edge of the domain is border where there is contact; on a periodic one
     it is not.
@@ -33,6 +34,9 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
     if grid.boundary == "free":
         inside = np.pad(inside, 1)
     dx, dy = grid.spacing
+    if 1 in grid.shape:
+        edges = ((1, 0), dy), ((0, 1), dx)
+        return sum(length * _switches(inside, step) for step, length in edges)
     slope = atan2(dy, dx)
     across = dx * dy / hypot(dx, dy)
     # Step to the next cell; distance between parallel lines; angle that the direction stands for.
@@ -43,8 +47,12 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
         ((1, -1), across, pi / 4),
     )
     total = 0.0
-    for (i, j), between, angle in directions:
-        # What has no contact around it may be taken as periodic too.
-        switches = np.count_nonzero(inside != np.roll(inside, (i, j), (0, 1)))
-        total += angle * between * switches / 2
+    for step, between, angle in directions:
+        total += angle * between * _switches(inside, step) / 2
     return total
+
+
+def _switches(inside: NDArray[np.bool_], step: tuple[int, int]) -> int:
+    """Return how often contact begins or ends from a cell to the one that is a step away."""
+    # What has no contact around it may be taken as periodic too.
+    return int(np.count_nonzero(inside != np.roll(inside, step, (0, 1))))

@@ -15,6 +15,10 @@ Ends = tuple[float | None, float | None]
 CONFIDENCE = 0.95
 _ACCURACY = 2e-3
 """To which an end is found, relative to its distance from the value."""
+_FIRST = 1e-2
+"""Share of the way to the limit that is tried first where the bound is beyond it."""
+_LEAST = 1e-12
+"""Share of the way to the limit that no end is nearer than."""
 _BETTER = 1e-3
 """By this much less χ² a profile has found another minimum."""
 
@@ -82,7 +86,10 @@ def _end(
 
     deviation = float(likelihood.deviations(best.parameters)[which])
     inside, below = 0.0, -float(np.sqrt(rise))
-    share = min(float(np.sqrt(rise)) * deviation / abs(span), 1.0)
+    share = float(np.sqrt(rise)) * deviation / abs(span)
+    # A cone without tension: a little of it has the effect of another contact point.
+    if share >= 1:
+        share = _FIRST
     while (above := excess(share)) < 0:
         if share == 1:
             return None
@@ -96,7 +103,7 @@ def _end(
         lambda at: known[at] if at in known else excess(at),
         inside,
         share,
-        xtol=_ACCURACY * share,
+        xtol=_LEAST,
         rtol=_ACCURACY,
     )
     return value + float(root) * span

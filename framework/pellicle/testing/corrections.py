@@ -20,8 +20,9 @@ def check_correction(correction: AreaCorrection) -> None:
 
     Beside what all components keep: ``area`` is pure, 0 without contact, that of the domain in full
     contact, between the contact without its boundary cells and with a further row of them, scales
-    with the cells, and is the same seen in a mirror, moved or with x and y exchanged; and it goes
-    into the result of a run.
+    with the cells, and is the same seen in a mirror, moved or with x and y exchanged; a
+    ``periodic_area`` of its own does not depend on where the edge of the domain lies; and the area
+    goes into the result of a run.
 
     Raises
     ------
@@ -95,6 +96,22 @@ def area_does_not_depend_on_the_view(correction: AreaCorrection) -> None:
         require_close(correction.area(seen, spacing), area, f"the area [m²] {what}", relative=1e-12)
 
 
+def periodic_area_has_no_seam(correction: AreaCorrection) -> None:
+    """A ``periodic_area`` of its own does not depend on which cells lie at the edge."""
+    if type(correction).periodic_area is AreaCorrection.periodic_area:
+        return
+    contact = _islands()
+    area = correction.periodic_area(contact, _SPACING)
+    require_close(
+        area, correction.area(contact, _SPACING), "the area [m²] inside the domain", relative=1e-12
+    )
+    for shift in ((7, 0), (0, 11), (20, 15)):
+        moved = correction.periodic_area(np.roll(contact, shift, axis=(0, 1)), _SPACING)
+        require_close(
+            moved, area, f"the area [m²] moved by {shift} cells across the edge", relative=1e-12
+        )
+
+
 def goes_into_the_result(correction: AreaCorrection) -> None:
     """A run has the area under contact_area_<type>."""
     found = solved(
@@ -117,5 +134,6 @@ RULES: list[Rule] = [
     area_is_near_the_count,
     area_scales_with_the_cells,
     area_does_not_depend_on_the_view,
+    periodic_area_has_no_seam,
     goes_into_the_result,
 ]

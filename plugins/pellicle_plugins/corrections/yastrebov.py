@@ -24,11 +24,21 @@ class Yastrebov(AreaCorrection):
         S·Δ sums, over all switches between contact and no contact along x and y, the switched
         cell edge times the spacing across it: both give dx·dy.
         """
-        cell = spacing[0] * spacing[1]
         along_x = np.count_nonzero(contact[1:] != contact[:-1])
         along_y = np.count_nonzero(contact[:, 1:] != contact[:, :-1])
-        covered = np.count_nonzero(contact)
-        return cell * (covered - (pi - 1 + log(2)) / 24 * (along_x + along_y))
+        return _area(contact, int(along_x + along_y), spacing)
+
+    def periodic_area(self, contact: NDArray[np.bool_], spacing: tuple[float, float]) -> float:
+        """Return the same with the switches across the edges of the domain [m²]."""
+        along_x, along_y = (
+            np.count_nonzero(contact != np.roll(contact, 1, axis)) for axis in (0, 1)
+        )
+        return _area(contact, int(along_x + along_y), spacing)
+
+
+def _area(contact: NDArray[np.bool_], switches: int, spacing: tuple[float, float]) -> float:
+    covered = np.count_nonzero(contact)
+    return spacing[0] * spacing[1] * (covered - (pi - 1 + log(2)) / 24 * switches)
 
 
 @hookimpl
