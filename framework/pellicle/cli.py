@@ -49,6 +49,12 @@ class _Group(TyperGroup):
             for line in str(error).splitlines():
                 typer.echo(f"error: {line}", err=True)
             raise typer.Exit(BAD_INPUT) from None
+        except Exception as error:
+            # Noted by the orchestrator: the fault of a component, whose author wants its place.
+            if not (notes := getattr(error, "__notes__", ())):
+                raise
+            typer.echo(f"error: {notes[0]}: {type(error).__name__}: {error}", err=True)
+            raise typer.Exit(BAD_INPUT) from None
         except KeyboardInterrupt:
             typer.echo("interrupted", err=True)
             raise typer.Exit(INTERRUPTED) from None
@@ -740,8 +746,12 @@ def _exit_by_status(table: xr.Dataset) -> None:
 
 
 def _exit_by_convergence(result: Result) -> None:
+    from .orchestrator import said_of_steps
+
     for index, message in result.failures():
         typer.echo(f"step {index + 1} did not converge: {message}", err=True)
+    if coarse := result.coarse():
+        _show_warning(said_of_steps(coarse))
     if not result.converged:
         raise typer.Exit(NOT_CONVERGED)
 

@@ -21,7 +21,7 @@ from .components import Output, Place, Say
 from .config import Run
 from .errors import ConfigError, ConvergenceWarning, StorageError
 from .lock import held
-from .orchestrator import execute, standard_outputs
+from .orchestrator import execute, left_by, standard_outputs
 from .plugins import registry
 from .progress import Saying, StudyProgress
 from .study_config import Study
@@ -235,7 +235,9 @@ def _carry_out(
             _collect(task, rows)
         files.write(rows, at_once=True)
         made = rows.dataset()
-        drawn = [path for output in outputs for path in output.study(place, made)]
+        drawn = left_by(
+            outputs, lambda output: output.study(place, made), study.points[0].run.outputs
+        )
     return Carried(made, (*files.paths, *drawn), taken)
 
 
@@ -386,7 +388,8 @@ def _require_table(path: Path, overwrite: bool) -> None:
             pass
     except StorageError as error:
         raise StorageError(
-            f"{error}; choose another folder (-o DIR), or allow it to be replaced (--overwrite)"
+            f"{error}; choose another folder (-o DIR), or allow it to be replaced (--overwrite, "
+            "overwrite=True)"
         ) from None
 
 

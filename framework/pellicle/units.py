@@ -143,6 +143,17 @@ class Quantity:
     def _dimension(self) -> str:
         return str(_registry().Unit(self.unit).dimensionality)
 
+    @property
+    def has_known_unit(self) -> bool:
+        """Whether values of other units can be brought to its unit."""
+        if self.unit == "1" or self.unit in _EXAMPLES:
+            return True
+        try:
+            self._convert("1", self.unit, self.unit)
+        except ValueError:
+            return False
+        return True
+
     def powers(self) -> tuple[int, int]:
         """Return the powers of Pa and of m that make the unit, whatever it has of seconds."""
         dimensions: Mapping[str, Any] = _registry().Unit(self.unit).dimensionality

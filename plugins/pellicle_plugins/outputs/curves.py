@@ -13,8 +13,9 @@ from pydantic import Field, model_validator
 from pellicle import hookimpl
 from pellicle.analysis import Extrapolation, extrapolate
 from pellicle.columns import Runs
-from pellicle.components import Output
+from pellicle.components import Output, Place
 from pellicle.errors import ConfigError
+from pellicle.expression import names_in
 from pellicle.model import Model
 from pellicle.operators import Array
 from pellicle.plotting import save_figure
@@ -64,7 +65,11 @@ class Curves(Drawing):
         tuple[str, ...], Field(description="name of each y in the legend; its expression if absent")
     ] = ()
     by: Annotated[
-        str | None, Field(description="axis of the study each value of which has its own curve")
+        str | None,
+        Field(
+            description="axis of the study each value of which has its own curve; if absent, the "
+            "only one, where runs have several steps"
+        ),
     ] = None
     over: Annotated[
         str | None,
@@ -103,6 +108,14 @@ class Curves(Drawing):
         if self.by is not None and self.by == self.over:
             raise ConfigError(f"{self.over!r} is by already; give another axis", "over")
         return self
+
+    def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
+        """Draw the runs; by is, if absent, the only axis beside step, or step if x is that axis."""
+        long = [str(dim) for dim, size in table.sizes.items() if size > 1 and dim != self.over]
+        by = self.by
+        if by is None and len(long) == 2 and long[1] == "step":
+            by = "step" if long[0] in names_in(self.x) else long[0]
+        return super(Curves, self.model_copy(update={"by": by})).study(place, table)
 
     def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
