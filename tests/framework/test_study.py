@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -203,6 +204,24 @@ def test_runs_of_unequal_length() -> None:
     table = carry_out(study({"loading.depth": [["10 um"], ["10 um", "15 um"]]}))
     assert table["status"].values.tolist() == [["converged", ""], ["converged", "converged"]]
     assert np.isnan(table["force"].values[0, 1])
+
+
+def test_what_runs_warn_of_is_said_once(tmp_path: Path) -> None:
+    """Warnings of all runs come as one line each, with how many are too coarse."""
+    ramp = np.add.outer(np.linspace(0, 1, 16), np.linspace(0, 1, 16))
+    made = study(
+        grid={"points": 16, "size": "0.4 mm", "boundary": "periodic"},
+        indenter=pl.indenter("heights", values=ramp, unit="1 um"),
+        loading={"depth": "1 pm"},
+        vary={TENSION: [0.0, 0.5]},
+    )
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        pl.run_study(made, tmp_path, progress=False)
+    coarse, along_x, along_y = sorted(str(each.message) for each in told)
+    assert coarse == "of 2 runs, in 2 the cells are too coarse for this contact; see status"
+    assert along_x.startswith("the surface is no period along x")
+    assert along_y.startswith("the surface is no period along y")
 
 
 def test_corrections_that_vary() -> None:
