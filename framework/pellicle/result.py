@@ -120,6 +120,10 @@ class Result:
         messages = map(str, self.dataset["status"].values)
         return [(i, message) for i, message in enumerate(messages) if message.startswith(said)]
 
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        return self.dataset._repr_html_()
+
     def save(self, path: str | Path) -> None:
         """Write the result to an HDF5 (NetCDF-4) file.
 

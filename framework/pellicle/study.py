@@ -242,7 +242,7 @@ def _carry_out(
         drawn = left_by(
             outputs, lambda output: output.study(place, made), study.points[0].run.outputs
         )
-    for message in (*doubts, *_coarse(made)):
+    for message in (*doubts, *coarse(made)):
         warnings.warn(message, stacklevel=4)
     return Carried(made, (*files.paths, *drawn), taken)
 
@@ -364,7 +364,7 @@ def failures(made: xr.Dataset) -> str:
     return f"of {len(verdicts)} runs {', '.join(said)}; see status" if said else ""
 
 
-def _coarse(made: xr.Dataset) -> Iterator[str]:
+def coarse(made: xr.Dataset) -> Iterator[str]:
     """Yield in a sentence how many runs of a table have contacts that the cells do not resolve."""
     said, _, _ = Status.COARSE.value.partition("{")
     count = sum(any(str(each).startswith(said) for each in row) for row in _statuses(made))
