@@ -692,7 +692,7 @@ def _damaged(path: Path) -> None:
 
 RESULTS: dict[str, tuple[Callable[[Path], object], list[str]]] = {
     "missing": (lambda path: None, ["r.h5: no such file"]),
-    "folder": (lambda path: path.mkdir(), ["r.h5: no such file"]),
+    "folder": (lambda path: path.mkdir(), ["r.h5: is a folder"]),
     "empty": (lambda path: path.touch(), ["r.h5: not a readable result file"]),
     "junk": (lambda path: path.write_text("junk"), ["r.h5: not a readable result file"]),
     "damaged": (_damaged, ["r.h5: not a readable result file"]),
