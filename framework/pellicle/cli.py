@@ -649,17 +649,20 @@ def _print_steps(result: Result) -> None:
     if "contact_radius" in result.configuration["loading"]:
         asked.insert(0, "contact_radius")
     names = ["depth", "force", *areas, *asked, "iterations"]
+    coarse = dict(result.coarse())
     rows = []
     for index in range(data.sizes["step"]):
         step = data.isel(step=index)
         row = {name: f"{step[name].item():.6g}" for name in names}
         status = "converged" if step["converged"].item() else "NOT CONVERGED"
+        if index in coarse:
+            status = "too coarse"
         rows.append({"step": str(index + 1), **row, "status": status})
     _print_table(["step", *names, "status"], rows, _heads(data, names))
     for index, (converged, status) in enumerate(
         zip(data["converged"], data["status"], strict=True)
     ):
-        if converged and status != "converged":
+        if converged and status != "converged" and index not in coarse:
             typer.echo(f"step {index + 1}: {status.item()}", err=True)
 
 

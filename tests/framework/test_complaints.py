@@ -1,4 +1,4 @@
-"""What a component raises of its own is told with the component and the place in its code."""
+"""What goes wrong at work, or with arguments, is told once and in words."""
 
 from __future__ import annotations
 
@@ -53,6 +53,21 @@ def test_the_command_has_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     done = CliRunner().invoke(app, ["run", str(tmp_path / "a.toml"), "-o", str(tmp_path / "a")])
     assert done.exit_code == 2
     assert "error: output 'csv' failed: ValueError: boom\n" in done.output
+
+
+def test_coarse_steps_are_told_once(tmp_path: Path) -> None:
+    """The table marks them, and one line says why."""
+    made = pl.Run(**RUN | {"loading": {"depth": ["1 nm", "2 nm", "20 um"]}}, outputs=[])
+    (tmp_path / "a.toml").write_text(made.to_toml(), encoding="utf-8")
+    done = CliRunner().invoke(app, ["run", str(tmp_path / "a.toml"), "-o", str(tmp_path / "a")])
+    assert done.exit_code == 0
+    assert [line.split()[-1] for line in done.output.splitlines()[1:4]] == [
+        "coarse",
+        "coarse",
+        "converged",
+    ]
+    assert done.output.count("too coarse for this contact") == 1
+    assert "warning: step 1 and 1 more: converged, but the cells are too coarse" in done.output
 
 
 def test_arguments_that_are_something_else(tmp_path: Path) -> None:
