@@ -21,7 +21,7 @@ def study(*outputs: dict[str, Any], **derived: str) -> dict[str, Any]:
         "grid": {"points": 16, "size": "0.4 mm"},
         "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": 0.0},
         "indenter": {"type": "paraboloid", "radius": "1 mm"},
-        "loading": {"depth": ["5 um", "10 um"]},
+        "loading": {"depth": ["10 um", "15 um"]},
         "outputs": list(outputs),
         "study": {
             "vary": {TENSION: [0.0, 1.0], RADIUS: ["1 mm", "2 mm"]},
