@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 STANDARD_OUTPUTS = ("hdf5", "csv", "figures")
 # A prescribed contact area that whole cells miss by more than this share is not what was asked.
 _AREA_TOLERANCE = 0.05
-# Of a paraboloid, fewer cells in contact are up to 7 % off in force, five 13 %, one anything.
+# Of a paraboloid nine or twelve cells have the force to 8 %, five to 14 %, fewer do not have it.
 _RESOLVED = 13
 _RESOLVED_ACROSS = 4
 
