@@ -431,3 +431,12 @@ def test_no_such_file() -> None:
     """A file that is not there is named."""
     with pytest.raises(pl.ConfigError, match=r"^path: nowhere\.x3p: no such file"):
         pl.indenter("topography", path="nowhere.x3p")
+
+
+def test_one_size_is_that_of_both_edges(tmp_path: Path) -> None:
+    """As that of a grid."""
+    path = tmp_path / "scan.txt"
+    np.savetxt(path, np.random.default_rng(0).standard_normal((6, 6)))
+    given = {"path": path, "unit": "1 um"}
+    one, two = (pl.indenter("topography", size=s, **given) for s in ("6 um", ["6 um", "6 um"]))
+    assert one == two
