@@ -101,12 +101,7 @@ class Run(Model):
             A component that it asks for is broken.
         """
         data = read(path, overrides)
-        if "study" in data:
-            raise ConfigError(
-                "makes this file a study: use run_study, or Study.from_toml, in place of run, or "
-                "leave the table out",
-                "study",
-            )
+        refuse_study(data)
         with paths_relative_to(Path(path).parent):
             return cls(**data)
 
@@ -163,6 +158,21 @@ def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
         except ConfigError as error:
             raise ConfigError(f"--set {text!r}: {error}") from None
     return data
+
+
+def refuse_study(data: Mapping[str, Any]) -> None:
+    """Refuse what is a study where a run is wanted.
+
+    Raises
+    ------
+    ConfigError
+        There is a table ``study``.
+    """
+    if "study" in data:
+        raise ConfigError(
+            "makes this a study: use run_study, or Study, in place of run, or leave the table out",
+            "study",
+        )
 
 
 def _identifying(model: Model, without: Collection[str] = ()) -> dict[str, Any]:

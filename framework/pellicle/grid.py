@@ -19,8 +19,9 @@ Boundary = Literal["free", "periodic"]
 _LARGEST: Final = 1e100
 
 
-def _pair(value: object) -> object:
-    return value if isinstance(value, (list, tuple)) else (value, value)
+def pair(value: object) -> object:
+    """Return one value for both directions as two of them; two, or none, as they are."""
+    return value if value is None or isinstance(value, (list, tuple)) else (value, value)
 
 
 def _whole(value: object) -> int:
@@ -39,12 +40,12 @@ class Grid(Model):
 
     points: Annotated[
         tuple[_Points, _Points],
-        BeforeValidator(_pair, json_schema_input_type=_Whole | tuple[_Whole, _Whole]),
+        BeforeValidator(pair, json_schema_input_type=_Whole | tuple[_Whole, _Whole]),
         Field(description="number of cells: one whole number, or two as [along x, along y]"),
     ]
     size: Annotated[
         tuple[Length, Length],
-        BeforeValidator(_pair, json_schema_input_type=Length | tuple[Length, Length]),
+        BeforeValidator(pair, json_schema_input_type=Length | tuple[Length, Length]),
         Field(description="edge length of the domain [m]: one, or two as [along x, along y]"),
     ]
     boundary: Annotated[

@@ -13,7 +13,7 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from .errors import ConfigError
+from .errors import ConfigError, shown
 from .grid import Grid
 from .hankel import Tabulated
 from .influence import cell_coefficients
@@ -210,13 +210,18 @@ def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array
     Raises
     ------
     ConfigError
-        The pressure is not a finite real array of the grid's shape.
+        The pressure is not a finite real array of the grid's shape, or the kernel or the grid is
+        none.
 
     Warns
     -----
     UserWarning
         The cells are too wide for the kernel.
     """
+    if not hasattr(kernel, "compliance"):
+        raise ConfigError(f"{shown(kernel)} is no kernel; make one by pellicle.kernel(…)", "kernel")
+    if not isinstance(grid, Grid):
+        raise ConfigError(f"{shown(grid)} is no grid; make one by pellicle.Grid(…)", "grid")
     given = np.asarray(pressure)
     if given.shape != grid.shape or given.dtype.kind not in "fiu":
         raise ConfigError(

@@ -22,6 +22,7 @@ from . import hookspecs
 from .components import FAMILIES, Component, Suite
 from .errors import ConfigError, PluginError
 from .model import nearest
+from .units import quantity_of
 
 GROUP = "pellicle"
 DISABLE = "PELLICLE_DISABLE_PLUGINS"
@@ -167,7 +168,8 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
             raise
         # A plugin may fail in any way, sys.exit() at import included; it must not take us along.
         except BaseException as error:
-            broken.append(Broken(origin, f"{type(error).__name__}: {error}"))
+            kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
+            broken.append(Broken(origin, f"{kind}{error}"))
             continue
         suites.extend(its_suites)
         for registered in components:
@@ -207,12 +209,15 @@ def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[
     manager = pluggy.PluginManager(GROUP)
     manager.add_hookspecs(hookspecs)
     manager.register(plugin)
-    manager.check_pending()
-    if not manager.get_hookcallers(plugin):
+    hooks = [*_HOOK_OF_FAMILY.values(), "register_validations"]
+    implemented = [caller.name for caller in manager.get_hookcallers(plugin) or ()]
+    if not implemented:
         raise PluginError(
-            "implements no hook; decorate with @pellicle.hookimpl one of "
-            f"{', '.join([*_HOOK_OF_FAMILY.values(), 'register_validations'])}"
+            f"implements no hook; decorate with @pellicle.hookimpl one of {', '.join(hooks)}"
         )
+    for name in implemented:
+        if name not in hooks:
+            raise PluginError(f"implements the unknown hook {name!r}; {nearest(name, hooks)}")
     components: list[Registered] = []
     suites: list[Suite] = []
     for family, hook in _HOOK_OF_FAMILY.items():
@@ -247,6 +252,8 @@ def checked_type(component: Any, family: str) -> str:
     for field_, its in component.model_fields.items():
         if field_ != "type" and not its.description:
             raise PluginError(f"{name}.{field_} lacks Field(description=…) with its unit")
+        if (quantity := quantity_of(its)) and not quantity.has_known_unit:
+            raise PluginError(f"{name}.{field_}: Quantity({quantity.unit!r}) is of no known unit")
     # Raises on a field whose type is unknown or has no JSON: it would spoil the schema of all.
     component.model_json_schema()
     return str(names[0])

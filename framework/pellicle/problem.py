@@ -101,8 +101,8 @@ def measure(problem: Problem, pressure: Array) -> Equilibrium:
     force = total * problem.grid.cell_area
     displacement = problem.operator(pressure)
     aloft = displacement - problem.profile
-    # Without pressure the indenter just touches.
-    depth = problem.depth(aloft[contact] if total else aloft.min(keepdims=True))
+    # Without pressure the lowest point just touches, wherever between the cells it is.
+    depth = problem.depth(aloft[contact] if total else np.zeros(1))
     gap = aloft - depth
     scale = height_scale(problem.profile, contact, depth)
     inside = np.abs(gap[contact])

@@ -26,6 +26,10 @@ class Status(Enum):
         "converged; the contact area misses the prescribed one by {measure:.1e}, and no load "
         "brings a nearer number of whole cells: more points do"
     )
+    COARSE = (
+        "converged, but the cells are too coarse for this contact, which covers {cells} of them: "
+        "force, depth and area may be far off; use more points, or a smaller grid.size"
+    )
     NOT_FINITE = (
         "the pressure became NaN or infinite; check the kernel's compliance and the profile for "
         "extreme values"
@@ -104,6 +108,16 @@ class Result:
         """Return the index of each step that did not converge, with its status."""
         flags, messages = self.dataset["converged"].values, self.dataset["status"].values
         return [(i, str(messages[i])) for i, converged in enumerate(flags) if not converged]
+
+    def coarse(self) -> list[tuple[int, str]]:
+        """Return the index of each step whose contact the cells do not resolve, with its status."""
+        said, _, _ = Status.COARSE.value.partition("{")
+        messages = map(str, self.dataset["status"].values)
+        return [(i, message) for i, message in enumerate(messages) if message.startswith(said)]
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        return self.dataset._repr_html_()
 
     def save(self, path: str | Path) -> None:
         """Write the result to an HDF5 (NetCDF-4) file.

@@ -71,8 +71,9 @@ def _names(family: str, name: str) -> dict[str, str]:
         )
     found = registry()
     if owner := found.components[family].get(type_):
+        what = f"{'an' if family[0] in 'aeiou' else 'a'} {family}"
         raise ConfigError(
-            f"{type_!r} is the type of a {family} already, of {owner.origin}; give another", "NAME"
+            f"{type_!r} is the type of {what} already, of {owner.origin}; give another", "NAME"
         )
     module = f"pellicle_{type_}"
     if find_spec(module):

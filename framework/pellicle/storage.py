@@ -189,7 +189,8 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
     import h5py
 
     if not path.is_file():
-        raise StorageError(f"{path}: no such file; give a result file (.h5) that pellicle wrote")
+        found = "is a folder" if path.is_dir() else "no such file"
+        raise StorageError(f"{path}: {found}; give a result file (.h5) that pellicle wrote")
     with _readable(path), h5py.File(path) as file:
         known = netcdf.attributes(file)
         version = known.get("schema_version")

@@ -21,9 +21,10 @@ from .components import Output, Place, Say
 from .config import Run
 from .errors import ConfigError, ConvergenceWarning, StorageError
 from .lock import held
-from .orchestrator import execute, standard_outputs
+from .orchestrator import execute, left_by, standard_outputs
 from .plugins import registry
 from .progress import Saying, StudyProgress
+from .result import Status
 from .study_config import Study
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 _SHOWN = ("depth", "force", "contact_area", "contact_fraction")
 """Numbers of the last step that the list of runs has, besides derived ones."""
 _TABLE_SHARE = 0.05
+_WARNED = "warned"
 
 
 @dataclass(frozen=True)
@@ -212,6 +214,7 @@ def _carry_out(
     files = _Writer(directory)
     files.write(rows)
     left = {task.index: task for task in unfinished}
+    doubts: dict[str, None] = {}
     work = partial(solve, threads=threads or study.executor.threads)
     try:
         with (
@@ -227,6 +230,7 @@ def _carry_out(
                     rows.fail(task.index, f"{table.FAILED}{_one_line(outcome)}")
                 else:
                     rows.put(task.index, outcome)
+                    doubts |= dict.fromkeys(outcome.attrs.pop(_WARNED))
                 # A full disk fails all runs to come: it is found out by writing at once.
                 files.write(rows, at_once=isinstance(outcome, StorageError))
                 bar.finished(task, *_verdict(outcome))
@@ -235,16 +239,26 @@ def _carry_out(
             _collect(task, rows)
         files.write(rows, at_once=True)
         made = rows.dataset()
-        drawn = [path for output in outputs for path in output.study(place, made)]
+        drawn = left_by(
+            outputs, lambda output: output.study(place, made), study.points[0].run.outputs
+        )
+    for message in (*doubts, *coarse(made)):
+        warnings.warn(message, stacklevel=4)
     return Carried(made, (*files.paths, *drawn), taken)
 
 
 def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
-    """Solve a run where a worker is, leave its file, and return its numbers."""
+    """Solve a run where a worker is, leave its file, and return its numbers.
+
+    What it warned of is among their attributes, to be said once for all runs.
+    """
     hdf5 = registry().make(Output, {"type": "hdf5"})
     bar = Saying(task.steps, say)
-    done = execute(task.run, task.place, [hdf5, *task.outputs], bar, threads=threads)
-    return done.result.dataset.drop_dims(["x", "y"])
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UserWarning)
+        done = execute(task.run, task.place, [hdf5, *task.outputs], bar, threads=threads)
+    warned = [str(each.message) for each in caught]
+    return done.result.dataset.drop_dims(["x", "y"]).assign_attrs({_WARNED: warned})
 
 
 class Planned(NamedTuple):
@@ -350,6 +364,15 @@ def failures(made: xr.Dataset) -> str:
     return f"of {len(verdicts)} runs {', '.join(said)}; see status" if said else ""
 
 
+def coarse(made: xr.Dataset) -> Iterator[str]:
+    """Yield in a sentence how many runs of a table have contacts that the cells do not resolve."""
+    said, _, _ = Status.COARSE.value.partition("{")
+    count = sum(any(str(each).startswith(said) for each in row) for row in _statuses(made))
+    if count:
+        told = said.removeprefix("converged, but ").partition(",")[0]
+        yield f"of {len(_statuses(made))} runs, in {count} {told}; see status"
+
+
 def _statuses(made: xr.Dataset) -> Any:
     status = made["status"].values
     return status.reshape(-1, status.shape[-1])
@@ -382,7 +405,8 @@ def _require_table(path: Path, overwrite: bool) -> None:
             pass
     except StorageError as error:
         raise StorageError(
-            f"{error}; choose another folder (-o DIR), or allow it to be replaced (--overwrite)"
+            f"{error}; choose another folder (-o DIR), or allow it to be replaced (--overwrite, "
+            "overwrite=True)"
         ) from None
 
 

@@ -126,7 +126,7 @@ class Quantity:
                 raise ValueError(f"{shown(value)} has a unit; give {self._wanted()}")
             return float(number)
         if not unit:
-            raise ValueError(f"{shown(value)} is text without a unit; give {self._wanted()}")
+            raise ValueError(f"{shown(value)} is text without a unit; give {self._with_unit()}")
         return self._convert(number, unit, value)
 
     def _convert(self, number: str, unit: str, value: str) -> float:
@@ -158,6 +158,17 @@ class Quantity:
         dimension = str(_registry().Unit(self.unit).dimensionality)
         return "an angle" if dimension == "dimensionless" else dimension
 
+    @property
+    def has_known_unit(self) -> bool:
+        """Whether values of other units can be brought to its unit."""
+        if self.unit == "1" or self.unit in _EXAMPLES:
+            return True
+        try:
+            self._convert("1", self.unit, self.unit)
+        except ValueError:
+            return False
+        return True
+
     def powers(self) -> tuple[int, int]:
         """Return the powers of Pa and of m that make the unit, whatever it has of seconds."""
         dimensions: Mapping[str, Any] = _registry().Unit(self.unit).dimensionality
@@ -184,13 +195,18 @@ class Quantity:
         return [f"{sign} {bound:g}" for sign, bound in all_four if bound is not None]
 
     def _wanted(self) -> str:
+        if self.unit == "1":
+            return f"a plain number{self._range()}"
+        return f"{self._with_unit()}, or a bare number in {self.unit}"
+
+    def _with_unit(self) -> str:
+        example = f", such as {_EXAMPLES[self.unit]!r}" if self.unit in _EXAMPLES else ""
+        return f"a value{self._range()} with its unit{example}"
+
+    def _range(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
         bounds = [f"{bound}{unit}" for bound in self.bounds]
-        range_ = f" {' and '.join(bounds)}" if bounds else ""
-        if self.unit == "1":
-            return f"a plain number{range_}"
-        example = f", such as {_EXAMPLES[self.unit]!r}" if self.unit in _EXAMPLES else ""
-        return f"a value{range_} with its unit{example}, or a bare number in {self.unit}"
+        return f" {' and '.join(bounds)}" if bounds else ""
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler

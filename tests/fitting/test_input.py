@@ -15,6 +15,7 @@ from click.testing import Result
 from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.fitting.curve import clean
 from pellicle.fitting.measured import Measured
 from pellicle.fitting.read import read
 
@@ -92,6 +93,17 @@ def test_fields_of_any_indenter(cli: Cli) -> None:
     assert by_name.stdout == cli("curve.csv", *OPTIONS, "--json").stdout
 
 
+@pytest.mark.parametrize("dwell", [1, 20])
+def test_rows_at_the_turn_belong_to_the_pass_that_has_them(dwell: int) -> None:
+    """Of rows at the greatest position the first ends the approach, the last begins the retract."""
+    position, force = _curve()
+    relaxed = 0.9 * force[::-1]
+    held = np.full(dwell, position[-1]), np.full(dwell, relaxed[0])
+    both = np.r_[position, held[0], position[-2::-1]], np.r_[force, held[1], relaxed[1:]]
+    assert np.array_equal(clean(*both).force, force)
+    assert np.array_equal(clean(*both, "retract").force, relaxed[::-1])
+
+
 def test_held_parameters(cli: Cli) -> None:
     """What is fixed stays, with its unit, and is said to be held; Hertz is the fit without."""
     _write(*_curve())
@@ -119,6 +131,14 @@ def test_tables(cli: Cli, header: str, separator: str) -> None:
     assert isinstance(measured, Measured)
     assert measured.position == pytest.approx(position)
     assert measured.force == pytest.approx(force, abs=1e-18)
+
+
+def test_columns_of_other_names(cli: Cli) -> None:
+    """A table whose columns nobody knows is refused with what its first line has."""
+    _write(*_curve(), "Indentation (um),Force (nN)")
+    told = cli("curve.csv", *OPTIONS, code=2).stderr
+    assert "has no column position or depth" in told
+    assert "'indentation', 'force'" in told
 
 
 def test_decimal_commas(cli: Cli) -> None:

@@ -16,6 +16,7 @@ from collections.abc import Callable
 from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 from pellicle import Kernel, hookimpl
+from pellicle.units import Quantity
 
 class Soft(Kernel):
     """Kernel of a stranger."""
@@ -37,7 +38,7 @@ REGISTER = "    register(Soft)\n"
 BROKEN = {
     "raises at import": ("", "raise OSError('no library')", "OSError: no library"),
     "exits at import": ("", "raise SystemExit(3)", "SystemExit: 3"),
-    "misspelt hook": ("register_kernels", "register_kernel", "unknown hook 'register_kernel'"),
+    "misspelt hook": ("register_kernels", "register_kernel", "did you mean 'register_kernels'?"),
     "no hook": ("@hookimpl", "", "implements no hook; decorate with @pellicle.hookimpl"),
     "wrong argument": ("(register):", "(add):", "'add'"),
     "fails half-way": (REGISTER, REGISTER + "    1 / 0\n", "ZeroDivisionError"),
@@ -52,6 +53,7 @@ BROKEN = {
     "no method": ("compliance", "stiffness", "Soft lacks the method compliance"),
     "no docstring": (DOCSTRING, "", "Soft lacks a docstring"),
     "bare field": (FIELD, "float = 1.0", "Soft.scale lacks Field(description=…)"),
+    "unknown unit": ("float,", "float, Quantity('cubit'),", "Soft.scale: Quantity('cubit') is of"),
     "other family": (TYPE, TYPE + '\n    family: ClassVar[str] = "x"', "Soft.family is 'x'"),
     "field of no known type": ("Annotated[float,", "Annotated['Unknown',", "Unknown"),
     "field without JSON": ("Annotated[float,", "Annotated[Callable[[], int],", "JsonSchema"),

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -31,6 +32,8 @@ RUN: dict[str, Any] = {
     "loading": {"depth": ["5 um", "10 um", "15 um"]},
     "outputs": [],
 }
+# Whatever the cells are worth, the numbers are to be the same.
+pytestmark = pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
 TENSION, RADIUS = "kernel.tension", "indenter.radius"
 NUMBERS = ("depth", "force", "contact_area", "residual_contact", "iterations", "converged")
 
@@ -198,9 +201,27 @@ def test_unconverged_run(tmp_path: Path) -> None:
 
 def test_runs_of_unequal_length() -> None:
     """Runs with fewer steps have none in the rest of the table, and lack nothing."""
-    table = carry_out(study({"loading.depth": [["5 um"], ["5 um", "10 um"]]}))
+    table = carry_out(study({"loading.depth": [["10 um"], ["10 um", "15 um"]]}))
     assert table["status"].values.tolist() == [["converged", ""], ["converged", "converged"]]
     assert np.isnan(table["force"].values[0, 1])
+
+
+def test_what_runs_warn_of_is_said_once(tmp_path: Path) -> None:
+    """Warnings of all runs come as one line each, with how many are too coarse."""
+    ramp = np.add.outer(np.linspace(0, 1, 16), np.linspace(0, 1, 16))
+    made = study(
+        grid={"points": 16, "size": "0.4 mm", "boundary": "periodic"},
+        indenter=pl.indenter("heights", values=ramp, unit="1 um"),
+        loading={"depth": "1 pm"},
+        vary={TENSION: [0.0, 0.5]},
+    )
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        pl.run_study(made, tmp_path, progress=False)
+    coarse, along_x, along_y = sorted(str(each.message) for each in told)
+    assert coarse == "of 2 runs, in 2 the cells are too coarse for this contact; see status"
+    assert along_x.startswith("the surface is no period along x")
+    assert along_y.startswith("the surface is no period along y")
 
 
 def test_corrections_that_vary() -> None:

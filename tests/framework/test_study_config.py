@@ -333,7 +333,7 @@ def test_a_study_is_no_run_and_a_run_no_study(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(f"{plain}[study.vary]\nkernel.tension = [1]")
     with pytest.raises(pl.ConfigError, match="study: is missing, so this is a single run"):
         pl.run_study(tmp_path / "run.toml")
-    with pytest.raises(pl.ConfigError, match="makes this file a study: use run_study"):
+    with pytest.raises(pl.ConfigError, match="makes this a study: use run_study"):
         pl.run(tmp_path / "study.toml")
 
 

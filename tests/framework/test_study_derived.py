@@ -23,7 +23,7 @@ reduced_modulus = "10 kPa"
 type = "paraboloid"
 radius = "1 mm"
 [loading]
-depth = ["5 um", "10 um"]
+depth = ["10 um", "15 um"]
 [study.vary]
 kernel.tension = ["0.5 N/m", "1 N/m"]
 [study.derived]

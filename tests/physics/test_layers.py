@@ -55,6 +55,7 @@ def test_full_contact_compresses_a_layer_by_uniaxial_strain(
     np.testing.assert_allclose(rise, THICKNESS / wave_modulus(nu), rtol=1e-6)
 
 
+@pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
 def test_a_depth_on_a_layer_counts_from_first_touch(solver: str) -> None:
     """Prescribed depths start at 0, go past full contact, and belong to the pressures they make."""
     kernel, depths = layer("bonded_layer", 0.3), [1e-7, 1e-5, 4e-5]

@@ -34,6 +34,8 @@ ROUGH: dict[str, Any] = {
 }
 PERIODIC = ROUGH | {"grid": {"points": 32, "size": 1e-3, "boundary": "periodic"}}
 PUNCH = SMOOTH | {"indenter": {"type": "flat_punch", "radius": 1e-4}}
+# What is compared here is on the same cells, few or not.
+pytestmark = pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
 CASES: dict[str, tuple[dict[str, Any], float]] = {
     "paraboloid": (SMOOTH, 2e-5),
     "rough punch": (ROUGH, 6e-5),
@@ -155,7 +157,7 @@ def test_area_on_springs_is_known_cell_by_cell(wanted: int, solver: str) -> None
     misses = abs(count - wanted) / wanted
     assert data["residual_area"].item() == pytest.approx(misses, abs=1e-9)
     assert data["converged"].item()
-    assert (data["status"].item() == "converged") == (count == wanted)
+    assert ("misses the prescribed one" in data["status"].item()) == (count != wanted)
 
 
 def test_radius_of_hertz(solver: str) -> None:

@@ -15,10 +15,7 @@ from pellicle.errors import PellicleError
 
 from . import fit, new, plot, plugins, run, schema, show, validate
 from .exits import BAD_INPUT, INTERRUPTED
-
-
-def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    typer.echo(f"warning: {message}", err=True)
+from .printing import print_warning
 
 
 class _Group(TyperGroup):
@@ -27,11 +24,17 @@ class _Group(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         try:
             with warnings.catch_warnings():
-                warnings.showwarning = _show_warning
+                warnings.showwarning = print_warning
                 return super().invoke(ctx)
         except PellicleError as error:
             for line in str(error).splitlines():
                 typer.echo(f"error: {line}", err=True)
+            raise typer.Exit(BAD_INPUT) from None
+        except Exception as error:
+            # Noted by the orchestrator: the fault of a component, whose author wants its place.
+            if not (notes := getattr(error, "__notes__", ())):
+                raise
+            typer.echo(f"error: {notes[0]}: {type(error).__name__}: {error}", err=True)
             raise typer.Exit(BAD_INPUT) from None
         except KeyboardInterrupt:
             typer.echo("interrupted", err=True)

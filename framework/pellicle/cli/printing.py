@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import sys
+from typing import Any
 
+import typer
 from rich.console import Console
 from rich.table import Table
 
@@ -23,6 +25,11 @@ def print_table(
         console.width = 1000
         console.soft_wrap = True
     console.print(table)
+
+
+def print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    """Print a warning; what else `warnings.showwarning` is given is left out."""
+    typer.echo(f"warning: {message}", err=True)
 
 
 def print_json(value: object) -> None:

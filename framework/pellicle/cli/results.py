@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from .exits import NOT_CONVERGED
-from .printing import print_table
+from .printing import print_table, print_warning
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,17 +29,20 @@ def print_steps(result: Result) -> None:
     if "contact_radius" in result.configuration["loading"]:
         asked.insert(0, "contact_radius")
     names = ["depth", "force", *areas, *asked, "iterations"]
+    coarse = dict(result.coarse())
     rows = []
     for index in range(data.sizes["step"]):
         step = data.isel(step=index)
         row = {name: f"{step[name].item():.6g}" for name in names}
         status = "converged" if step["converged"].item() else "NOT CONVERGED"
+        if index in coarse:
+            status = "too coarse"
         rows.append({"step": str(index + 1), **row, "status": status})
     print_table(["step", *names, "status"], rows, _heads(data, names))
     for index, (converged, status) in enumerate(
         zip(data["converged"], data["status"], strict=True)
     ):
-        if converged and status != "converged":
+        if converged and status != "converged" and index not in coarse:
             typer.echo(f"step {index + 1}: {status.item()}", err=True)
 
 
@@ -78,9 +81,13 @@ def print_runs(table: xr.Dataset) -> None:
 
 
 def exit_by_convergence(result: Result) -> None:
-    """Exit unless all steps of a run converged, and say which did not."""
+    """Exit unless all steps of a run converged, and say which did not or are too coarse."""
+    from pellicle.orchestrator import said_of_steps
+
     for index, message in result.failures():
         typer.echo(f"step {index + 1} did not converge: {message}", err=True)
+    if coarse := result.coarse():
+        print_warning(said_of_steps(coarse))
     if not result.converged:
         raise typer.Exit(NOT_CONVERGED)
 

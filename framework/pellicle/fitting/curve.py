@@ -139,6 +139,9 @@ def _one_pass(z: Array, segment: Segment, messages: list[str]) -> slice:
             "position",
         )
     first, last = passes[inward.index(wanted)]
+    # A retract begins where a dwell at the turn ends.
+    while first and z[first + 1] == z[first]:
+        first += 1
     if len(passes) > 1:
         messages.append(
             f"rows {first + 1} to {last + 1} are the {segment}; "
@@ -150,7 +153,7 @@ def _one_pass(z: Array, segment: Segment, messages: list[str]) -> slice:
 
 
 def _turns(z: Array, least: float) -> list[int]:
-    """Return the rows where the direction changes for at least this far."""
+    """Return the first rows of those where the direction changes for at least this far."""
     turns: list[int] = []
     low = high = 0
     direction = 0
@@ -167,8 +170,4 @@ def _turns(z: Array, least: float) -> list[int]:
             if direction:
                 turns.append(low)
             direction, high = 1, row
-        if direction > 0 and here >= z[high]:
-            high = row
-        if direction < 0 and here <= z[low]:
-            low = row
     return turns

@@ -93,10 +93,11 @@ def _noise(rough: Likelihood, parameters: Array, messages: list[str]) -> tuple[f
     loose = max(contact.size - (len(rough.free) - baseline), 1)
     misfit = float(np.sum(contact**2)) / loose / noise**2
     if misfit > 1 and fdtrc(loose, quiet, misfit) < _CHANCE:
+        held = "" if POINT in rough.free else f", contact from {parameters[POINT]:g} m on"
         messages.append(
             f"in contact the residuals are {np.sqrt(misfit):.2g} times the noise before it: the "
-            "model (this indenter, elastic half-space, no adhesion) does not describe the curve; "
-            "the intervals are widened by that factor"
+            f"model (this indenter, this elastic solid, no adhesion{held}) does not describe the "
+            "curve; the intervals are widened by that factor"
         )
         return noise * float(np.sqrt(misfit)), min(quiet, loose), f"{source}, widened by the misfit"
     return noise, quiet, source

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pellicle.errors import ConfigError, PellicleError, StorageError
+from pellicle.errors import ConfigError, PellicleError, StorageError, shown
 
 from . import afm
 from .measured import EXAMPLE, NAMES, Calibration, Column, Measured, from_columns, is_curve
@@ -20,6 +20,7 @@ SUFFIXES = (".csv", ".tsv", ".txt", *_HDF5, *afm.SUFFIXES)
 """Endings of the files of a folder that are curves."""
 _LABEL = "curve"
 _FILE = "file"
+_MANY = 8
 
 Columns = Mapping[str, Column]
 Found = dict[str, Measured | PellicleError]
@@ -53,6 +54,8 @@ def read(path: Path, calibration: Calibration | None = None, segment: str = "app
         except StorageError:
             # Not the format of an instrument either, or nobody can tell.
             hint = "" if afm.installed() else f"; if it is of an instrument: {afm.INSTALL}"
+            if found and path.suffix.lower() not in _HDF5:
+                hint = f"; its first line has {_first_cells(path)}{hint}"
     if not found:
         raise StorageError(
             f"{path}: is neither text, nor HDF5, nor of an instrument that can be read{hint}; "
@@ -120,6 +123,11 @@ def _table(path: Path) -> dict[str, Columns]:
         }
         for label, own in curves.items()
     }
+
+
+def _first_cells(path: Path) -> str:
+    heads, _, _ = _cells(path) or ([], [], None)
+    return ", ".join(shown(name) for name, _ in heads[:_MANY])
 
 
 Number = Callable[[list[str], int], float]

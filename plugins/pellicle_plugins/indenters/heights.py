@@ -72,7 +72,7 @@ class Heights(Measured):
             raise ConfigError(
                 f"{self.path or 'the array'} is of shape {self._heights.shape}, and the grid of "
                 f"shape {shape}; set grid.points = {list(self._heights.shape)}, or resample it",
-                "path",
+                "path" if self.path else "values",
             )
         below: Array = (self._heights - self._heights.max()) * self.unit
         return below

@@ -10,12 +10,13 @@ from typing import Annotated, ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 from scipy.interpolate import make_interp_spline
 
 from pellicle import hookimpl
 from pellicle.components import Indenter
 from pellicle.errors import ConfigError
+from pellicle.grid import pair
 from pellicle.model import InputPath
 from pellicle.operators import Array
 from pellicle.units import Length, Quantity
@@ -53,7 +54,11 @@ class Topography(Measured):
     ] = None
     size: Annotated[
         tuple[Length, Length] | None,
-        Field(description="edge lengths of the scan [m], where the file does not say them"),
+        BeforeValidator(pair, json_schema_input_type=Length | tuple[Length, Length] | None),
+        Field(
+            description="edge length of the scan [m], where the file does not say it: one, or two "
+            "as [along x, along y]"
+        ),
     ] = None
     centre: Annotated[
         tuple[_Position, _Position] | None,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
@@ -12,8 +13,9 @@ from pydantic import BeforeValidator, Field, model_validator
 from pellicle import hookimpl
 from pellicle.analysis import Extrapolation, extrapolate
 from pellicle.columns import Runs
-from pellicle.components import Output
+from pellicle.components import Output, Place
 from pellicle.errors import ConfigError
+from pellicle.expression import names_in
 from pellicle.model import Model
 from pellicle.operators import Array
 from pellicle_plugins.analytic.twin import exact
@@ -106,6 +108,14 @@ class Curves(Graph):
         if self.by is not None and self.by == self.over:
             raise ConfigError(f"{self.over!r} is by already; give another axis", "over")
         return self
+
+    def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
+        """Draw the runs; by is, if absent, the only axis beside step, or step if x is that axis."""
+        long = [str(dim) for dim, size in table.sizes.items() if size > 1 and dim != self.over]
+        by = self.by
+        if by is None and len(long) == 2 and long[1] == "step":
+            by = "step" if long[0] in names_in(self.x) else long[0]
+        return super(Curves, self.model_copy(update={"by": by})).study(place, table)
 
     def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
         """Draw, and yield the rows of the numbers drawn."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import re
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
@@ -146,21 +147,24 @@ def label(template: str | None, data: xr.Dataset, dim: str | None) -> str:
     """Return the name of a curve or a panel.
 
     ``{…}`` in the template is an expression, of which the mean over ``data`` is written; without
-    a template it is the value of the dimension ``dim``.
+    a template it is the value of the dimension ``dim``, and without that, those of all axes of the
+    study at which ``data`` is.
     """
     if template is not None:
         known = names(data)
         return _PLACEHOLDER.sub(
             lambda found: f"{np.nanmean(np.asarray(evaluate(found[1], known))):.3g}", template
         )
-    if dim is None:
-        return ""
-    value = data[dim]
+    axes = [dim] if dim else json.loads(data.attrs.get("axes", "[]"))
+    return ", ".join(_at(data[axis]) for axis in axes if data[axis].ndim == 0)
+
+
+def _at(value: xr.DataArray) -> str:
     unit = value.attrs.get("units", "1")
     if value.dtype.kind not in "if" or unit in ("", "1"):
-        return f"{dim} = {value.item()}"
+        return f"{value.name} = {value.item()}"
     factor, name = axis_unit(value.values, unit)
-    return f"{dim} = {value.item() * factor:.4g} {name}"
+    return f"{value.name} = {value.item() * factor:.4g} {name}"
 
 
 def scaled(text: str, values: xr.DataArray, given: str | None) -> tuple[float, str]:

@@ -30,7 +30,10 @@ class Hdf5(Output):
         path = place.file(".h5")
         if place.overwrite or not path.exists():
             return
-        remedy = "choose another folder (-o DIR), or allow it to be replaced (--overwrite)"
+        remedy = (
+            "choose another folder (-o DIR), or allow it to be replaced (--overwrite, "
+            "overwrite=True)"
+        )
         try:
             held = storage.attributes(path)
         except StorageError as error:

@@ -34,7 +34,7 @@ from pellicle.page import (
 from pellicle.page import Field as Shown
 from pellicle.plotting import FIGURES, STUDY_FIGURES, axis_unit, study_curves, svg
 from pellicle.result import Result
-from pellicle.study import each_run, failures, reasons, standing
+from pellicle.study import coarse, each_run, failures, reasons, standing
 from pellicle.table import verdict
 from pellicle.toml import toml_lines
 
@@ -195,15 +195,19 @@ def _status(result: Result) -> Notice:
     else:
         steps = "The load step" if done == 1 else f"All {done} load steps"
         said.append(f"{steps} converged.")
-    details = [f"Step {index + 1}: {message}" for index, message in failed]
-    return Notice(" ".join(said), not failed and done == wanted, details)
+    if coarse := result.coarse():
+        said.append(f"In {len(coarse)} of {done} the cells are too coarse for the contact.")
+    details = [f"Step {index + 1}: {message}" for index, message in (*failed, *coarse)]
+    return Notice(" ".join(said), not details and done == wanted, details)
 
 
 def _status_of_study(table: xr.Dataset, count: int) -> Notice:
     bad = failures(table)
+    doubts = [text.removesuffix("; see status") for text in coarse(table)]
     if not bad:
-        return Notice(f"Every step of all {count} runs converged.", True)
-    return Notice(f"Not all is well: {bad.removesuffix('; see status')}.", False, [*reasons(table)])
+        return Notice(f"Every step of all {count} runs converged.", not doubts, doubts)
+    said = f"Not all is well: {bad.removesuffix('; see status')}."
+    return Notice(said, False, [*reasons(table), *doubts])
 
 
 def _column(name: str, variable: xr.DataArray) -> tuple[Column, float]:

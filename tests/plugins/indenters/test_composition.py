@@ -229,7 +229,9 @@ def test_bad_fields_are_named(indenter: dict[str, Any], field: str, message: str
 def test_part_that_does_not_fit_the_grid_is_named() -> None:
     """An error on the grid has the path of the part, through every level."""
     heights = {"type": "scaled", "factor": 2, "part": pl.indenter("heights", values=[[1]], unit=1)}
-    with pytest.raises(pl.ConfigError, match=r"^indenter\.parts\.1\.part\.path: .* shape \(1, 1\)"):
+    with pytest.raises(
+        pl.ConfigError, match=r"^indenter\.parts\.1\.part\.values: .* shape \(1, 1\)"
+    ):
         pl.run(_run({"type": "sum", "parts": [QUADRIC, heights]}), progress=False)
 
 
@@ -266,7 +268,7 @@ def test_nested_file_is_recorded_in_si(tmp_path: Path) -> None:
         hurst = 0.7
         cutoff_wavelength = "0.2 mm"
         [loading]
-        depth = "1 um"
+        depth = "5 um"
         """)
     result = pl.run(path, progress=False)
     assert result.converged

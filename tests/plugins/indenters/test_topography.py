@@ -156,16 +156,20 @@ def test_interpolation_is_of_fourth_order(tmp_path: Path) -> None:
 
 
 def test_rough_run_under_tension_converges() -> None:
-    """A run from a file, with a tension, converges and touches with the peaks."""
-    result = pl.run(
-        {
-            "grid": {"points": [39, 33], "size": ["1.3 mm", "1.1 mm"], "boundary": "periodic"},
-            "kernel": {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": "20 mN/m"},
-            "indenter": {"type": "topography", "path": str(X3P), "fill": 0.01},
-            "loading": {"mean_pressure": "30 Pa"},
-        },
-        progress=False,
-    )
+    """A run from a file, with a tension, converges and touches with the peaks.
+
+    That a scan is no period is said.
+    """
+    with pytest.warns(UserWarning, match="no period along [xy]"):
+        result = pl.run(
+            {
+                "grid": {"points": [39, 33], "size": ["1.3 mm", "1.1 mm"], "boundary": "periodic"},
+                "kernel": {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": "20 mN/m"},
+                "indenter": {"type": "topography", "path": str(X3P), "fill": 0.01},
+                "loading": {"mean_pressure": "30 Pa"},
+            },
+            progress=False,
+        )
     assert result.converged
     assert ", SurfaceTopography " in result.dataset.attrs["versions"]
     data = result.dataset.isel(step=0)
@@ -428,3 +432,12 @@ def test_no_such_file() -> None:
     """A file that is not there is named."""
     with pytest.raises(pl.ConfigError, match=r"^path: nowhere\.x3p: no such file"):
         pl.indenter("topography", path="nowhere.x3p")
+
+
+def test_one_size_is_that_of_both_edges(tmp_path: Path) -> None:
+    """As that of a grid."""
+    path = tmp_path / "scan.txt"
+    np.savetxt(path, np.random.default_rng(0).standard_normal((6, 6)))
+    given = {"path": path, "unit": "1 um"}
+    one, two = (pl.indenter("topography", size=s, **given) for s in ("6 um", ["6 um", "6 um"]))
+    assert one == two

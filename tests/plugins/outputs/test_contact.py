@@ -154,7 +154,7 @@ def test_vtk_of_more_than_a_block() -> None:
         {"loading": {"depth": 0}},
         {
             "indenter": PUNCH,
-            "grid": {"points": [1, 8], "size": "0.4 mm"},
+            "grid": {"points": [1, 8], "size": "0.4 mm", "boundary": "periodic"},
             "loading": {"depth": 1e-6},
         },
     ],

@@ -24,7 +24,7 @@ def study(*outputs: dict[str, Any], **derived: str) -> dict[str, Any]:
         "grid": {"points": 16, "size": "0.4 mm"},
         "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": 0.0},
         "indenter": {"type": "paraboloid", "radius": "1 mm"},
-        "loading": {"depth": ["5 um", "10 um"]},
+        "loading": {"depth": ["10 um", "15 um"]},
         "outputs": list(outputs),
         "study": {
             "vary": {TENSION: [0.0, 1.0], RADIUS: ["1 mm", "2 mm"]},
@@ -58,6 +58,37 @@ def test_curves_are_mean_and_range_of_the_table(tmp_path: Path) -> None:
     ):
         drawn = [float(row[name]) for row in found]
         np.testing.assert_allclose(drawn, expected.values.ravel(), rtol=1e-14)
+
+
+def test_curves_of_a_study_of_one_axis_need_no_by(tmp_path: Path) -> None:
+    """Each value has its own curve over the steps; of an x that is the axis, each step has."""
+    made = study({"type": "curves"}, {"type": "curves", "name": "over", "x": TENSION})
+    made["study"]["vary"].pop(RADIUS)
+    pl.run_study(made, tmp_path, progress=False, threads=1)
+    assert [row["curve"] for row in rows(tmp_path / "study-curves.csv")] == [
+        *2 * ["kernel.tension = 0 N/m"],
+        *2 * ["kernel.tension = 1 N/m"],
+    ]
+    assert [row["x"] for row in rows(tmp_path / "study-over.csv")] == 2 * ["0.0", "1.0"]
+
+
+def test_fields_of_one_run_of_a_study_say_which(tmp_path: Path) -> None:
+    """Without by it is the first value of each axis that is shown, and named."""
+    carried(tmp_path, {"type": "distributions"})
+    shown = {row["curve"] for row in rows(tmp_path / "study-distributions.csv")}
+    assert shown == {"kernel.tension = 0 N/m, indenter.radius = 1 mm"}
+
+
+def test_an_output_that_fails_keeps_no_other_from_drawing(tmp_path: Path) -> None:
+    """The one that fails is named by its place among the outputs."""
+    with pytest.raises(pl.ConfigError, match=r"^outputs\.1\.by: 'nothing' is no axis"):
+        carried(
+            tmp_path,
+            {"type": "hdf5"},
+            {"type": "curves", "by": "nothing"},
+            {"type": "distributions", "by": TENSION},
+        )
+    assert (tmp_path / "study-distributions.png").is_file()
 
 
 def test_derived_columns_build_on_each_other_and_on_constants(tmp_path: Path) -> None:

@@ -271,6 +271,13 @@ class Lost(pl.Solver):
         return pl.Solution(np.full(problem.grid.shape, np.nan), 1)
 
 
+def test_steps_that_are_too_coarse_are_marked(tmp_path: Path) -> None:
+    """They converged, and the page is not content with that."""
+    page = page_of(tmp_path, loading={"depth": ["1 pm", "10 um"]})
+    assert "All 2 load steps converged. In 1 of 2 the cells are too coarse" in page.said
+    assert "Step 1: converged, but the cells are too coarse" in page.said
+
+
 def test_values_that_are_not_numbers(tmp_path: Path) -> None:
     """NaN is said, and leaves the map empty; a component that nobody knows is listed too."""
     with np.errstate(all="ignore"):

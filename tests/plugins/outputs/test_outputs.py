@@ -106,7 +106,7 @@ def test_figures(tmp_path: Path, format_: str) -> None:
     [
         {"loading": {"depth": 0}},
         {
-            "grid": {"points": [1, 8], "size": "0.4 mm"},
+            "grid": {"points": [1, 8], "size": "0.4 mm", "boundary": "periodic"},
             "indenter": {"type": "flat_punch", "radius": "0.1 mm"},
         },
         {"indenter": {"type": "flat_punch", "radius": "0.1 mm"}},
@@ -158,7 +158,7 @@ def test_hdf5_is_whole_after_each_step(tmp_path: Path, monkeypatch: pytest.Monke
         return solve(*arguments)
 
     monkeypatch.setattr(orchestrator, "_solve", look_and_solve)
-    run = _run([{"type": "hdf5"}], loading={"depth": ["2 um", "4 um", "6 um"]})
+    run = _run([{"type": "hdf5"}], loading={"depth": ["6 um", "8 um", "10 um"]})
     pl.run(run, directory=tmp_path, progress=False)
     assert found == [0, 1, 2]
 

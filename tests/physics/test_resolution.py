@@ -1,0 +1,72 @@
+"""A contact that the cells do not resolve is said to be so."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+
+RADIUS, MODULUS = 1e-3, 1e4
+POINTS, SIZE = 32, 5e-4
+CELL = SIZE / POINTS
+COARSE = "too coarse for this contact"
+
+
+def pressed(points: Any = POINTS, **loading: Any) -> pl.Result:
+    """Return a paraboloid on a half-space."""
+    return pl.run(
+        {
+            "grid": {"points": points, "size": SIZE},
+            "kernel": {"type": "half_space", "reduced_modulus": MODULUS},
+            "indenter": {"type": "paraboloid", "radius": RADIUS},
+            "loading": loading,
+        },
+        progress=False,
+    )
+
+
+def hertz(depths: Any) -> Any:
+    """Return the force [N]."""
+    return 4 / 3 * MODULUS * RADIUS**0.5 * np.asarray(depths) ** 1.5
+
+
+@pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
+@pytest.mark.parametrize("points", [POINTS, POINTS + 1])
+def test_what_is_not_said_to_be_coarse_is_good(points: int) -> None:
+    """Of contacts about a grid point or about a cell those without a word are good to 3 %."""
+    depths = (np.linspace(0.1, 4, 40) * SIZE / points) ** 2 / RADIUS
+    result = pressed(points, depth=depths)
+    told = [index for index, _ in result.coarse()]
+    error = np.abs(result.dataset["force"].values / hertz(depths) - 1)
+    assert result.converged
+    assert np.delete(error, told).max() < 0.03
+    assert error[told].max() > 0.5
+    # The words come with few cells only, so not for ever.
+    assert told == list(range(len(told)))
+    assert len(told) < 25
+
+
+def test_a_contact_between_the_cells_is_warned_of() -> None:
+    """A depth at which no cell touches makes no force, and is not passed over in silence."""
+    with pytest.warns(pl.ConvergenceWarning, match=f"step 1 and 1 more: .*{COARSE}.* none of them"):
+        result = pressed(depth=[1e-9, 2e-9, 2e-5])
+    assert result.dataset["force"].values[0] == 0
+    assert [index for index, _ in result.coarse()] == [0, 1]
+
+
+def test_no_load_is_not_coarse() -> None:
+    """Nothing prescribed is nothing to resolve, and without force the lowest point just touches."""
+    result = pressed(force=["20 uN", 0])
+    assert list(result.dataset["status"].values) == ["converged", "converged"]
+    assert result.dataset["depth"].values[1] == 0
+    assert pressed(depth=0).dataset["status"].item() == "converged"
+
+
+def test_a_free_grid_one_cell_wide_has_an_edge() -> None:
+    """The contact reaches beyond a strip of cells, and beyond a single one."""
+    for points in (1, [1, 64], [64, 1]):
+        with pytest.warns(pl.ConvergenceWarning, match="reaches the edge"):
+            assert not pressed(points, depth=2e-5).converged
