@@ -1,6 +1,6 @@
 """Operator applications of active_set on every built-in kernel.
 
-    python tests/benchmarks/kernels.py --points 64 128 256
+    python tests/benchmarks/kernels.py --points 64 128 256 512
     python tests/benchmarks/kernels.py --cases free
 
 Domain L = 1 mm, E* = 10 kPa, to 1e-8; a row that did not converge says so:
@@ -99,7 +99,7 @@ def main() -> None:
     """Solve every case and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--cases", nargs="+", default=["rough", "free"])
-    parser.add_argument("--points", type=int, nargs="+", default=[64, 128, 256])
+    parser.add_argument("--points", type=int, nargs="+", default=[64, 128, 256, 512])
     options = parser.parse_args()
     warnings.simplefilter("ignore", pl.ConvergenceWarning)
     heads = [f"{case}, N = {points}" for case in options.cases for points in options.points]

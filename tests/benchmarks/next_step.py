@@ -53,7 +53,7 @@ def with_known_contact(problem: Problem, tolerance: float, start: Array, answer:
     error = float(np.abs(aloft[contact] - depth).max())
     while error > tolerance * scale:
         found = inner.inner_solve(
-            problem, on_contact, pressure, displacement, error, tolerance / 2 * scale
+            problem, on_contact, pressure, displacement, tolerance / 2 * scale, settled=True
         )
         pressure, displacement = found.pressure, problem.operator(found.pressure)
         aloft = (displacement - problem.profile)[contact]

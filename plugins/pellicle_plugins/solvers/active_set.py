@@ -32,7 +32,7 @@ _CLOSE: Final = 0.05
 
 
 @dataclass(frozen=True)
-class _History:
+class History:
     """What has been tried, to tell when the contact goes round in a cycle."""
 
     contacts: frozenset[bytes] = frozenset()
@@ -42,10 +42,10 @@ class _History:
     cycles: bool = False
     """Whether a contact came back, and since then there were not fewer cells wrong."""
 
-    def after(self, contact: NDArray[np.bool_], wrong: int) -> _History:
+    def after(self, contact: NDArray[np.bool_], wrong: int) -> History:
         """Return it after an inner solve on a contact that found so many cells wrong."""
         packed = np.packbits(contact).tobytes()
-        return _History(
+        return History(
             contacts=self.contacts | {packed},
             fewest=min(wrong, self.fewest),
             cycles=wrong >= self.fewest and (self.cycles or packed in self.contacts),
@@ -67,7 +67,7 @@ class _State:
     error: float
     """max(|gap| under pressure, penetration) of ``start`` [m]."""
     preconditioner: Preconditioner
-    history: _History
+    history: History
 
 
 class ActiveSet(IterativeSolver):
@@ -87,11 +87,11 @@ class ActiveSet(IterativeSolver):
         """Return the state of the last step's pressure, or of the solution on a coarser grid."""
         preconditioner = Preconditioner(problem.operator)
         if start is not None and start.any():
-            state = _measured(problem, start, start > 0, preconditioner, _History())
+            state = _measured(problem, start, start > 0, preconditioner, History())
             if state.error <= _CLOSE * state.scale:
                 return state
         start = self._cold_start(problem)
-        return _measured(problem, start, start > 0, preconditioner, _History())
+        return _measured(problem, start, start > 0, preconditioner, History())
 
     def step(self, problem: Problem, state: _State) -> _State:
         """Return the state after one inner solve and one look at the contact."""
@@ -169,7 +169,7 @@ def _measured(
     start: Array,
     contact: NDArray[np.bool_],
     preconditioner: Preconditioner,
-    history: _History,
+    history: History,
 ) -> _State:
     """Return the state of a pressure [Pa], with the force that is prescribed."""
     start = with_force(problem, start)

@@ -194,10 +194,10 @@ def test_preconditioner_is_nearly_the_inverse(tension: float) -> None:
     assert condition(TensedMembrane(reduced_modulus=1.0, tension=tension), 24) < 30
 
 
-@pytest.mark.parametrize(("length", "most"), [(0.1, 5), (1.0, 40)])
+@pytest.mark.parametrize(("length", "most"), [(0.1, 4), (1.0, 60)])
 def test_preconditioner_of_a_skin_that_bends_is_nearly_the_inverse(
     length: float, most: float
 ) -> None:
     """With a kink at the edge of the contact it would spread by 20 and by 200."""
     kernel = BendingSkin(reduced_modulus=1.0, bending=length**3 / 2)
-    assert condition(kernel, 32) < most  # 2.8, 26
+    assert condition(kernel, 32) < most  # 2.2, 40
