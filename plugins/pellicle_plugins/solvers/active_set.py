@@ -54,12 +54,11 @@ class History:
 
 @dataclass(frozen=True)
 class _State:
+    problem: Problem
     start: Array
     """Pressure that the next inner solve starts from [Pa]; it may still pull."""
     displacement: Array
     """What ``start`` makes [m]."""
-    pressure: Array
-    """The same without what pulls [Pa]."""
     contact: NDArray[np.bool_]
     """Where the next inner solve puts pressure."""
     scale: float
@@ -68,6 +67,13 @@ class _State:
     """max(|gap| under pressure, penetration) of ``start`` [m]."""
     preconditioner: Preconditioner
     history: History
+
+    @property
+    def pressure(self) -> Array:
+        """``start`` without what pulls, with the force that is prescribed [Pa]."""
+        if self.start.min() >= 0:
+            return self.start
+        return with_force(self.problem, np.maximum(self.start, 0))
 
 
 class ActiveSet(IterativeSolver):
@@ -179,11 +185,10 @@ def _measured(
     depth = problem.depth(gap[pressed])
     gap -= depth
     inside = float(np.abs(gap[pressed]).max(initial=0.0))
-    pulls = start.min() < 0
     return _State(
+        problem=problem,
         start=start,
         displacement=displacement,
-        pressure=with_force(problem, np.maximum(start, 0)) if pulls else start,
         contact=contact,
         scale=height_scale(problem.profile, pressed, depth),
         error=max(inside, -float(gap.min(initial=0.0))),

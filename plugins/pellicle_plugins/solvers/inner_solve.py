@@ -60,8 +60,10 @@ def inner_solve(
     whose sign is sought.
     """
     cells = preconditioner.cells
+    signs = _Signs(problem, cells)
     if not cells.size:
-        return Inner(np.zeros(problem.grid.shape), np.zeros(problem.grid.shape), 0.0, cells)
+        nothing = np.zeros(problem.grid.shape)
+        return Inner(nothing, nothing, 0.0, signs.all(np.zeros(0), nothing, goal))
     search = _Search(preconditioner, keeps_force=problem.prescribed == "force")
     whole = np.zeros(problem.grid.shape, dtype=np.float64 if preconditioner.bends else np.float32)
     displacement = displacement.copy()
@@ -71,7 +73,6 @@ def inner_solve(
     error = search.error(residual)
     goal = max(goal, _SINGLE * error)
     best, since_best, iteration = np.inf, 0, 0
-    signs = _Signs(problem, cells)
     wrong = None
     direction = search(residual)
     descent = dot(residual, direction)

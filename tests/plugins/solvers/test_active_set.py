@@ -21,6 +21,8 @@ from pellicle_plugins.indenters.self_affine import SelfAffine
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 from pellicle_plugins.solvers.active_set import ActiveSet, History
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
+from pellicle_plugins.solvers.inner_solve import inner_solve
+from pellicle_plugins.solvers.preconditioner import Preconditioner
 
 Boundary = Literal["free", "periodic"]
 Prescribed = Literal["depth", "force"]
@@ -465,6 +467,16 @@ def test_a_single_cell_in_contact_sees_what_penetrates_elsewhere(seed: int) -> N
     contact = assert_agrees(problem).found.contact
     assert contact.sum() == 1
     assert problem.profile[contact] == problem.profile.max()
+
+
+def test_a_contact_that_all_cells_have_left_is_joined_by_what_penetrates() -> None:
+    """Without any contact the surface is flat, and the indenter overlaps with it."""
+    problem = make(16, "free", skin(0.02), paraboloid, "depth", 0.05)
+    nowhere = Preconditioner(problem.operator).on(np.zeros(problem.grid.shape, dtype=bool))
+    nothing = np.zeros(problem.grid.shape)
+    found = inner_solve(problem, nowhere, nothing, nothing, 1e-10)
+    assert found.error == 0
+    np.testing.assert_array_equal(found.wrong, np.flatnonzero(problem.profile + 0.05 > 1e-10))
 
 
 def test_a_contact_that_comes_back_changes_by_single_cells_until_fewer_are_wrong() -> None:
