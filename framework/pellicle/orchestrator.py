@@ -8,9 +8,7 @@ import re
 import time
 import warnings
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager, suppress
-from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
+from contextlib import closing, contextmanager
 from pathlib import Path
 from traceback import extract_tb
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -23,13 +21,13 @@ from .components import Component, Monitor, Output, Place
 from .config import Run, refuse_study
 from .dataset import DESCRIPTIONS, step_dataset
 from .errors import ConfigError, ConvergenceWarning, PellicleError
-from .model import Model
 from .operators import Array, Operator, make_operator
 from .plugins import registry
 from .problem import Equilibrium, Problem, Stiffness, measure, measure_stiffness
 from .progress import Bar, Progress
+from .provenance import provenance
 from .resolution import warn_of_cells
-from .result import Result, Solution, Status
+from .result import Result, Solution, Status, said_of_steps
 from .seam import warn_of_seam
 
 if TYPE_CHECKING:
@@ -88,12 +86,6 @@ def run(
     if coarse := result.coarse():
         warnings.warn(said_of_steps(coarse), ConvergenceWarning, stacklevel=2)
     return result
-
-
-def said_of_steps(steps: Sequence[tuple[int, str]]) -> str:
-    """Return which steps, counted from 1, and what is said of the first of them."""
-    (index, message), *others = steps
-    return f"step {index + 1}{f' and {len(others)} more' if others else ''}: {message}"
 
 
 def solve(run: Run) -> Result:
@@ -369,7 +361,7 @@ def _solve_steps(
     run: Run, problems: Sequence[Problem], last: Sequence[xr.Dataset], bar: Bar
 ) -> Generator[xr.Dataset, None, None]:
     """Yield each load step after the ``last`` as soon as it is solved, started from that before."""
-    origin = _provenance(run)
+    origin = provenance(run)
     first, pressure = 0, None
     for before in last:
         first = before["step"].item() + 1
@@ -492,43 +484,3 @@ def _touches_edge(run: Run, contact: np.ndarray[tuple[int, ...], np.dtype[np.boo
     plane = run.grid.boundary == "periodic"
     across = [axis for axis in (0, 1) if contact.shape[axis] > 1 or not plane]
     return any(np.take(contact, [0, -1], axis=axis).any() for axis in across)
-
-
-def _provenance(run: Run) -> dict[str, str]:
-    """Return the attributes that say where a result comes from."""
-    return {
-        "title": run.title,
-        "configuration": run.to_json(),
-        "identity": run.identity,
-        **now_with([run]),
-    }
-
-
-def now_with(runs: Iterable[Run]) -> dict[str, str]:
-    """Return the date, and the versions of what solves ``runs``, as attributes of a result."""
-    used = {type(component) for run in runs for component in _components(run)}
-    owners = {
-        registered.origin.distribution: registered.origin.version
-        for family in registry().components.values()
-        for registered in family.values()
-        if registered.component in used
-    }
-    libraries = sorted({name for component in used for name in component.libraries})
-    versions = {name: version(name) for name in ("pellicle", "numpy", "scipy")} | owners
-    for name in libraries:
-        # A worker that is handed what a library read may be without it.
-        with suppress(PackageNotFoundError):
-            versions[name] = version(name)
-    return {
-        "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
-        "date": datetime.now(UTC).isoformat(timespec="seconds"),
-    }
-
-
-def _components(model: Model) -> Iterator[Component]:
-    """Yield the components in the fields of a model, and those in theirs."""
-    for _, value in model:
-        for each in value if isinstance(value, tuple) else (value,):
-            if isinstance(each, Component):
-                yield each
-                yield from _components(each)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -60,6 +61,10 @@ class Status(Enum):
         "and area are wrong; enlarge grid.size = {size} or prescribe less than {prescribed}"
     )
 
+    def says(self, message: str) -> bool:
+        """Whether this is what a user was told by ``message``, up to its first figure."""
+        return message.startswith(self.value.partition("{")[0])
+
 
 class Stop(Enum):
     """Why a solver stopped; the value is the remedy if the result is not good enough."""
@@ -111,9 +116,8 @@ class Result:
 
     def coarse(self) -> list[tuple[int, str]]:
         """Return the index of each step whose contact the cells do not resolve, with its status."""
-        said, _, _ = Status.COARSE.value.partition("{")
         messages = map(str, self.dataset["status"].values)
-        return [(i, message) for i, message in enumerate(messages) if message.startswith(said)]
+        return [(i, message) for i, message in enumerate(messages) if Status.COARSE.says(message)]
 
     def _repr_html_(self) -> str:
         """Return what a notebook shows."""
@@ -128,6 +132,12 @@ class Result:
             The file cannot be written.
         """
         storage.write(self.dataset, Path(path))
+
+
+def said_of_steps(steps: Sequence[tuple[int, str]]) -> str:
+    """Return which steps, counted from 1, and what is said of the first of them."""
+    (index, message), *others = steps
+    return f"step {index + 1}{f' and {len(others)} more' if others else ''}: {message}"
 
 
 def load(path: str | Path) -> Result:

@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 
 SCHEMA_VERSION = 1
 """Version of the layout, in the attribute ``schema_version`` of every file."""
+REPLACING = (
+    "choose another folder (-o DIR), or allow it to be replaced (--overwrite, overwrite=True)"
+)
+"""What to do where a file of something else is in the way."""
 _SMALL = 4_000_000
 """Files that are copied for each step [bytes]: it takes no longer than beginning another one."""
 

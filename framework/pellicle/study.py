@@ -366,11 +366,13 @@ def failures(made: xr.Dataset) -> str:
 
 def coarse(made: xr.Dataset) -> Iterator[str]:
     """Yield in a sentence how many runs of a table have contacts that the cells do not resolve."""
-    said, _, _ = Status.COARSE.value.partition("{")
-    count = sum(any(str(each).startswith(said) for each in row) for row in _statuses(made))
+    statuses = _statuses(made)
+    count = sum(any(Status.COARSE.says(str(each)) for each in row) for row in statuses)
     if count:
-        told = said.removeprefix("converged, but ").partition(",")[0]
-        yield f"of {len(_statuses(made))} runs, in {count} {told}; see status"
+        yield (
+            f"of {len(statuses)} runs, in {count} the cells are too coarse for this contact; "
+            "see status"
+        )
 
 
 def _statuses(made: xr.Dataset) -> Any:
@@ -404,10 +406,7 @@ def _require_table(path: Path, overwrite: bool) -> None:
         with storage.opened(path, "table"):
             pass
     except StorageError as error:
-        raise StorageError(
-            f"{error}; choose another folder (-o DIR), or allow it to be replaced (--overwrite, "
-            "overwrite=True)"
-        ) from None
+        raise StorageError(f"{error}; {storage.REPLACING}") from None
 
 
 def _verdict(outcome: xr.Dataset | Exception) -> tuple[str, bool]:

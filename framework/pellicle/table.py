@@ -12,7 +12,7 @@ import numpy as np
 from . import storage
 from .columns import FIRST_RUN, derive
 from .dataset import header
-from .orchestrator import now_with
+from .provenance import now_with
 from .result import Status
 from .study_config import Study
 

@@ -82,7 +82,7 @@ def print_runs(table: xr.Dataset) -> None:
 
 def exit_by_convergence(result: Result) -> None:
     """Exit unless all steps of a run converged, and say which did not or are too coarse."""
-    from pellicle.orchestrator import said_of_steps
+    from pellicle.result import said_of_steps
 
     for index, message in result.failures():
         typer.echo(f"step {index + 1} did not converge: {message}", err=True)

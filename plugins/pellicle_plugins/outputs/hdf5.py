@@ -30,16 +30,14 @@ class Hdf5(Output):
         path = place.file(".h5")
         if place.overwrite or not path.exists():
             return
-        remedy = (
-            "choose another folder (-o DIR), or allow it to be replaced (--overwrite, "
-            "overwrite=True)"
-        )
         try:
             held = storage.attributes(path)
         except StorageError as error:
-            raise StorageError(f"{error}; {remedy}") from None
+            raise StorageError(f"{error}; {storage.REPLACING}") from None
         if held.get("identity") != place.identity:
-            raise StorageError(f"{path} holds the result of another configuration; {remedy}")
+            raise StorageError(
+                f"{path} holds the result of another configuration; {storage.REPLACING}"
+            )
 
     def resume(self, place: Place) -> xr.Dataset | None:
         """Return the steps in the file."""
