@@ -18,8 +18,9 @@ from pellicle.transfer import prolong
 
 from .extension import bends
 from .guess import first_guess, with_force
-from .inner_solve import inner_solve
+from .inner_solve import Inner, inner_solve
 from .preconditioner import Preconditioner, stiffness_orders
+from .relaxation import relaxed
 
 # Coarse grids are solved to this share of the height range: with tension a smaller error than that
 # of the grid itself still moves the edge of the contact by several cells.
@@ -33,23 +34,23 @@ _CLOSE: Final = 0.05
 
 @dataclass(frozen=True)
 class History:
-    """What has been tried, to tell when the contact goes round in a cycle."""
+    """What has been tried since the fewest cells were wrong, to tell when it goes round."""
 
     contacts: frozenset[bytes] = frozenset()
     """Every contact that there was, packed."""
     fewest: float = np.inf
     """Least number of cells found wrong."""
-    cycles: bool = False
-    """Whether a contact came back, and since then there were not fewer cells wrong."""
+    returns: int = 0
+    """How often a contact came back."""
 
     def after(self, contact: NDArray[np.bool_], wrong: int) -> History:
         """Return it after an inner solve on a contact that found so many cells wrong."""
         packed = np.packbits(contact).tobytes()
-        return History(
-            contacts=self.contacts | {packed},
-            fewest=min(wrong, self.fewest),
-            cycles=wrong >= self.fewest and (self.cycles or packed in self.contacts),
-        )
+        if wrong < self.fewest:
+            return History(frozenset({packed}), wrong)
+        if packed in self.contacts:
+            return History(frozenset({packed}), self.fewest, self.returns + 1)
+        return replace(self, contacts=self.contacts | {packed})
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,8 @@ class ActiveSet(IterativeSolver):
     that closes the gap on it; cells that would need suction leave, cells that penetrate join
     (Hintermüller, Ito & Kunisch 2002), and so on until nothing changes. Departures: (1) an inner
     solve ends as soon as it is certain which cells are wrong, and those in doubt stay, so that
-    loose solves do not scatter the contact; (2) where the contact comes back to what it was before,
+    loose solves do not scatter the contact; (2) on a skin that bends, what one cell does decides
+    what the next ones do, and they settle together (see `relaxed`); (3) where a contact comes back,
     one cell at a time changes sides (Murty 1974), until fewer are wrong than ever.
     """
 
@@ -109,10 +111,26 @@ class ActiveSet(IterativeSolver):
             self.tolerance / 2 * state.scale,
         )
         history = state.history.after(state.contact, found.wrong.size)
-        contact = state.contact.copy()
-        contact.ravel()[found.wrong[: 1 if history.cycles else None]] ^= True
-        start = np.where(contact, found.pressure, 0.0)
+        contact, start = self._next(problem, state, found, history.returns)
         return _measured(problem, start, contact, state.preconditioner, history)
+
+    def _next(
+        self, problem: Problem, state: _State, found: Inner, returns: int
+    ) -> tuple[NDArray[np.bool_], Array]:
+        """Return the contact to try next and what to start from on it [Pa].
+
+        With more care the oftener a contact came back.
+        """
+        bends = state.preconditioner.bends
+        if bends and found.wrong.size and returns == 0:
+            margin = self.tolerance / 2 * state.scale
+            contact, start = relaxed(problem, state.contact, found, margin)
+            if start.sum() > 0:
+                return contact, start
+        one = returns > (1 if bends else 0)
+        contact = state.contact.copy()
+        contact.ravel()[found.wrong[: 1 if one else None]] ^= True
+        return contact, np.where(contact, found.pressure, 0.0)
 
     def residual(self, problem: Problem, state: _State) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""

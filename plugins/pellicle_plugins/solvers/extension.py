@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -17,14 +18,14 @@ _BLOCK: Final = 2**17
 
 # Above this order of the stiffness bending decides.
 _BENDS: Final = 2.5
-_SWEEPS: Final = 8
-# Δ² of waves from about eight cells to two, in units of the cell.
-_SLOWEST, _FASTEST = 1.0, 64.0
+_SWEEPS: Final = 16
+# Δ² of waves from about nine cells to two, in units of the cell.
+_SLOWEST, FASTEST = 0.25, 64.0
 # Roots of the Chebyshev polynomial from both ends in turns: in order their round-off grows.
 _ROOTS: Final = np.cos(np.pi * (np.arange(_SWEEPS) + 0.5) / _SWEEPS)
 # Over- and underrelaxation on that range.
 _DAMPINGS: Final = tuple(
-    np.float32(2 / (_FASTEST + _SLOWEST + (_FASTEST - _SLOWEST) * root))
+    np.float32(2 / (FASTEST + _SLOWEST + (FASTEST - _SLOWEST) * root))
     for pair in zip(_ROOTS[: _SWEEPS // 2], _ROOTS[::-1], strict=False)
     for root in pair
 )
@@ -44,8 +45,9 @@ class Extension:
     the stiffness goes as q^α: nothing is lost at order 2, half at order 1. Coming up, a cell is its
     own mean by w and the interpolated level below by 1 − w.
 
-    Interpolation leaves a kink at the edge of the contact, which a bending energy punishes. Where
-    the order is above 2 the waves too short for the level below are relaxed towards Δ²u = 0.
+    A bending energy punishes every kink. Where it decides, a mean is moved from the centroid of
+    what is known to the centre of its cell, along the slope of the interpolated level below, so
+    that E keeps planes; and the waves too short for that level are relaxed towards Δ²u = 0.
 
     The domain is periodic. Single precision: it only ever preconditions.
 
@@ -60,51 +62,105 @@ class Extension:
 
     def __init__(self, known: NDArray[np.bool_], orders: Sequence[float]) -> None:
         self.shape = known.shape
+        self._levels: list[_Level] = []
         weight = known.astype(np.float32)
-        self._free: list[Field] = []
-        self._shares: list[Field] = []
-        self._bends = [bends(order) for order in orders]
+        moments = (np.zeros_like(weight), np.zeros_like(weight))
         for order in orders:
-            self._free.append(1 - weight)
+            moved = moments if self._levels and bends(order) else None
             total = _sum_of_four(weight)
-            share = np.float32(2.0 ** (min(order, 2.0) - 2))
-            weight = np.minimum(share * total, np.float32(1))
-            np.divide(weight, total, out=total, where=total > 0)
-            self._shares.append(total)
+            below = np.minimum(np.float32(2.0 ** (min(order, 2.0) - 2)) * total, np.float32(1))
+            share = np.divide(below, total, out=total, where=total > 0)
+            self._levels.append(_Level(1 - weight, share, moved, bends(order)))
+            if any(map(bends, orders)):
+                moments = _moments_below(weight, moments, share)
+            weight = below
 
     def spread(self, values: Field) -> Field:
         """Return E applied to ``values``, which are 0 where not known; shape (mx, my)."""
-        levels = [values]
-        for share in self._shares:
-            levels.append(_sum_of_four(levels[-1]))
-            levels[-1] *= share
-        filled = levels.pop()
-        for free, own, relaxes in zip(
-            reversed(self._free), reversed(levels), reversed(self._bends), strict=True
-        ):
-            filled = _interpolate(filled, free, own)
-            for damping in _DAMPINGS if relaxes else ():
-                change = _biharmonic(filled)
+        means = [values]
+        for level in self._levels:
+            means.append(_sum_of_four(means[-1]))
+            means[-1] *= level.share
+        filled = means.pop()
+        for level, own in zip(reversed(self._levels), reversed(means), strict=True):
+            filled = level.fill(filled, own)
+            for damping in _DAMPINGS if level.relaxes else ():
+                change = biharmonic(filled)
                 change *= damping
-                change *= free
+                change *= level.free
                 filled -= change
         return filled
 
     def gather(self, values: Field) -> Field:
         """Return the transpose of E applied to ``values``; of use only where known."""
-        levels = [values]
-        for free, relaxes in zip(self._free, self._bends, strict=True):
-            for damping in reversed(_DAMPINGS) if relaxes else ():
-                change = _biharmonic(free * levels[-1])
+        means = [values]
+        for level in self._levels:
+            for damping in reversed(_DAMPINGS) if level.relaxes else ():
+                change = biharmonic(level.free * means[-1])
                 change *= damping
-                levels[-1] = levels[-1] - change
-            levels.append(_transposed_interpolate(levels[-1], free))
-        gathered = levels.pop()
-        for share, own in zip(reversed(self._shares), reversed(levels), strict=True):
-            gathered *= share
+                means[-1] = means[-1] - change
+            means.append(level.transposed_fill(means[-1]))
+        gathered = means.pop()
+        for level, own in zip(reversed(self._levels), reversed(means), strict=True):
+            gathered *= level.share
             gathered = _repeat(gathered)
             gathered += own
         return gathered
+
+
+@dataclass(frozen=True)
+class _Level:
+    free: Field
+    """1 − w."""
+    share: Field
+    """What each value counts for in the mean below it."""
+    moments: tuple[Field, Field] | None
+    """w × centroid of what is known, in cells from the centre, where means are moved."""
+    relaxes: bool
+
+    def fill(self, below: Field, own: Field) -> Field:
+        """Return this level, from the one below and its own means by their weights."""
+        if self.moments is None:
+            return _interpolate(below, self.free, own)
+        smooth = _interpolate(below, np.ones_like(own), np.zeros_like(own))
+        filled = smooth * self.free
+        filled += own
+        for axis, moment in enumerate(self.moments):
+            filled -= moment * _slope(smooth, axis)
+        return filled
+
+    def transposed_fill(self, values: Field) -> Field:
+        """Return the transpose of `fill`'s map from the level below."""
+        if self.moments is None:
+            return _transposed_interpolate(values, self.free)
+        smooth = self.free * values
+        for axis, moment in enumerate(self.moments):
+            smooth += _slope(moment * values, axis)
+        return _transposed_interpolate(smooth, np.ones_like(values))
+
+
+def _moments_below(
+    weight: Field, moments: tuple[Field, Field], share: Field
+) -> tuple[Field, Field]:
+    """Return Σ ``share`` (w × place + moment) of each 2 × 2 cells, places from their centre."""
+    quarter, half = np.float32(0.25), np.float32(0.5)
+    x, y = (half * _sum_of_four(moment) for moment in moments)
+    x += quarter * _sum_of_four(_alternating(weight, 0))
+    y += quarter * _sum_of_four(_alternating(weight, 1))
+    return share * x, share * y
+
+
+def _alternating(field: Field, axis: int) -> Field:
+    signs = np.ones(field.shape[axis], dtype=np.float32)
+    signs[0::2] = -1
+    return field * np.expand_dims(signs, 1 - axis)
+
+
+def _slope(field: Field, axis: int) -> Field:
+    """Return the central difference of a periodic field along an axis, over a cell."""
+    slope = np.roll(field, -1, axis) - np.roll(field, 1, axis)
+    slope *= np.float32(0.5)
+    return slope
 
 
 def _sum_of_four(fine: Field) -> Field:
@@ -165,7 +221,7 @@ def _transposed_interpolate(fine: Field, free: Field) -> Field:
     return wide[1:-1, 1:-1]
 
 
-def _biharmonic(field: Field) -> Field:
+def biharmonic(field: Field) -> Field:
     """Return Δ² of a periodic field, in units of the cell."""
     return _laplacian(_laplacian(field))
 

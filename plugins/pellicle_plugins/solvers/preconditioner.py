@@ -42,6 +42,7 @@ class Preconditioner:
             levels = _halvings(self._padded)
         self._symbol = _stiffness(operator, self._plane)
         self._orders = stiffness_orders(operator, levels + 1)
+        self.bends = bends(self._orders[0])
 
     def on(self, contact: NDArray[np.bool_]) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""
@@ -64,7 +65,7 @@ class Preconditioner:
             copied=np.concatenate([np.empty(0, dtype=np.int64), *copied]),
             extension=Extension(known, self._orders[:-1]),
             stiffen=self._stiffen,
-            bends=bends(self._orders[0]),
+            bends=self.bends,
         )
 
     def _stiffen(self, field: Field) -> Field:
