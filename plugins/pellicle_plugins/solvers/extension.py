@@ -16,6 +16,8 @@ _FAR: Final = np.float32(0.25)
 # Fine cells that are worked on at a time, so that what is made of them stays in the cache.
 _BLOCK: Final = 2**17
 
+# The stretch of square cells.
+SQUARE: Final = (1.0, 1.0)
 # Above this order of the stiffness bending decides.
 _BENDS: Final = 2.5
 _SWEEPS: Final = 16
@@ -58,10 +60,18 @@ class Extension:
     orders
         α at the length scale of each level, from the finest; no more levels than both edges can be
         halved.
+    stretch
+        What `stretch_of` says of the cells.
     """
 
-    def __init__(self, known: NDArray[np.bool_], orders: Sequence[float]) -> None:
+    def __init__(
+        self,
+        known: NDArray[np.bool_],
+        orders: Sequence[float],
+        stretch: tuple[float, float] = SQUARE,
+    ) -> None:
         self.shape = known.shape
+        self._stretch = stretch
         self._levels: list[_Level] = []
         weight = known.astype(np.float32)
         moments = (np.zeros_like(weight), np.zeros_like(weight))
@@ -85,7 +95,7 @@ class Extension:
         for level, own in zip(reversed(self._levels), reversed(means), strict=True):
             filled = level.fill(filled, own)
             for damping in _DAMPINGS if level.relaxes else ():
-                change = biharmonic(filled)
+                change = biharmonic(filled, self._stretch)
                 change *= damping
                 change *= level.free
                 filled -= change
@@ -96,7 +106,7 @@ class Extension:
         means = [values]
         for level in self._levels:
             for damping in reversed(_DAMPINGS) if level.relaxes else ():
-                change = biharmonic(level.free * means[-1])
+                change = biharmonic(level.free * means[-1], self._stretch)
                 change *= damping
                 means[-1] = means[-1] - change
             means.append(level.transposed_fill(means[-1]))
@@ -221,18 +231,32 @@ def _transposed_interpolate(fine: Field, free: Field) -> Field:
     return wide[1:-1, 1:-1]
 
 
-def biharmonic(field: Field) -> Field:
-    """Return Δ² of a periodic field, in units of the cell."""
-    return _laplacian(_laplacian(field))
+def stretch_of(dx: float, dy: float) -> tuple[float, float]:
+    """Return (h/dx)² and (h/dy)², h such that their sum is 2."""
+    ratio = (dx / dy) ** 2
+    return 2 / (1 + ratio), 2 * ratio / (1 + ratio)
 
 
-def _laplacian(field: Field) -> Field:
+def biharmonic(field: Field, stretch: tuple[float, float] = SQUARE) -> Field:
+    """Return h⁴ Δ² of a periodic field; no wave has more than `FASTEST`.
+
+    ``stretch`` is that of the cells; h is their edge if they are square.
+    """
+    return _laplacian(_laplacian(field, stretch), stretch)
+
+
+def _laplacian(field: Field, stretch: tuple[float, float]) -> Field:
+    x, y = stretch
     wide = _wrapped(field)
-    change = np.float32(-4) * field
+    change = np.float32(-4 / x) * field
     change += wide[:-2, 1:-1]
     change += wide[2:, 1:-1]
+    if x != y:
+        change *= np.float32(x / y)
     change += wide[1:-1, :-2]
     change += wide[1:-1, 2:]
+    if y != 1:
+        change *= np.float32(y)
     return change
 
 

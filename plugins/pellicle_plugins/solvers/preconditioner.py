@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pellicle.grid import Grid
 from pellicle.operators import Array, Operator
 
-from .extension import Extension, Field, bends
+from .extension import Extension, Field, bends, stretch_of
 
 Cells = NDArray[np.int64]
 
@@ -43,6 +43,7 @@ class Preconditioner:
         self._symbol = _stiffness(operator, self._plane)
         self._orders = stiffness_orders(operator, levels + 1)
         self.bends = bends(self._orders[0])
+        self._stretch = stretch_of(*edges(grid))
 
     def on(self, contact: NDArray[np.bool_]) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""
@@ -63,7 +64,7 @@ class Preconditioner:
             cells=np.flatnonzero(contact),
             places=whole,
             copied=np.concatenate([np.empty(0, dtype=np.int64), *copied]),
-            extension=Extension(known, self._orders[:-1]),
+            extension=Extension(known, self._orders[:-1], self._stretch),
             stiffen=self._stiffen,
             bends=self.bends,
         )
@@ -133,9 +134,15 @@ def _halvings(shape: tuple[int, int]) -> int:
     return min(_MOST_LEVELS, max(0, min(shape).bit_length() - 2))
 
 
+def edges(grid: Grid) -> tuple[float, float]:
+    """Return dx and dy [m]; along an axis of one cell, which has no waves, that of the other."""
+    (nx, ny), (dx, dy) = grid.shape, grid.spacing
+    return (dx if nx > 1 else dy, dy if ny > 1 else dx)
+
+
 def stiffness_orders(operator: Operator, levels: int) -> list[float]:
     """Return α ≥ 0, the stiffness being k ~ q^α at the cells of each level, the finest first."""
-    q = np.pi / max(operator.grid.spacing) * 0.5 ** np.arange(levels + 1, dtype=np.float64)
+    q = np.pi / max(edges(operator.grid)) * 0.5 ** np.arange(levels + 1, dtype=np.float64)
     stiffness = 1 / operator.kernel.compliance(q)
     return [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]
 

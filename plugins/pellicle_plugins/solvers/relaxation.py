@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from pellicle.operators import Array, Operator
 from pellicle.problem import Problem
 
-from .extension import FASTEST, biharmonic
+from .extension import FASTEST, biharmonic, stretch_of
 from .inner_solve import Inner
+from .preconditioner import edges
 
 # Waves of up to about twenty cells settle; the longer ones are for the inner solves.
 _STEPS: Final = 160
@@ -33,13 +34,15 @@ def relaxed(
     gap -= problem.depth(gap[contact])
     gap += margin
     gap[contact] = 0.0
-    bending = _bending(problem.operator)
+    dx, dy = edges(problem.grid)
+    stretch = stretch_of(dx, dy)
+    bending = _bending(problem.operator, dx * np.sqrt(stretch[0]))
     floor = (-gap).astype(np.float32)
     load = (found.pressure / bending).astype(np.float32)
     opened = np.maximum(floor, np.float32(0))
     ahead, momentum = opened, 1.0
     for _ in range(_STEPS):
-        step = biharmonic(ahead)
+        step = biharmonic(ahead, stretch)
         step += load
         step *= np.float32(-1 / FASTEST)
         step += ahead
@@ -51,13 +54,12 @@ def relaxed(
         change *= np.float32((last - 1) / momentum)
         change += opened
         ahead = change
-    load += biharmonic(opened)
+    load += biharmonic(opened, stretch)
     presses = opened <= floor
     return presses, np.where(presses, load, 0).astype(np.float64) * bending
 
 
-def _bending(operator: Operator) -> float:
-    """Return B over the fourth power of a cell [Pa/m], from the stiffness for waves of four."""
+def _bending(operator: Operator, h: float) -> float:
+    """Return B/h⁴ [Pa/m] from the stiffness for a wave of four edges ``h`` [m]."""
     q = np.pi / 2
-    wave = np.array([q / max(operator.grid.spacing)])
-    return float(1 / operator.kernel.compliance(wave)[0]) / q**4
+    return float(1 / operator.kernel.compliance(np.array([q / h]))[0]) / q**4
