@@ -30,6 +30,8 @@ _COARSEST: Final = 48
 # A start with an error above this share of the height range costs more to mend, along the edge of
 # the contact, than a solve from the coarser grids.
 _CLOSE: Final = 0.05
+# Where as many looks find no fewer cells wrong, cells are no longer left to settle together.
+_SETTLING: Final = 10
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,7 @@ class History:
     fewest: float = np.inf
     """Least number of cells found wrong."""
     returns: int = 0
-    """How often a contact came back."""
+    """How often a contact came back; then `contacts` begins anew."""
 
     def after(self, contact: NDArray[np.bool_], wrong: int) -> History:
         """Return it after an inner solve on a contact that found so many cells wrong."""
@@ -111,23 +113,20 @@ class ActiveSet(IterativeSolver):
             self.tolerance / 2 * state.scale,
         )
         history = state.history.after(state.contact, found.wrong.size)
-        contact, start = self._next(problem, state, found, history.returns)
+        contact, start = self._next(problem, state, found, history)
         return _measured(problem, start, contact, state.preconditioner, history)
 
     def _next(
-        self, problem: Problem, state: _State, found: Inner, returns: int
+        self, problem: Problem, state: _State, found: Inner, history: History
     ) -> tuple[NDArray[np.bool_], Array]:
-        """Return the contact to try next and what to start from on it [Pa].
-
-        With more care the oftener a contact came back.
-        """
-        bends = state.preconditioner.bends
-        if bends and found.wrong.size and returns == 0:
+        """Return the contact to try next and what to start from on it [Pa]."""
+        settles = state.preconditioner.bends and found.wrong.size > 0
+        if settles and history.returns == 0 and len(history.contacts) <= _SETTLING:
             margin = self.tolerance / 2 * state.scale
             contact, start = relaxed(problem, state.contact, found, margin)
             if start.sum() > 0:
                 return contact, start
-        one = returns > (1 if bends else 0)
+        one = history.returns > (1 if settles else 0)
         contact = state.contact.copy()
         contact.ravel()[found.wrong[: 1 if one else None]] ^= True
         return contact, np.where(contact, found.pressure, 0.0)
