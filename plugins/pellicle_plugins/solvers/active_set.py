@@ -105,31 +105,12 @@ class ActiveSet(IterativeSolver):
 
     def step(self, problem: Problem, state: _State) -> _State:
         """Return the state after one inner solve and one look at the contact."""
-        found = inner_solve(
-            problem,
-            state.preconditioner.on(state.contact),
-            state.start,
-            state.displacement,
-            self.tolerance / 2 * state.scale,
-        )
+        goal = self.tolerance / 2 * state.scale
+        preconditioner = state.preconditioner.on(state.contact)
+        found = inner_solve(problem, preconditioner, state.start, state.displacement, goal)
         history = state.history.after(state.contact, found.wrong.size)
-        contact, start = self._next(problem, state, found, history)
+        contact, start = _next(problem, state, found, history, goal)
         return _measured(problem, start, contact, state.preconditioner, history)
-
-    def _next(
-        self, problem: Problem, state: _State, found: Inner, history: History
-    ) -> tuple[NDArray[np.bool_], Array]:
-        """Return the contact to try next and what to start from on it [Pa]."""
-        settles = state.preconditioner.bends and found.wrong.size > 0
-        if settles and history.returns == 0 and len(history.contacts) <= _SETTLING:
-            margin = self.tolerance / 2 * state.scale
-            contact, start = relaxed(problem, state.contact, found, margin)
-            if start.sum() > 0:
-                return contact, start
-        one = history.returns > (1 if settles else 0)
-        contact = state.contact.copy()
-        contact.ravel()[found.wrong[: 1 if one else None]] ^= True
-        return contact, np.where(contact, found.pressure, 0.0)
 
     def residual(self, problem: Problem, state: _State) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""
@@ -185,6 +166,24 @@ class ActiveSet(IterativeSolver):
                 if pressure.any():
                     return pressure
         return first_guess(problem)
+
+
+def _next(
+    problem: Problem, state: _State, found: Inner, history: History, margin: float
+) -> tuple[NDArray[np.bool_], Array]:
+    """Return the contact to try next and what to start from on it [Pa].
+
+    Cells penetrate where they do by more than ``margin`` [m].
+    """
+    settles = state.preconditioner.bends and found.wrong.size > 0
+    if settles and history.returns == 0 and len(history.contacts) <= _SETTLING:
+        contact, start = relaxed(problem, state.contact, found, margin)
+        if start.sum() > 0:
+            return contact, start
+    one = history.returns > (1 if settles else 0)
+    contact = state.contact.copy()
+    contact.ravel()[found.wrong[: 1 if one else None]] ^= True
+    return contact, np.where(contact, found.pressure, 0.0)
 
 
 def _measured(
