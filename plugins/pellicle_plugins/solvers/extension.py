@@ -16,8 +16,6 @@ _FAR: Final = np.float32(0.25)
 # Fine cells that are worked on at a time, so that what is made of them stays in the cache.
 _BLOCK: Final = 2**17
 
-# The stretch of square cells.
-SQUARE: Final = (1.0, 1.0)
 # Above this order of the stiffness bending decides.
 _BENDS: Final = 2.5
 _SWEEPS: Final = 16
@@ -61,27 +59,28 @@ class Extension:
         α at the length scale of each level, from the finest; no more levels than both edges can be
         halved.
     stretch
-        What `stretch_of` says of the cells.
+        What `stretch_of` says of the cells; they are square if it is left out.
     """
 
     def __init__(
         self,
         known: NDArray[np.bool_],
         orders: Sequence[float],
-        stretch: tuple[float, float] = SQUARE,
+        stretch: tuple[float, float] = (1.0, 1.0),
     ) -> None:
         self.shape = known.shape
         self._stretch = stretch
         self._levels: list[_Level] = []
         weight = known.astype(np.float32)
-        moments = (np.zeros_like(weight), np.zeros_like(weight))
+        any_bends = any(map(bends, orders))
+        moments: tuple[Field, Field] | None = None
         for order in orders:
-            moved = moments if self._levels and bends(order) else None
             total = _sum_of_four(weight)
             below = np.minimum(np.float32(2.0 ** (min(order, 2.0) - 2)) * total, np.float32(1))
             share = np.divide(below, total, out=total, where=total > 0)
+            moved = moments if bends(order) else None
             self._levels.append(_Level(1 - weight, share, moved, bends(order)))
-            if any(map(bends, orders)):
+            if any_bends:
                 moments = _moments_below(weight, moments, share)
             weight = below
 
@@ -150,13 +149,17 @@ class _Level:
 
 
 def _moments_below(
-    weight: Field, moments: tuple[Field, Field], share: Field
+    weight: Field, moments: tuple[Field, Field] | None, share: Field
 ) -> tuple[Field, Field]:
-    """Return Σ ``share`` (w × place + moment) of each 2 × 2 cells, places from their centre."""
+    """Return Σ ``share`` (w × place + moment) of each 2 × 2 cells, places from their centre.
+
+    Cells of the finest level have no ``moments``: what is known is at their centres.
+    """
     quarter, half = np.float32(0.25), np.float32(0.5)
-    x, y = (half * _sum_of_four(moment) for moment in moments)
-    x += quarter * _sum_of_four(_alternating(weight, 0))
-    y += quarter * _sum_of_four(_alternating(weight, 1))
+    x, y = (quarter * _sum_of_four(_alternating(weight, axis)) for axis in (0, 1))
+    if moments is not None:
+        x += half * _sum_of_four(moments[0])
+        y += half * _sum_of_four(moments[1])
     return share * x, share * y
 
 
@@ -237,7 +240,7 @@ def stretch_of(dx: float, dy: float) -> tuple[float, float]:
     return 2 / (1 + ratio), 2 * ratio / (1 + ratio)
 
 
-def biharmonic(field: Field, stretch: tuple[float, float] = SQUARE) -> Field:
+def biharmonic(field: Field, stretch: tuple[float, float]) -> Field:
     """Return h⁴ Δ² of a periodic field; no wave has more than `FASTEST`.
 
     ``stretch`` is that of the cells; h is their edge if they are square.
