@@ -204,22 +204,28 @@ class IterativeSolver(Solver):
         """Return the pressure [Pa] of a state."""
 
     def patience(self, problem: Problem) -> int:
-        """Return how many iterations without a new least residual mean that there is none.
+        """Return how many iterations without a new least of one of `merits` end it.
 
         A multiple of N here: a gradient method needs O(N) iterations, some of them in vain.
         """
         return sum(problem.grid.shape) + 200
 
+    def merits(self, problem: Problem, state: Any) -> tuple[float, ...]:
+        """Return what falls while the iteration gets on: here the `residual` alone."""
+        return (self.residual(problem, state),)
+
     def solve(self, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
         """Iterate until the tolerance is met, or it is plain that it will not be."""
         state = self.begin(problem, start)
         patience = self.patience(problem)
-        best, best_at, iteration = np.inf, 0, 0
+        best, best_at, iteration = self.merits(problem, state), 0, 0
         while True:
             residual = self.residual(problem, state)
             monitor(iteration, residual / self.tolerance)
-            if residual < best:
-                best, best_at = residual, iteration
+            merits = self.merits(problem, state)
+            if any(now < least for now, least in zip(merits, best, strict=True)):
+                best_at = iteration
+            best = tuple(map(min, merits, best))
             if not np.isfinite(residual):
                 stop = Stop.NOT_FINITE
             elif residual <= self.tolerance:

@@ -16,10 +16,9 @@ from pellicle.operators import Array
 from pellicle.problem import Problem, height_scale
 from pellicle.transfer import prolong
 
-from .extension import bends
 from .guess import first_guess, with_force
 from .inner_solve import Inner, inner_solve
-from .preconditioner import Preconditioner, stiffness_orders
+from .preconditioner import OnContact, Preconditioner
 from .relaxation import relaxed
 
 # Coarse grids are solved to this share of the height range: with tension a smaller error than that
@@ -30,6 +29,12 @@ _COARSEST: Final = 48
 # A start with an error above this share of the height range costs more to mend, along the edge of
 # the contact, than a solve from the coarser grids.
 _CLOSE: Final = 0.05
+# What an inner solve counts on later iterations to change, over what the last one did; and where
+# the last look did not find fewer cells wrong.
+_DOUBT: Final = 1.0
+_DEEP_DOUBT: Final = 4.0
+# Looks without progress after which round-off is taken to be all that is left of the error.
+_PATIENCE: Final = 30
 # Where as many looks find no fewer cells wrong, cells are no longer left to settle together.
 _SETTLING: Final = 10
 
@@ -44,6 +49,11 @@ class History:
     """Least number of cells found wrong."""
     returns: int = 0
     """How often a contact came back; then `contacts` begins anew."""
+
+    @property
+    def doubt(self) -> float:
+        """For `inner_solve`: loose ones are quick as long as they lead to fewer wrong cells."""
+        return _DOUBT if len(self.contacts) <= 1 and self.returns == 0 else _DEEP_DOUBT
 
     def after(self, contact: NDArray[np.bool_], wrong: int) -> History:
         """Return it after an inner solve on a contact that found so many cells wrong."""
@@ -62,8 +72,8 @@ class _State:
     """Pressure that the next inner solve starts from [Pa]; it may still pull."""
     displacement: Array
     """What ``start`` makes [m]."""
-    contact: NDArray[np.bool_]
-    """Where the next inner solve puts pressure."""
+    on_contact: OnContact
+    """Preconditioner of where the next inner solve puts pressure."""
     scale: float
     """Height range of the indenter in contact [m]."""
     error: float
@@ -86,9 +96,10 @@ class ActiveSet(IterativeSolver):
     that closes the gap on it; cells that would need suction leave, cells that penetrate join
     (Hintermüller, Ito & Kunisch 2002), and so on until nothing changes. Departures: (1) an inner
     solve ends as soon as it is certain which cells are wrong, and those in doubt stay, so that
-    loose solves do not scatter the contact; (2) on a skin that bends, what one cell does decides
-    what the next ones do, and they settle together (see `relaxed`); (3) where a contact comes back,
-    one cell at a time changes sides (Murty 1974), until fewer are wrong than ever.
+    loose solves do not scatter the contact; (2) what pressed on cells that leave goes to those
+    around them (see `OnContact.moved`); (3) on a skin that bends, what one cell does decides what
+    the next ones do, and they settle together (see `relaxed`); (4) where a contact comes back, one
+    cell at a time changes sides (Murty 1974), until fewer are wrong than ever.
     """
 
     type: Literal["active_set"] = "active_set"
@@ -97,20 +108,26 @@ class ActiveSet(IterativeSolver):
         """Return the state of the last step's pressure, or of the solution on a coarser grid."""
         preconditioner = Preconditioner(problem.operator)
         if start is not None and start.any():
-            state = _measured(problem, start, start > 0, preconditioner, History())
+            state = _measured(problem, start, preconditioner.on(start > 0), preconditioner)
             if state.error <= _CLOSE * state.scale:
                 return state
         start = self._cold_start(problem)
-        return _measured(problem, start, start > 0, preconditioner, History())
+        return _measured(problem, start, preconditioner.on(start > 0), preconditioner)
 
     def step(self, problem: Problem, state: _State) -> _State:
         """Return the state after one inner solve and one look at the contact."""
         goal = self.tolerance / 2 * state.scale
-        preconditioner = state.preconditioner.on(state.contact)
-        found = inner_solve(problem, preconditioner, state.start, state.displacement, goal)
-        history = state.history.after(state.contact, found.wrong.size)
-        contact, start = _next(problem, state, found, history, goal)
-        return _measured(problem, start, contact, state.preconditioner, history)
+        found = inner_solve(
+            problem,
+            state.on_contact,
+            state.start,
+            state.displacement,
+            goal,
+            doubt=state.history.doubt,
+        )
+        history = state.history.after(state.on_contact.contact, found.wrong.size)
+        on_contact, start = _next(problem, state, found, history, goal)
+        return _measured(problem, start, on_contact, state.preconditioner, history)
 
     def residual(self, problem: Problem, state: _State) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""
@@ -121,12 +138,15 @@ class ActiveSet(IterativeSolver):
         return state.pressure
 
     def patience(self, problem: Problem) -> int:
-        """Return how many outer iterations may bring no progress while the contact settles.
+        """Return how many looks may bring no progress, as while a contact goes round."""
+        return _PATIENCE
 
-        On a skin that bends a contact that is wrong by a row of cells errs by more than one that is
-        wrong everywhere, and settles from its edges.
+    def merits(self, problem: Problem, state: _State) -> tuple[float, ...]:
+        """Return the residual and the least number of cells found wrong.
+
+        A contact that is wrong by a row of cells errs by more than one that is wrong everywhere.
         """
-        return 100 if bends(stiffness_orders(problem.operator, 1)[0]) else 20
+        return self.residual(problem, state), state.history.fewest
 
     def punch_pressure(
         self, problem: Problem, contact: NDArray[np.bool_], monitor: Monitor
@@ -142,7 +162,7 @@ class ActiveSet(IterativeSolver):
         while goal < error < before / 2:
             monitor(iteration, error / self.tolerance)
             pressure = inner_solve(
-                flat, preconditioner, pressure, displacement, goal, settled=True
+                flat, preconditioner, pressure, displacement, goal, doubt=np.inf
             ).pressure
             displacement = problem.operator(pressure)
             error, before = float(np.abs(1.0 - displacement[contact]).max()), error
@@ -170,28 +190,34 @@ class ActiveSet(IterativeSolver):
 
 def _next(
     problem: Problem, state: _State, found: Inner, history: History, margin: float
-) -> tuple[NDArray[np.bool_], Array]:
+) -> tuple[OnContact, Array]:
     """Return the contact to try next and what to start from on it [Pa].
 
     Cells penetrate where they do by more than ``margin`` [m].
     """
-    settles = state.preconditioner.bends and found.wrong.size > 0
+    if not found.wrong.size:
+        return state.on_contact, found.pressure
+    preconditioner, contact = state.preconditioner, state.on_contact.contact
+    settles = preconditioner.bends
     if settles and history.returns == 0 and len(history.contacts) <= _SETTLING:
-        contact, start = relaxed(problem, state.contact, found, margin)
+        settled, forces = relaxed(problem, contact, found, margin)
+        on_settled = preconditioner.on(settled)
+        start = on_settled.moved(forces)
         if start.sum() > 0:
-            return contact, start
+            return on_settled, start
     one = history.returns > (1 if settles else 0)
-    contact = state.contact.copy()
-    contact.ravel()[found.wrong[: 1 if one else None]] ^= True
-    return contact, np.where(contact, found.pressure, 0.0)
+    changed = contact.copy()
+    changed.ravel()[found.wrong[: 1 if one else None]] ^= True
+    on_changed = preconditioner.on(changed)
+    return on_changed, on_changed.moved(found.pressure)
 
 
 def _measured(
     problem: Problem,
     start: Array,
-    contact: NDArray[np.bool_],
+    on_contact: OnContact,
     preconditioner: Preconditioner,
-    history: History,
+    history: History = History(),
 ) -> _State:
     """Return the state of a pressure [Pa], with the force that is prescribed."""
     start = with_force(problem, start)
@@ -205,7 +231,7 @@ def _measured(
         problem=problem,
         start=start,
         displacement=displacement,
-        contact=contact,
+        on_contact=on_contact,
         scale=height_scale(problem.profile, pressed, depth),
         error=max(inside, -float(gap.min(initial=0.0))),
         preconditioner=preconditioner,

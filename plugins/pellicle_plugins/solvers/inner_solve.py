@@ -12,8 +12,6 @@ from pellicle.problem import Problem
 from .preconditioner import Cells, OnContact
 from .products import dot
 
-# Later iterations may change a value by what the last one changed, this many times over.
-_LASTING: Final = 2.0
 # A solve ends when no more cells are in doubt, for each that is certain to be wrong.
 _DOUBTS: Final = 0.3
 # One iteration does not tell what the next may change.
@@ -45,14 +43,15 @@ def inner_solve(
     displacement: Array,
     goal: float,
     *,
-    settled: bool = False,
+    doubt: float,
 ) -> Inner:
     """Return the pressure on a contact whose gap is nearly closed, and where the contact is wrong.
 
     Preconditioned conjugate gradients, with a prescribed force in the space of pressures that keep
-    it. They go on until the error is at ``goal`` [m] or, unless the contact is ``settled``,
-    until nearly all cells that pull or penetrate are certain to. All vectors are on the cells of
-    the contact, but the displacement, which tells where else the surface penetrates.
+    it. They go on until the error is at ``goal`` [m] or until nearly all cells that pull or
+    penetrate are certain to, which is when later iterations would have to change them by more than
+    ``doubt`` times what the last one did; never, if that is infinite. All vectors are on the cells
+    of the contact, but the displacement, which tells where else the surface penetrates.
 
     The operator is applied in single precision, in less than half of the time: to solve again for
     what is left recovers all digits (iterative refinement; Wilkinson 1963). Under a skin that bends
@@ -60,7 +59,7 @@ def inner_solve(
     whose sign is sought.
     """
     cells = preconditioner.cells
-    signs = _Signs(problem, cells)
+    signs = _Signs(problem, cells, doubt)
     if not cells.size:
         nothing = np.zeros(problem.grid.shape)
         return Inner(nothing, nothing, 0.0, signs.all(np.zeros(0), nothing, goal))
@@ -96,7 +95,7 @@ def inner_solve(
         iteration += 1
         if error <= goal:
             break
-        if not settled and iteration >= _LEAST:
+        if np.isfinite(doubt) and iteration >= _LEAST:
             change -= search.mean(inside)
             wrong = signs.certain(pressed, displacement, goal, direction, change)
             if wrong is not None:
@@ -116,9 +115,10 @@ def inner_solve(
 class _Signs:
     """Tells which cells have the wrong sign: in contact those that pull, others that penetrate."""
 
-    def __init__(self, problem: Problem, cells: Cells) -> None:
+    def __init__(self, problem: Problem, cells: Cells, doubt: float) -> None:
         self._problem = problem
         self._cells = cells
+        self._doubt = doubt
         self._off = np.ones(problem.grid.shape, dtype=bool)
         self._off.ravel()[cells] = False
 
@@ -138,8 +138,8 @@ class _Signs:
         ``step`` [Pa] and ``change`` [m] are what the last one changed in pressure and gap.
         """
         pulls, penetrates, gap = self._wrong(pressed, displacement, margin)
-        surely = pressed[pulls] < -_LASTING * np.abs(step[pulls])
-        deeply = gap < -_LASTING * np.abs(change.ravel()[penetrates])
+        surely = pressed[pulls] < -self._doubt * np.abs(step[pulls])
+        deeply = gap < -self._doubt * np.abs(change.ravel()[penetrates])
         certain = np.concatenate([self._cells[pulls[surely]], penetrates[deeply]])
         doubtful = pulls.size + penetrates.size - certain.size
         return certain if certain.size and doubtful <= _DOUBTS * certain.size else None

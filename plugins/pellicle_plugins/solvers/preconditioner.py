@@ -41,7 +41,7 @@ class Preconditioner:
             self._plane = self._padded = _free_shape(grid.shape)
             levels = _halvings(self._padded)
         self._symbol = _stiffness(operator, self._plane)
-        self._orders = stiffness_orders(operator, levels + 1)
+        self._orders = _stiffness_orders(operator, levels + 1)
         self.bends = bends(self._orders[0])
         self._stretch = stretch_of(*edges(grid))
 
@@ -61,7 +61,7 @@ class Preconditioner:
         known = np.zeros(self._padded, dtype=bool)
         known.ravel()[whole] = True
         return OnContact(
-            cells=np.flatnonzero(contact),
+            contact=contact,
             places=whole,
             copied=np.concatenate([np.empty(0, dtype=np.int64), *copied]),
             extension=Extension(known, self._orders[:-1], self._stretch),
@@ -87,14 +87,16 @@ class OnContact:
 
     def __init__(
         self,
-        cells: Cells,
+        contact: NDArray[np.bool_],
         places: Cells,
         copied: Cells,
         extension: Extension,
         stiffen: Callable[[Field], Field],
         bends: bool,
     ) -> None:
-        self.cells = cells
+        self.contact = contact
+        """Bool of the grid's shape."""
+        self.cells = np.flatnonzero(contact)
         """Flat index of each cell of the contact on the grid."""
         self.bends = bends
         """Whether bending decides at the size of a cell."""
@@ -110,8 +112,29 @@ class OnContact:
         given = self._given.ravel()
         given[self._places[:number]] = residual
         given[self._places[number:]] = residual[copied]
-        force = self._extension.gather(self._stiffen(self._extension.spread(self._given)))
-        there = force.ravel()[self._places].astype(np.float64)
+        return self._gathered(self._stiffen(self._extension.spread(self._given)))
+
+    def moved(self, forces: Array) -> Array:
+        """Return forces [Pa] of the grid's shape with those off the contact moved onto it by Eᵀ.
+
+        Eᵀ K is the inverse of the operator on the contact but for the square of what E lacks, so
+        that forces which make a displacement that touches on the contact are moved to nearly those
+        that close it.
+        """
+        off = np.where(self.contact, 0.0, forces)
+        moved = forces - off
+        size = float(np.abs(off).max())
+        if size > 0 and self.cells.size:
+            nx, ny = forces.shape
+            field = np.zeros(self._extension.shape, dtype=np.float32)
+            field[:nx, :ny] = off / size
+            moved.ravel()[self.cells] += self._gathered(field) * size
+        return moved
+
+    def _gathered(self, force: Field) -> Array:
+        """Return Eᵀ applied to a field, for each cell of `cells`."""
+        number, copied = self.cells.size, self._copied
+        there = self._extension.gather(force).ravel()[self._places].astype(np.float64)
         np.add.at(there[:number], copied, there[number:])
         return there[:number]
 
@@ -140,7 +163,7 @@ def edges(grid: Grid) -> tuple[float, float]:
     return (dx if nx > 1 else dy, dy if ny > 1 else dx)
 
 
-def stiffness_orders(operator: Operator, levels: int) -> list[float]:
+def _stiffness_orders(operator: Operator, levels: int) -> list[float]:
     """Return α ≥ 0, the stiffness being k ~ q^α at the cells of each level, the finest first."""
     q = np.pi / max(edges(operator.grid)) * 0.5 ** np.arange(levels + 1, dtype=np.float64)
     stiffness = 1 / operator.kernel.compliance(q)

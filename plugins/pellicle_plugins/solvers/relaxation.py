@@ -21,14 +21,14 @@ _STEPS: Final = 160
 def relaxed(
     problem: Problem, contact: NDArray[np.bool_], found: Inner, margin: float
 ) -> tuple[NDArray[np.bool_], Array]:
-    """Return the contact and its pressure [Pa] once the cells that are wrong have moved others.
+    """Return the contact and forces [Pa] once the cells that are wrong have moved others.
 
     What bends presses along its edge in a pattern of single cells: one that lets go is made up for
     by its neighbours, one that is lifted takes from them. So the gap that the inner solve left is
     opened by e ≥ −gap, K = B Δ², such that ½⟨e, K e⟩ + ⟨p, e⟩ is least: the obstacle problem that
     bending alone poses, by steps down the gradient with momentum (Beck & Teboulle 2009), anew
     where that leads uphill (O'Donoghue & Candès 2015). Off the contact the gap may be as
-    negative as ``margin`` [m].
+    negative as ``margin`` [m]. What did not settle leaves forces off the contact.
     """
     gap = found.displacement - problem.profile
     gap -= problem.depth(gap[contact])
@@ -55,8 +55,7 @@ def relaxed(
         change += opened
         ahead = change
     load += biharmonic(opened, stretch)
-    presses = opened <= floor
-    return presses, np.where(presses, load, 0).astype(np.float64) * bending
+    return opened <= floor, load.astype(np.float64) * bending
 
 
 def _bending(operator: Operator, h: float) -> float:

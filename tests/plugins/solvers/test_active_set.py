@@ -502,7 +502,7 @@ def test_a_contact_that_all_cells_have_left_is_joined_by_what_penetrates() -> No
     problem = make(16, "free", skin(0.02), paraboloid, "depth", 0.05)
     nowhere = Preconditioner(problem.operator).on(np.zeros(problem.grid.shape, dtype=bool))
     nothing = np.zeros(problem.grid.shape)
-    found = inner_solve(problem, nowhere, nothing, nothing, 1e-10)
+    found = inner_solve(problem, nowhere, nothing, nothing, 1e-10, doubt=1.0)
     assert found.error == 0
     np.testing.assert_array_equal(found.wrong, np.flatnonzero(problem.profile + 0.05 > 1e-10))
 
@@ -518,6 +518,16 @@ def test_history_counts_contacts_that_come_back_until_fewer_are_wrong() -> None:
     assert again.after(second, 5).returns == 1
     assert again.after(first, 5).returns == 2
     assert again.after(~first, 4).returns == 0
+
+
+def test_history_doubts_once_no_fewer_are_wrong() -> None:
+    """An inner solve is loose as long as each contact has fewer wrong cells than any before."""
+    first, second = np.eye(4, dtype=bool), np.eye(4, dtype=bool)[::-1]
+    loose = History().doubt
+    assert History().after(first, 5).after(second, 4).doubt == loose
+    assert History().after(first, 5).after(second, 5).doubt > loose
+    assert History().after(first, 5).after(first, 5).doubt > loose
+    assert History().after(first, 5).after(second, 5).after(~first, 4).doubt == loose
 
 
 # --- The end ---------------------------------------------------------------------------------

@@ -52,7 +52,7 @@ def test_optimality(
     problem = plate(*spacing)
     before = np.random.default_rng(seed).uniform(size=SHAPE) < 0.6
     found = loaded(before, seed)
-    contact, pressure = relaxed(problem, before, found, MARGIN)
+    contact, forces = relaxed(problem, before, found, MARGIN)
     on, floor = contact.ravel(), -np.where(before, 0.0, found.displacement + MARGIN).ravel()
     stiffness = bending_matrix(*spacing)
     opened = np.where(on, floor, 0.0)
@@ -61,8 +61,8 @@ def test_optimality(
     force = found.pressure.ravel() + stiffness @ opened
     assert (opened >= floor - 1e-4).all()
     assert force[on].min() >= -1e-3
-    np.testing.assert_allclose(pressure.ravel(), np.where(on, force, 0), atol=1e-3 * force.max())
-    assert pressure.sum() == pytest.approx(found.pressure.sum(), rel=1e-4)
+    np.testing.assert_allclose(forces.ravel(), np.where(on, force, 0), atol=1e-3 * force.max())
+    assert forces.sum() == pytest.approx(found.pressure.sum(), rel=1e-4)
 
 
 def test_what_is_right_stays() -> None:
@@ -71,22 +71,20 @@ def test_what_is_right_stays() -> None:
     before[4:9, 3:8] = True
     found = loaded(before, 1)
     found = found._replace(pressure=np.abs(found.pressure), displacement=np.abs(found.displacement))
-    contact, pressure = relaxed(plate(1.0, 1.0), before, found, MARGIN)
+    contact, forces = relaxed(plate(1.0, 1.0), before, found, MARGIN)
     np.testing.assert_array_equal(contact, before)
-    np.testing.assert_allclose(pressure, found.pressure, rtol=1e-6)
+    np.testing.assert_allclose(forces, found.pressure, rtol=1e-6)
 
 
 def test_turned_by_a_right_angle() -> None:
     """Along y as along x, for cells of two to three."""
     before = np.random.default_rng(7).uniform(size=SHAPE) < 0.5
     found = loaded(before, 7)
-    contact, pressure = relaxed(plate(2.0, 3.0), before, found, MARGIN)
+    contact, forces = relaxed(plate(2.0, 3.0), before, found, MARGIN)
     turned = Inner(found.pressure.T, found.displacement.T, 0.0, found.wrong)
-    contact_turned, pressure_turned = relaxed(
-        plate(3.0, 2.0, SHAPE[::-1]), before.T, turned, MARGIN
-    )
+    contact_turned, forces_turned = relaxed(plate(3.0, 2.0, SHAPE[::-1]), before.T, turned, MARGIN)
     np.testing.assert_array_equal(contact_turned, contact.T)
-    np.testing.assert_allclose(pressure_turned, pressure.T, atol=1e-4 * pressure.max())
+    np.testing.assert_allclose(forces_turned, forces.T, atol=1e-4 * forces.max())
 
 
 def test_penetration_within_the_margin_is_none() -> None:

@@ -1,0 +1,90 @@
+"""Forces off the contact are moved onto it so that they do there what they did."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pellicle import Grid, Kernel
+from pellicle.operators import make_operator
+from pellicle_plugins.kernels.bending_skin import BendingSkin
+from pellicle_plugins.kernels.half_space import HalfSpace
+from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.solvers.preconditioner import Preconditioner
+
+Array = NDArray[np.float64]
+SHAPE = (20, 24)
+SIZE = (1.0, 1.2)
+KERNELS = {
+    "half-space": HalfSpace(reduced_modulus=1.0),
+    "tension": TensedMembrane(reduced_modulus=1.0, tension=10.0),
+    "bending": BendingSkin(reduced_modulus=1.0, bending=1e3),
+}
+
+
+def grid(boundary: Literal["free", "periodic"]) -> Grid:
+    """Return 20 × 24 square cells."""
+    return Grid(points=SHAPE, size=SIZE, boundary=boundary)
+
+
+def island() -> NDArray[np.bool_]:
+    """Return a contact with a ragged edge, away from the domain's."""
+    contact = np.zeros(SHAPE, dtype=bool)
+    contact[5:15, 6:17] = True
+    return contact & (np.random.default_rng(3).uniform(size=SHAPE) < 0.9)
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+@pytest.mark.parametrize("kernel", KERNELS.values(), ids=KERNELS)
+def test_forces_on_the_contact_stay(kernel: Kernel, boundary: Literal["free", "periodic"]) -> None:
+    """To the last digit, and nothing is left off the contact."""
+    contact = island()
+    forces = np.where(contact, np.random.default_rng(1).standard_normal(SHAPE), 0.0)
+    on_contact = Preconditioner(make_operator(kernel, grid(boundary))).on(contact)
+    np.testing.assert_array_equal(on_contact.moved(forces), forces)
+    forces[0, 0] = 1.0
+    assert not on_contact.moved(forces)[~contact].any()
+
+
+def test_a_skin_that_bends_keeps_the_force() -> None:
+    """What E keeps, a constant, is what its transpose keeps of forces, up to single precision."""
+    random = np.random.default_rng(2)
+    contact = random.uniform(size=SHAPE) < 0.3
+    forces = random.uniform(-1e5, 2e5, size=SHAPE)
+    operator = make_operator(KERNELS["bending"], grid("periodic"))
+    moved = Preconditioner(operator).on(contact).moved(forces)
+    assert moved.sum() == pytest.approx(forces.sum(), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("kernel", "share"), [("half-space", 0.7), ("tension", 0.45), ("bending", 0.06)]
+)
+def test_pressure_of_cells_that_leave(kernel: str, share: float) -> None:
+    """Moved to those that stay it nearly keeps them where they were, against dense algebra.
+
+    ``share`` bounds the energy norm of the error over that of dropping what the cells bore.
+    """
+    operator = make_operator(KERNELS[kernel], grid("periodic"))
+    units = np.eye(SHAPE[0] * SHAPE[1]).reshape(-1, *SHAPE)
+    compliance = np.array([operator(unit).ravel() for unit in units])
+    x, y = operator.grid.coordinates()
+    profile = -(x**2) - y**2
+
+    def exact(contact: NDArray[np.bool_]) -> Array:
+        on = contact.ravel()
+        pressure = np.zeros(on.size)
+        pressure[on] = np.linalg.solve(compliance[np.ix_(on, on)], 1 + profile[contact])
+        return pressure.reshape(SHAPE)
+
+    def error(pressure: Array) -> float:
+        wrong = pressure - exact(stay)
+        return float(np.sqrt(np.vdot(wrong, operator(wrong))))
+
+    before = island()
+    stay = before & (np.random.default_rng(5).uniform(size=SHAPE) < 0.7)
+    pressure = exact(before)
+    moved = Preconditioner(operator).on(stay).moved(pressure)
+    assert error(moved) < share * error(np.where(stay, pressure, 0.0))
