@@ -21,8 +21,8 @@ import scipy.fft
 import pellicle as pl
 from pellicle.operators import Array
 from pellicle.problem import Problem, height_scale
-from pellicle_plugins.solvers import inner_solve as inner
 from pellicle_plugins.solvers.guess import with_force
+from pellicle_plugins.solvers.inner_solve import inner_solve
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 
 
@@ -52,8 +52,8 @@ def with_known_contact(problem: Problem, tolerance: float, start: Array, answer:
     on_contact = Preconditioner(problem.operator).on(contact)
     error = float(np.abs(aloft[contact] - depth).max())
     while error > tolerance * scale:
-        found = inner.inner_solve(
-            problem, on_contact, pressure, displacement, tolerance / 2 * scale, settled=True
+        found = inner_solve(
+            problem, on_contact, pressure, displacement, tolerance / 2 * scale, doubt=np.inf
         )
         pressure, displacement = found.pressure, problem.operator(found.pressure)
         aloft = (displacement - problem.profile)[contact]
@@ -81,10 +81,7 @@ def main() -> None:
             following = replace(given, value=given.value * (1 + step))
             answer, cold, cold_time = solved(following, tolerance, None, options.repeats)
             _, warm, warm_time = solved(following, tolerance, before, options.repeats)
-            # The one reduction, so that nothing but the accuracy of single precision ends it.
-            inner._REDUCTION = 1e-30  # type: ignore[misc]
             known = with_known_contact(following, tolerance, before, answer)
-            inner._REDUCTION = 0.03  # type: ignore[misc]
         print(
             f"| {case} | {tension:g} | {points} | {step:.0%} | {cold} | {warm} | {known} "
             f"| {warm_time / cold_time:.2f} |",

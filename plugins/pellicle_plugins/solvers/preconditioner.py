@@ -121,13 +121,13 @@ class OnContact:
         that forces which make a displacement that touches on the contact are moved to nearly those
         that close it.
         """
-        off = np.where(self.contact, 0.0, forces)
-        moved = forces - off
-        size = float(np.abs(off).max())
-        if size > 0 and self.cells.size:
-            nx, ny = forces.shape
+        off = np.nonzero((forces != 0) & ~self.contact)
+        moved = forces.copy()
+        moved[off] = 0
+        if off[0].size and self.cells.size:
+            size = float(np.abs(forces[off]).max())
             field = np.zeros(self._extension.shape, dtype=np.float32)
-            field[:nx, :ny] = off / size
+            field[off] = forces[off] / size
             moved.ravel()[self.cells] += self._gathered(field) * size
         return moved
 

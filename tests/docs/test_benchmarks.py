@@ -1,0 +1,28 @@
+"""The scripts that print the tables of docs/performance.md run, on small grids."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
+SCRIPTS = {
+    "cost.py": (["--cases", "rough", "punch", "--points", "32"], 2 * 3),
+    "kernels.py": (["--cases", "rough", "--points", "32"], 18),
+    "next_step.py": (["--cases", "rough", "--points", "32", "--repeats", "1"], 3 * 2),
+}
+
+
+@pytest.mark.parametrize(("script", "asked"), SCRIPTS.items(), ids=SCRIPTS)
+def test_table(script: str, asked: tuple[list[str], int]) -> None:
+    """A heading, the line under it, and as many rows as were asked for, of as many columns."""
+    options, rows = asked
+    command = [sys.executable, str(BENCHMARKS / script), *options]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert len(lines) == 2 + rows
+    assert len({line.count(" | ") for line in lines}) == 1
