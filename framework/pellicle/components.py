@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from operator import lt
 from pathlib import Path
 from typing import (
     TYPE_CHECKING,
@@ -204,28 +205,29 @@ class IterativeSolver(Solver):
         """Return the pressure [Pa] of a state."""
 
     def patience(self, problem: Problem) -> int:
-        """Return how many iterations without a new least of one of `merits` end it.
+        """Return how many iterations end it if none brings a new least residual or merit.
 
         A multiple of N here: a gradient method needs O(N) iterations, some of them in vain.
         """
         return sum(problem.grid.shape) + 200
 
     def merits(self, problem: Problem, state: Any) -> tuple[float, ...]:
-        """Return what falls while the iteration gets on: here the `residual` alone."""
-        return (self.residual(problem, state),)
+        """Return what else than the residual falls while the iteration gets on: here nothing."""
+        return ()
 
     def solve(self, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
         """Iterate until the tolerance is met, or it is plain that it will not be."""
         state = self.begin(problem, start)
         patience = self.patience(problem)
-        best, best_at, iteration = self.merits(problem, state), 0, 0
+        best: tuple[float, ...] = ()
+        best_at = iteration = 0
         while True:
             residual = self.residual(problem, state)
             monitor(iteration, residual / self.tolerance)
-            merits = self.merits(problem, state)
-            if any(now < least for now, least in zip(merits, best, strict=True)):
+            merits = (residual, *self.merits(problem, state))
+            if any(map(lt, merits, best)):
                 best_at = iteration
-            best = tuple(map(min, merits, best))
+            best = tuple(map(min, merits, best or merits))
             if not np.isfinite(residual):
                 stop = Stop.NOT_FINITE
             elif residual <= self.tolerance:

@@ -47,8 +47,8 @@ class PlayedByWrong(Played):
     """Counts fewer wrong cells as progress, too."""
 
     def merits(self, problem: Problem, state: int) -> tuple[float, ...]:
-        """Return the residual and the number of wrong cells."""
-        return self.residuals[state], self.wrong[state]
+        """Return the number of wrong cells."""
+        return (self.wrong[state],)
 
 
 @pytest.mark.parametrize(

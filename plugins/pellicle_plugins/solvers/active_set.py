@@ -142,11 +142,11 @@ class ActiveSet(IterativeSolver):
         return _PATIENCE
 
     def merits(self, problem: Problem, state: _State) -> tuple[float, ...]:
-        """Return the residual and the least number of cells found wrong.
+        """Return the least number of cells found wrong.
 
         A contact that is wrong by a row of cells errs by more than one that is wrong everywhere.
         """
-        return self.residual(problem, state), state.history.fewest
+        return (state.history.fewest,)
 
     def punch_pressure(
         self, problem: Problem, contact: NDArray[np.bool_], monitor: Monitor
@@ -198,14 +198,13 @@ def _next(
     if not found.wrong.size:
         return state.on_contact, found.pressure
     preconditioner, contact = state.preconditioner, state.on_contact.contact
-    settles = preconditioner.bends
-    if settles and history.returns == 0 and len(history.contacts) <= _SETTLING:
+    if preconditioner.bends and history.returns == 0 and len(history.contacts) <= _SETTLING:
         settled, forces = relaxed(problem, contact, found, margin)
         on_settled = preconditioner.on(settled)
         start = on_settled.moved(forces)
         if start.sum() > 0:
             return on_settled, start
-    one = history.returns > (1 if settles else 0)
+    one = history.returns > (1 if preconditioner.bends else 0)
     changed = contact.copy()
     changed.ravel()[found.wrong[: 1 if one else None]] ^= True
     on_changed = preconditioner.on(changed)
