@@ -32,7 +32,9 @@ _CLOSE: Final = 0.05
 # What an inner solve counts on later iterations to change, over what the last one did; and where
 # the last look did not find fewer cells wrong.
 _DOUBT: Final = 1.0
-_DEEP_DOUBT: Final = 4.0
+_DEEP_DOUBT: Final = 30.0
+# Under a skin that bends a gap that has shrunk to this share is closed as the cells settle.
+_REDUCTION: Final = 0.1
 # Looks without progress after which round-off is taken to be all that is left of the error.
 _PATIENCE: Final = 30
 # Where as many looks find no fewer cells wrong, cells are no longer left to settle together.
@@ -51,9 +53,9 @@ class History:
     """How often a contact came back; then `contacts` begins anew."""
 
     @property
-    def doubt(self) -> float:
-        """For `inner_solve`: loose ones are quick as long as they lead to fewer wrong cells."""
-        return _DOUBT if len(self.contacts) <= 1 and self.returns == 0 else _DEEP_DOUBT
+    def gets_on(self) -> bool:
+        """Whether the last look found fewer wrong cells than any before."""
+        return len(self.contacts) <= 1 and self.returns == 0
 
     def after(self, contact: NDArray[np.bool_], wrong: int) -> History:
         """Return it after an inner solve on a contact that found so many cells wrong."""
@@ -117,13 +119,16 @@ class ActiveSet(IterativeSolver):
     def step(self, problem: Problem, state: _State) -> _State:
         """Return the state after one inner solve and one look at the contact."""
         goal = self.tolerance / 2 * state.scale
+        # Loose solves are quick as long as they lead to fewer wrong cells.
+        loose = state.history.gets_on
         found = inner_solve(
             problem,
             state.on_contact,
             state.start,
             state.displacement,
             goal,
-            doubt=state.history.doubt,
+            doubt=_DOUBT if loose else _DEEP_DOUBT,
+            reduction=_REDUCTION if loose and state.on_contact.bends else 0.0,
         )
         history = state.history.after(state.on_contact.contact, found.wrong.size)
         on_contact, start = _next(problem, state, found, history, goal)
@@ -198,13 +203,19 @@ def _next(
     if not found.wrong.size:
         return state.on_contact, found.pressure
     preconditioner, contact = state.preconditioner, state.on_contact.contact
-    if preconditioner.bends and history.returns == 0 and len(history.contacts) <= _SETTLING:
-        settled, forces = relaxed(problem, contact, found, margin)
+    settling = preconditioner.settling
+    if (
+        settling
+        and found.pressure.any()
+        and history.returns == 0
+        and len(history.contacts) <= _SETTLING
+    ):
+        settled, forces = relaxed(problem, settling, state.on_contact, found, margin)
         on_settled = preconditioner.on(settled)
         start = on_settled.moved(forces)
         if start.sum() > 0:
             return on_settled, start
-    one = history.returns > (1 if preconditioner.bends else 0)
+    one = history.returns > (1 if settling else 0)
     changed = contact.copy()
     changed.ravel()[found.wrong[: 1 if one else None]] ^= True
     on_changed = preconditioner.on(changed)

@@ -9,7 +9,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-Field = NDArray[np.float32]
+from .stiffness import Field
+
+Moments = tuple[Field, ...]
 
 _NEAR: Final = np.float32(0.75)
 _FAR: Final = np.float32(0.25)
@@ -20,12 +22,12 @@ _BLOCK: Final = 2**17
 _BENDS: Final = 2.5
 _SWEEPS: Final = 16
 # Δ² of waves from about nine cells to two, in units of the cell.
-_SLOWEST, FASTEST = 0.25, 64.0
+_SLOWEST, _FASTEST = 0.25, 64.0
 # Roots of the Chebyshev polynomial from both ends in turns: in order their round-off grows.
 _ROOTS: Final = np.cos(np.pi * (np.arange(_SWEEPS) + 0.5) / _SWEEPS)
 # Over- and underrelaxation on that range.
 _DAMPINGS: Final = tuple(
-    np.float32(2 / (FASTEST + _SLOWEST + (FASTEST - _SLOWEST) * root))
+    np.float32(2 / (_FASTEST + _SLOWEST + (_FASTEST - _SLOWEST) * root))
     for pair in zip(_ROOTS[: _SWEEPS // 2], _ROOTS[::-1], strict=False)
     for root in pair
 )
@@ -49,7 +51,8 @@ class Extension:
     what is known to the centre of its cell, along the slope of the interpolated level below, so
     that E keeps planes; and the waves too short for that level are relaxed towards Δ²u = 0.
 
-    The domain is periodic. Single precision: it only ever preconditions.
+    The domain is periodic. On a line of cells, as on a grid one cell across, a mean is over two of
+    them, and a lone cell loses weight by 2^(α − 1). Single precision: it only ever preconditions.
 
     Parameters
     ----------
@@ -71,12 +74,13 @@ class Extension:
         self.shape = known.shape
         self._stretch = stretch
         self._levels: list[_Level] = []
-        weight = known.astype(np.float32)
+        weight = _cells(known.astype(np.float32))
         any_bends = any(map(bends, orders))
-        moments: tuple[Field, Field] | None = None
+        moments: Moments | None = None
         for order in orders:
-            total = _sum_of_four(weight)
-            below = np.minimum(np.float32(2.0 ** (min(order, 2.0) - 2)) * total, np.float32(1))
+            total = _sum_of_block(weight)
+            lost = 2.0 ** (min(order, weight.ndim) - weight.ndim)
+            below = np.minimum(np.float32(lost) * total, np.float32(1))
             share = np.divide(below, total, out=total, where=total > 0)
             moved = moments if bends(order) else None
             self._levels.append(_Level(1 - weight, share, moved, bends(order)))
@@ -86,9 +90,9 @@ class Extension:
 
     def spread(self, values: Field) -> Field:
         """Return E applied to ``values``, which are 0 where not known; shape (mx, my)."""
-        means = [values]
+        means = [_cells(values)]
         for level in self._levels:
-            means.append(_sum_of_four(means[-1]))
+            means.append(_sum_of_block(means[-1]))
             means[-1] *= level.share
         filled = means.pop()
         for level, own in zip(reversed(self._levels), reversed(means), strict=True):
@@ -98,11 +102,11 @@ class Extension:
                 change *= damping
                 change *= level.free
                 filled -= change
-        return filled
+        return filled.reshape(self.shape)
 
     def gather(self, values: Field) -> Field:
         """Return the transpose of E applied to ``values``; of use only where known."""
-        means = [values]
+        means = [_cells(values)]
         for level in self._levels:
             for damping in reversed(_DAMPINGS) if level.relaxes else ():
                 change = biharmonic(level.free * means[-1], self._stretch)
@@ -114,7 +118,7 @@ class Extension:
             gathered *= level.share
             gathered = _repeat(gathered)
             gathered += own
-        return gathered
+        return gathered.reshape(self.shape)
 
 
 @dataclass(frozen=True)
@@ -123,7 +127,7 @@ class _Level:
     """1 − w."""
     share: Field
     """What each value counts for in the mean below it."""
-    moments: tuple[Field, Field] | None
+    moments: Moments | None
     """w × centroid of what is known, in cells from the centre, where means are moved."""
     relaxes: bool
 
@@ -148,25 +152,27 @@ class _Level:
         return _transposed_interpolate(smooth, np.ones_like(values))
 
 
-def _moments_below(
-    weight: Field, moments: tuple[Field, Field] | None, share: Field
-) -> tuple[Field, Field]:
+def _cells(field: Field) -> Field:
+    """Return a field, with one axis if it is a line."""
+    return field.ravel() if 1 in field.shape else field
+
+
+def _moments_below(weight: Field, moments: Moments | None, share: Field) -> Moments:
     """Return Σ ``share`` (w × place + moment) of each 2 × 2 cells, places from their centre.
 
     Cells of the finest level have no ``moments``: what is known is at their centres.
     """
     quarter, half = np.float32(0.25), np.float32(0.5)
-    x, y = (quarter * _sum_of_four(_alternating(weight, axis)) for axis in (0, 1))
-    if moments is not None:
-        x += half * _sum_of_four(moments[0])
-        y += half * _sum_of_four(moments[1])
-    return share * x, share * y
+    below = [quarter * _sum_of_block(_alternating(weight, axis)) for axis in range(weight.ndim)]
+    for axis, moment in enumerate(moments or ()):
+        below[axis] += half * _sum_of_block(moment)
+    return tuple(share * moment for moment in below)
 
 
 def _alternating(field: Field, axis: int) -> Field:
     signs = np.ones(field.shape[axis], dtype=np.float32)
     signs[0::2] = -1
-    return field * np.expand_dims(signs, 1 - axis)
+    return field * (signs[:, None] if axis < field.ndim - 1 else signs)
 
 
 def _slope(field: Field, axis: int) -> Field:
@@ -176,12 +182,15 @@ def _slope(field: Field, axis: int) -> Field:
     return slope
 
 
-def _sum_of_four(fine: Field) -> Field:
+def _sum_of_block(fine: Field) -> Field:
+    """Return the sum of each 2 × 2 cells, of each two on a line."""
     rows = fine[0::2] + fine[1::2]
-    return rows[:, 0::2] + rows[:, 1::2]
+    return rows if rows.ndim == 1 else rows[:, 0::2] + rows[:, 1::2]
 
 
 def _repeat(coarse: Field) -> Field:
+    if coarse.ndim == 1:
+        return np.repeat(coarse, 2)
     fine = np.empty((2 * coarse.shape[0], 2 * coarse.shape[1]), coarse.dtype)
     fine[0::2, 0::2] = coarse
     fine[0::2, 1::2] = coarse
@@ -191,6 +200,13 @@ def _repeat(coarse: Field) -> Field:
 
 def _interpolate(coarse: Field, free: Field, own: Field) -> Field:
     """Return ``own`` + ``free`` × the bilinear interpolation from cells of twice the size."""
+    if coarse.ndim == 1:
+        line = np.repeat(_NEAR * coarse, 2)
+        line[0::2] += _FAR * np.roll(coarse, 1)
+        line[1::2] += _FAR * np.roll(coarse, -1)
+        line *= free
+        line += own
+        return line
     n, m = coarse.shape
     fine = np.empty((2 * n, 2 * m), coarse.dtype)
     wide = _wrapped(coarse)
@@ -212,6 +228,11 @@ def _interpolate(coarse: Field, free: Field, own: Field) -> Field:
 
 def _transposed_interpolate(fine: Field, free: Field) -> Field:
     """Return the transpose of `_interpolate`'s map from the coarse cells, applied to ``fine``."""
+    if fine.ndim == 1:
+        even, odd = (free * fine).reshape(-1, 2).T
+        line = _NEAR * (even + odd)
+        line += _FAR * (np.roll(even, -1) + np.roll(odd, 1))
+        return line
     n, m = fine.shape[0] // 2, fine.shape[1] // 2
     wide = np.zeros((n + 2, m + 2), fine.dtype)
     for rows in _blocks(n, m):
@@ -241,7 +262,7 @@ def stretch_of(dx: float, dy: float) -> tuple[float, float]:
 
 
 def biharmonic(field: Field, stretch: tuple[float, float]) -> Field:
-    """Return h⁴ Δ² of a periodic field; no wave has more than `FASTEST`.
+    """Return h⁴ Δ² of a periodic field; no wave has more than 64.
 
     ``stretch`` is that of the cells; h is their edge if they are square.
     """
@@ -249,6 +270,13 @@ def biharmonic(field: Field, stretch: tuple[float, float]) -> Field:
 
 
 def _laplacian(field: Field, stretch: tuple[float, float]) -> Field:
+    if field.ndim == 1:
+        line = np.float32(-2) * field
+        line[1:] += field[:-1]
+        line[:-1] += field[1:]
+        line[0] += field[-1]
+        line[-1] += field[0]
+        return line
     x, y = stretch
     wide = _wrapped(field)
     change = np.float32(-4 / x) * field

@@ -44,14 +44,16 @@ def inner_solve(
     goal: float,
     *,
     doubt: float,
+    reduction: float = 0.0,
 ) -> Inner:
     """Return the pressure on a contact whose gap is nearly closed, and where the contact is wrong.
 
     Preconditioned conjugate gradients, with a prescribed force in the space of pressures that keep
-    it. They go on until the error is at ``goal`` [m] or until nearly all cells that pull or
-    penetrate are certain to, which is when later iterations would have to change them by more than
-    ``doubt`` times what the last one did; never, if that is infinite. All vectors are on the cells
-    of the contact, but the displacement, which tells where else the surface penetrates.
+    it. They go on until the error is at ``goal`` [m] or has shrunk to the share ``reduction``, or
+    until nearly all cells that pull or penetrate are certain to, which is when later iterations
+    would have to change them by more than ``doubt`` times what the last one did; never, if that is
+    infinite. All vectors are on the cells of the contact, but the displacement, which tells where
+    else the surface penetrates.
 
     The operator is applied in single precision, in less than half of the time: to solve again for
     what is left recovers all digits (iterative refinement; Wilkinson 1963). Under a skin that bends
@@ -70,7 +72,7 @@ def inner_solve(
     aloft = displacement.ravel()[cells] - problem.profile.ravel()[cells]
     residual = problem.depth(aloft) - aloft
     error = search.error(residual)
-    goal = max(goal, _SINGLE * error)
+    goal = max(goal, max(_SINGLE, reduction) * error)
     best, since_best, iteration = np.inf, 0, 0
     wrong = None
     direction = search(residual)

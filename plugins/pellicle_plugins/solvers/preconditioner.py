@@ -12,14 +12,15 @@ from numpy.typing import NDArray
 from pellicle.grid import Grid
 from pellicle.operators import Array, Operator
 
-from .extension import Extension, Field, bends, stretch_of
+from .extension import Extension, bends, stretch_of
+from .stiffness import Field, Stiffness
 
 Cells = NDArray[np.int64]
 
 # Without a margin, contact at the edge of a free domain couples across it.
 _FREE_MARGIN: Final = 1.25
-_MOST_LEVELS: Final = 6
-_FREE_MULTIPLE: Final = 2**_MOST_LEVELS
+# The extension's plane is rounded up to what can be halved as often as this.
+_HALVINGS: Final = 6
 
 
 class Preconditioner:
@@ -35,14 +36,21 @@ class Preconditioner:
         # The transform's shape, and that of the extension, whose pyramid needs even numbers.
         if grid.boundary == "periodic":
             self._plane = grid.shape
-            levels = _halvings(grid.shape)
-            self._padded = _round_up(grid.shape, 2**levels)
+            self._padded = _round_up(grid.shape)
         else:
             self._plane = self._padded = _free_shape(grid.shape)
-            levels = _halvings(self._padded)
-        self._symbol = _stiffness(operator, self._plane)
-        self._orders = _stiffness_orders(operator, levels + 1)
-        self.bends = bends(self._orders[0])
+        self._stiffness = Stiffness(operator, self._plane)
+        levels = _levels(self._padded)
+        orders = _stiffness_orders(operator, levels + 1)
+        self.settling: Stiffness | None = None
+        """K on the grid itself, where bending decides and cells settle; see `relaxed`."""
+        if bends(orders[0]):
+            here = self._plane == grid.shape
+            self.settling = self._stiffness if here else Stiffness(operator, grid.shape)
+        # A plate bends all the way from one contact to the next. Elsewhere, and towards the edge of
+        # a free domain, what is far from all contact is better left at rest.
+        joins = self.settling is not None and grid.boundary == "periodic"
+        self._orders = orders[: levels if joins else min(levels, _HALVINGS)]
         self._stretch = stretch_of(*edges(grid))
 
     def on(self, contact: NDArray[np.bool_]) -> OnContact:
@@ -64,19 +72,17 @@ class Preconditioner:
             contact=contact,
             places=whole,
             copied=np.concatenate([np.empty(0, dtype=np.int64), *copied]),
-            extension=Extension(known, self._orders[:-1], self._stretch),
+            extension=Extension(known, self._orders, self._stretch),
             stiffen=self._stiffen,
-            bends=self.bends,
+            bends=self.settling is not None,
         )
 
     def _stiffen(self, field: Field) -> Field:
         """Return K applied to a field on the extension's plane; what is beyond the period is 0."""
         mx, my = self._plane
-        transform = scipy.fft.rfft2(field[:mx, :my])
-        transform *= self._symbol
-        force = scipy.fft.irfft2(transform, s=(mx, my), overwrite_x=True)
+        force = self._stiffness(field[:mx, :my])
         if self._padded == self._plane:
-            return np.asarray(force, dtype=np.float32)
+            return force
         padded = np.zeros(self._padded, dtype=np.float32)
         padded[:mx, :my] = force
         return padded
@@ -108,11 +114,12 @@ class OnContact:
 
     def __call__(self, residual: Array) -> Array:
         """Return the preconditioned residual; both have one value for each cell of `cells`."""
-        number, copied = self.cells.size, self._copied
-        given = self._given.ravel()
-        given[self._places[:number]] = residual
-        given[self._places[number:]] = residual[copied]
-        return self._gathered(self._stiffen(self._extension.spread(self._given)))
+        return self._gathered(self._stiffen(self._spread(residual)))
+
+    def extended(self, values: Array | Field) -> Field:
+        """Return E of one value for each cell of `cells`; of the grid's shape."""
+        nx, ny = self.contact.shape
+        return self._spread(values)[:nx, :ny]
 
     def moved(self, forces: Array) -> Array:
         """Return forces [Pa] of the grid's shape with those off the contact moved onto it by Eᵀ.
@@ -131,6 +138,12 @@ class OnContact:
             moved.ravel()[self.cells] += self._gathered(field) * size
         return moved
 
+    def _spread(self, values: Array | Field) -> Field:
+        number, given = self.cells.size, self._given.ravel()
+        given[self._places[:number]] = values
+        given[self._places[number:]] = values[self._copied]
+        return self._extension.spread(self._given)
+
     def _gathered(self, force: Field) -> Array:
         """Return Eᵀ applied to a field, for each cell of `cells`."""
         number, copied = self.cells.size, self._copied
@@ -140,21 +153,29 @@ class OnContact:
 
 
 def _free_shape(shape: tuple[int, int]) -> tuple[int, int]:
+    multiple = 2**_HALVINGS
     nx, ny = (
-        _FREE_MULTIPLE * scipy.fft.next_fast_len(int(np.ceil(_FREE_MARGIN * n / _FREE_MULTIPLE)))
-        for n in shape
+        multiple * scipy.fft.next_fast_len(int(np.ceil(_FREE_MARGIN * n / multiple))) for n in shape
     )
     return nx, ny
 
 
-def _round_up(shape: tuple[int, int], multiple: int) -> tuple[int, int]:
-    nx, ny = (-(-n // multiple) * multiple for n in shape)
+def _round_up(shape: tuple[int, int]) -> tuple[int, int]:
+    """Return the shape, rounded up along each axis of more than one cell to what can be halved."""
+    fewest = min((n for n in shape if n > 1), default=1)
+    multiple = 2 ** min(_HALVINGS, max(0, fewest.bit_length() - 2))
+    nx, ny = (-(-n // multiple) * multiple if n > 1 else 1 for n in shape)
     return nx, ny
 
 
-def _halvings(shape: tuple[int, int]) -> int:
-    """Return how many levels the extension has: halvings that leave two cells or more each way."""
-    return min(_MOST_LEVELS, max(0, min(shape).bit_length() - 2))
+def _levels(shape: tuple[int, int]) -> int:
+    """Return how many levels the extension has: halvings that leave whole cells, two or more."""
+    halved = [n for n in shape if n > 1]
+    levels = 0
+    while halved and all(n >= 4 and n % 2 == 0 for n in halved):
+        halved = [n // 2 for n in halved]
+        levels += 1
+    return levels
 
 
 def edges(grid: Grid) -> tuple[float, float]:
@@ -168,15 +189,3 @@ def _stiffness_orders(operator: Operator, levels: int) -> list[float]:
     q = np.pi / max(edges(operator.grid)) * 0.5 ** np.arange(levels + 1, dtype=np.float64)
     stiffness = 1 / operator.kernel.compliance(q)
     return [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]
-
-
-def _stiffness(operator: Operator, shape: tuple[int, int]) -> NDArray[np.float32]:
-    """Return k(q) over its greatest value on the wavenumbers of a periodic plane."""
-    dx, dy = operator.grid.spacing
-    plane = Grid(points=shape, size=(shape[0] * dx, shape[1] * dy), boundary="periodic")
-    q = np.hypot(*plane.wavenumbers())
-    # At q = 0 half of the lowest stiffness keeps K positive.
-    q[0, 0] = 2 * np.pi / max(plane.size)
-    stiffness = 1 / operator.kernel.compliance(q)
-    stiffness[0, 0] /= 2
-    return np.asarray(stiffness / stiffness.max(), dtype=np.float32)

@@ -436,7 +436,7 @@ KERNELS: dict[str, tuple[Kernel, int]] = {
     "winkler": (Winkler(), 25),  # 12 … 15
     "thick layer": (Layer(thickness=0.1), 30),  # 17 … 20
     "thin layer": (Layer(thickness=0.01), 25),  # 13 … 17
-    "plate": (Plate(bending=1e-5), 35),  # 19, 19, 24, 26
+    "plate": (Plate(bending=1e-5), 28),  # 19 … 23
 }
 
 
@@ -457,8 +457,8 @@ def test_applications_on_a_stiff_plate(points: int) -> None:
     for prescribed, value in (("force", 1e-2), ("depth", 0.015)):
         on_rough = make(points, "periodic", stiff, rough(16 / points), prescribed, value)  # type: ignore[arg-type]
         on_paraboloid = make(points, "free", stiff, paraboloid, prescribed, value)  # type: ignore[arg-type]
-        assert active_set(on_rough).applications <= 40  # 19 … 27
-        assert active_set(on_paraboloid).applications <= 35  # 9 … 23
+        assert active_set(on_rough).applications <= 32  # 17 … 25
+        assert active_set(on_paraboloid).applications <= 25  # 11 … 19
 
 
 @pytest.mark.parametrize("shape", [(96, 32), (32, 96)])
@@ -467,24 +467,39 @@ def test_plates_on_cells_of_one_to_three(shape: tuple[int, int], bending: float)
     """Cells that are not square cost no more."""
     for boundary in BOUNDARIES:
         problem = make(shape, boundary, Plate(bending=bending), rough(0.25), "force", 1e-2)
-        assert active_set(problem).applications <= 40
+        assert active_set(problem).applications <= 32  # 19 … 26
+
+
+def waves(x: Array, y: Array) -> Array:
+    """Return six waves along x."""
+    phases = np.random.default_rng(2).uniform(0, 2 * np.pi, 6)
+    each = (np.cos(2 * np.pi * (k + 1) * x + phases[k]) / (k + 1) ** 2 for k in range(6))
+    return 0.01 * sum(each) + 0 * y
+
+
+@pytest.mark.parametrize("points", [256, 1024, 4096])
+def test_rough_line_contact(points: int) -> None:
+    """On a line of cells as on a plane: 56 … 106 where E leaves off the contact at rest."""
+    phases = np.random.default_rng(2).uniform(0, 2 * np.pi, 60)
+
+    def line(x: Array, y: Array) -> Array:
+        each = (np.cos(2 * np.pi * k * x + phase) / k**1.3 for k, phase in enumerate(phases, 1))
+        return 0.01 * sum(each) + 0 * y
+
+    for s, force in ((0.0, 1e-2), (0.02, 1.6e-2), (0.2, 7e-2)):
+        size = (1.0, 1 / points)
+        problem = make((points, 1), "periodic", skin(s), line, "force", force / points, size)
+        assert active_set(problem).applications <= 35  # 15 … 27
 
 
 @pytest.mark.parametrize("across", [1e-6, 1.0, 1e3])
 def test_line_contact_of_a_plate(across: float) -> None:
     """On a line of cells, whatever its size across: waves touched at their crests and all over."""
-    random = np.random.default_rng(2)
-    phases = random.uniform(0, 2 * np.pi, 6)
-
-    def waves(x: Array, y: Array) -> Array:
-        each = (np.cos(2 * np.pi * (k + 1) * x + phases[k]) / (k + 1) ** 2 for k in range(6))
-        return 0.01 * sum(each) + 0 * y
-
     for bending, force in ((1e-5, 1e-3), (1e-3, 1e-3), (1e-3, 3.0)):
         size = (1.0, across)
         plate = Plate(bending=bending)
         problem = make((256, 1), "periodic", plate, waves, "force", force * across, size)
-        assert active_set(problem).applications <= 60
+        assert active_set(problem).applications <= 12  # 3 … 5
 
 
 @pytest.mark.parametrize("seed", [13, 30, 56])
@@ -520,14 +535,32 @@ def test_history_counts_contacts_that_come_back_until_fewer_are_wrong() -> None:
     assert again.after(~first, 4).returns == 0
 
 
-def test_history_doubts_once_no_fewer_are_wrong() -> None:
-    """An inner solve is loose as long as each contact has fewer wrong cells than any before."""
+def test_history_gets_on_until_no_fewer_are_wrong() -> None:
+    """As long as each contact has fewer wrong cells than any before."""
     first, second = np.eye(4, dtype=bool), np.eye(4, dtype=bool)[::-1]
-    loose = History().doubt
-    assert History().after(first, 5).after(second, 4).doubt == loose
-    assert History().after(first, 5).after(second, 5).doubt > loose
-    assert History().after(first, 5).after(first, 5).doubt > loose
-    assert History().after(first, 5).after(second, 5).after(~first, 4).doubt == loose
+    assert History().gets_on
+    assert History().after(first, 5).after(second, 4).gets_on
+    assert not History().after(first, 5).after(second, 5).gets_on
+    assert not History().after(first, 5).after(first, 5).gets_on
+    assert History().after(first, 5).after(second, 5).after(~first, 4).gets_on
+
+
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+def test_an_inner_solve_may_end_at_a_share_of_its_error(boundary: Boundary) -> None:
+    """Sooner than at its goal, once the gap has shrunk to that share of what it was."""
+    problem = make(32, boundary, Plate(bending=1e-5), paraboloid, "depth", 0.05)
+    on_contact = Preconditioner(problem.operator).on(problem.profile > -0.02)
+    nothing = np.zeros(problem.grid.shape)
+    before = float((problem.profile + 0.05)[on_contact.contact].max())
+    applications = []
+    for reduction in (0.1, 1e-3, 0.0):
+        done = problem.operator.applications
+        found = inner_solve(
+            problem, on_contact, nothing, nothing, 1e-9, doubt=np.inf, reduction=reduction
+        )
+        assert found.error <= max(reduction * before, 1e-5 * before)
+        applications.append(problem.operator.applications - done)
+    assert applications[0] < applications[1] < applications[2]
 
 
 # --- The end ---------------------------------------------------------------------------------

@@ -32,7 +32,7 @@ def lone_cell(number: int, orders: list[float]) -> NDArray[np.float32]:
     return Extension(known, orders).spread(known.astype(np.float32))
 
 
-@pytest.mark.parametrize("shape", [(8, 8), (32, 64), (96, 16), (160, 112)])
+@pytest.mark.parametrize("shape", [(8, 8), (32, 64), (96, 16), (160, 112), (64, 1), (1, 40)])
 @pytest.mark.parametrize("share", [0.01, 0.3, 0.9, 1.0])
 def test_gather_is_the_transpose_of_spread(shape: tuple[int, int], share: float) -> None:
     """⟨E x, y⟩ = ⟨x, Eᵀ y⟩ to single precision, for any set, shape and order, level by level."""
@@ -49,10 +49,11 @@ def test_gather_is_the_transpose_of_spread(shape: tuple[int, int], share: float)
 
 
 @pytest.mark.parametrize("order", ORDERS)
-def test_known_values_are_kept(order: float) -> None:
+@pytest.mark.parametrize("shape", [(48, 32), (48, 1), (1, 96)])
+def test_known_values_are_kept(shape: tuple[int, int], order: float) -> None:
     """E changes nothing where the values are given, and E of nothing is nothing."""
     random = np.random.default_rng(3)
-    known = random.uniform(size=(48, 32)) < 0.2
+    known = random.uniform(size=shape) < 0.2
     extension = Extension(known, [order] * 4)
     values = np.where(known, random.normal(size=known.shape), 0).astype(np.float32)
     spread = extension.spread(values)
@@ -182,6 +183,27 @@ def test_planes_go_on_where_bending_decides() -> None:
     spread = Extension(known, [4.0] * 4).spread(np.where(known, plane, 0).astype(np.float32))
     inner = np.maximum(np.abs(i), np.abs(j)) < 40
     assert np.abs(spread - plane)[inner].max() < 0.2  # 0.08; with means left where they are 1.4
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_a_line_is_a_line_wherever_it_lies(order: float) -> None:
+    """Along y as along x; 1 goes on as 1 from order 1 on, a plane where bending decides."""
+    random = np.random.default_rng(8)
+    known = random.uniform(size=(128, 1)) < 0.3
+    values = np.where(known, random.normal(size=known.shape), 0).astype(np.float32)
+    along = Extension(known, [order] * 4)
+    across = Extension(known.T, [order] * 4)
+    np.testing.assert_array_equal(across.spread(values.T), along.spread(values).T)
+    np.testing.assert_array_equal(across.gather(values.T), along.gather(values).T)
+    ones = along.spread(known.astype(np.float32))
+    if order >= 1:
+        np.testing.assert_allclose(ones, 1.0, rtol=8 * SINGLE)
+    else:
+        assert ones.min() < 0.95
+    if order == 4:
+        plane = (np.arange(128, dtype=np.float32) - 64)[:, None]
+        spread = along.spread(np.where(known, plane, np.float32(0)))
+        assert np.abs(spread - plane)[16:-16].max() < 0.3
 
 
 def condition(kernel: Kernel, points: int | tuple[int, int]) -> float:
