@@ -203,19 +203,18 @@ def _next(
     if not found.wrong.size:
         return state.on_contact, found.pressure
     preconditioner, contact = state.preconditioner, state.on_contact.contact
-    settling = preconditioner.settling
     if (
-        settling
+        preconditioner.bends
         and found.pressure.any()
         and history.returns == 0
         and len(history.contacts) <= _SETTLING
     ):
-        settled, forces = relaxed(problem, settling, state.on_contact, found, margin)
+        settled, forces = relaxed(problem, preconditioner.settling, state.on_contact, found, margin)
         on_settled = preconditioner.on(settled)
         start = on_settled.moved(forces)
         if start.sum() > 0:
             return on_settled, start
-    one = history.returns > (1 if settling else 0)
+    one = history.returns > (1 if preconditioner.bends else 0)
     changed = contact.copy()
     changed.ravel()[found.wrong[: 1 if one else None]] ^= True
     on_changed = preconditioner.on(changed)

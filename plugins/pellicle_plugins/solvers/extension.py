@@ -72,15 +72,16 @@ class Extension:
         stretch: tuple[float, float] = (1.0, 1.0),
     ) -> None:
         self.shape = known.shape
+        # Inside, a line has one axis.
         self._stretch = stretch
         self._levels: list[_Level] = []
-        weight = _cells(known.astype(np.float32))
+        weight = np.squeeze(known.astype(np.float32))
         any_bends = any(map(bends, orders))
         moments: Moments | None = None
         for order in orders:
             total = _sum_of_block(weight)
-            lost = 2.0 ** (min(order, weight.ndim) - weight.ndim)
-            below = np.minimum(np.float32(lost) * total, np.float32(1))
+            kept = 2.0 ** (min(order, weight.ndim) - weight.ndim)
+            below = np.minimum(np.float32(kept) * total, np.float32(1))
             share = np.divide(below, total, out=total, where=total > 0)
             moved = moments if bends(order) else None
             self._levels.append(_Level(1 - weight, share, moved, bends(order)))
@@ -90,7 +91,7 @@ class Extension:
 
     def spread(self, values: Field) -> Field:
         """Return E applied to ``values``, which are 0 where not known; shape (mx, my)."""
-        means = [_cells(values)]
+        means = [np.squeeze(values)]
         for level in self._levels:
             means.append(_sum_of_block(means[-1]))
             means[-1] *= level.share
@@ -106,7 +107,7 @@ class Extension:
 
     def gather(self, values: Field) -> Field:
         """Return the transpose of E applied to ``values``; of use only where known."""
-        means = [_cells(values)]
+        means = [np.squeeze(values)]
         for level in self._levels:
             for damping in reversed(_DAMPINGS) if level.relaxes else ():
                 change = biharmonic(level.free * means[-1], self._stretch)
@@ -150,11 +151,6 @@ class _Level:
         for axis, moment in enumerate(self.moments):
             smooth += _slope(moment * values, axis)
         return _transposed_interpolate(smooth, np.ones_like(values))
-
-
-def _cells(field: Field) -> Field:
-    """Return a field, with one axis if it is a line."""
-    return field.ravel() if 1 in field.shape else field
 
 
 def _moments_below(weight: Field, moments: Moments | None, share: Field) -> Moments:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -32,6 +33,7 @@ class Preconditioner:
 
     def __init__(self, operator: Operator) -> None:
         grid = operator.grid
+        self._operator = operator
         self._shape = grid.shape
         # The transform's shape, and that of the extension, whose pyramid needs even numbers.
         if grid.boundary == "periodic":
@@ -42,16 +44,18 @@ class Preconditioner:
         self._stiffness = Stiffness(operator, self._plane)
         levels = _levels(self._padded)
         orders = _stiffness_orders(operator, levels + 1)
-        self.settling: Stiffness | None = None
-        """K on the grid itself, where bending decides and cells settle; see `relaxed`."""
-        if bends(orders[0]):
-            here = self._plane == grid.shape
-            self.settling = self._stiffness if here else Stiffness(operator, grid.shape)
+        self.bends = bends(orders[0])
         # A plate bends all the way from one contact to the next. Elsewhere, and towards the edge of
         # a free domain, what is far from all contact is better left at rest.
-        joins = self.settling is not None and grid.boundary == "periodic"
+        joins = self.bends and grid.boundary == "periodic"
         self._orders = orders[: levels if joins else min(levels, _HALVINGS)]
         self._stretch = stretch_of(*edges(grid))
+
+    @cached_property
+    def settling(self) -> Stiffness:
+        """K on the grid itself as if it were periodic; see `relaxed`."""
+        here = self._plane == self._shape
+        return self._stiffness if here else Stiffness(self._operator, self._shape)
 
     def on(self, contact: NDArray[np.bool_]) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""
@@ -74,7 +78,7 @@ class Preconditioner:
             copied=np.concatenate([np.empty(0, dtype=np.int64), *copied]),
             extension=Extension(known, self._orders, self._stretch),
             stiffen=self._stiffen,
-            bends=self.settling is not None,
+            bends=self.bends,
         )
 
     def _stiffen(self, field: Field) -> Field:

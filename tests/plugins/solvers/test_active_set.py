@@ -470,22 +470,21 @@ def test_plates_on_cells_of_one_to_three(shape: tuple[int, int], bending: float)
         assert active_set(problem).applications <= 32  # 19 … 26
 
 
-def waves(x: Array, y: Array) -> Array:
-    """Return six waves along x."""
-    phases = np.random.default_rng(2).uniform(0, 2 * np.pi, 6)
-    each = (np.cos(2 * np.pi * (k + 1) * x + phases[k]) / (k + 1) ** 2 for k in range(6))
-    return 0.01 * sum(each) + 0 * y
+def waves(number: int, power: float) -> Shape:
+    """Return the profile of so many waves along x, whose amplitudes fall as this power."""
+    phases = np.random.default_rng(2).uniform(0, 2 * np.pi, number)
+
+    def profile(x: Array, y: Array) -> Array:
+        each = (np.cos(2 * np.pi * k * x + phase) / k**power for k, phase in enumerate(phases, 1))
+        return 0.01 * sum(each) + 0 * y
+
+    return profile
 
 
 @pytest.mark.parametrize("points", [256, 1024, 4096])
 def test_rough_line_contact(points: int) -> None:
     """On a line of cells as on a plane: 56 … 106 where E leaves off the contact at rest."""
-    phases = np.random.default_rng(2).uniform(0, 2 * np.pi, 60)
-
-    def line(x: Array, y: Array) -> Array:
-        each = (np.cos(2 * np.pi * k * x + phase) / k**1.3 for k, phase in enumerate(phases, 1))
-        return 0.01 * sum(each) + 0 * y
-
+    line = waves(60, 1.3)
     for s, force in ((0.0, 1e-2), (0.02, 1.6e-2), (0.2, 7e-2)):
         size = (1.0, 1 / points)
         problem = make((points, 1), "periodic", skin(s), line, "force", force / points, size)
@@ -498,7 +497,7 @@ def test_line_contact_of_a_plate(across: float) -> None:
     for bending, force in ((1e-5, 1e-3), (1e-3, 1e-3), (1e-3, 3.0)):
         size = (1.0, across)
         plate = Plate(bending=bending)
-        problem = make((256, 1), "periodic", plate, waves, "force", force * across, size)
+        problem = make((256, 1), "periodic", plate, waves(6, 2), "force", force * across, size)
         assert active_set(problem).applications <= 12  # 3 … 5
 
 

@@ -32,7 +32,6 @@ def settle(
 ) -> tuple[NDArray[np.bool_], Array]:
     """Return what `relaxed` makes of what an inner solve found on a contact."""
     preconditioner = Preconditioner(problem.operator)
-    assert preconditioner.settling
     on_contact = preconditioner.on(contact)
     return relaxed(problem, preconditioner.settling, on_contact, found, margin)
 
