@@ -23,11 +23,12 @@ from .grid import Grid
 from .loading import Loading
 from .model import Model, paths_relative_to, replaced
 from .plugins import registry
-from .storage import SCHEMA_VERSION
 from .toml import parse_override, read_toml, toml_lines
 
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 DEFAULT_SOLVER = "active_set"
+# Raised when equal configurations begin to give other numbers, not with the layout of files.
+_NUMBERS_VERSION = 1
 
 
 class Run(Model):
@@ -127,9 +128,9 @@ class Run(Model):
         """Hash of all that decides the numbers: equal for runs whose results are equal.
 
         Of the configuration, defaults included, `title` and `outputs` are left out; a file that it
-        names counts by its content; the version of the layout of results is in it too.
+        names counts by its content.
         """
-        said = _identifying(self, without=("title", "outputs")) | {"schema": SCHEMA_VERSION}
+        said = _identifying(self, without=("title", "outputs")) | {"schema": _NUMBERS_VERSION}
         text = json.dumps(said, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
 

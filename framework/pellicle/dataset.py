@@ -59,9 +59,9 @@ OF_THE_CONTACT = (
 
 
 def step_dataset(
-    grid: Grid, index: int, found: Equilibrium, scalars: Mapping[str, object]
+    grid: Grid, number: int, found: Equilibrium, scalars: Mapping[str, object]
 ) -> xr.Dataset:
-    """Return load step ``index`` with dimensions (step: 1, x: nx, y: ny).
+    """Return load step ``number``, counted from 1, with dimensions (step: 1, x: nx, y: ny).
 
     ``scalars`` adds what is not in the equilibrium; an unknown name is taken to be an area [m²].
     """
@@ -97,7 +97,7 @@ def step_dataset(
     }
     x, y = grid.coordinates()
     coordinates = {
-        "step": ("step", [index], {"long_name": "load step"}),
+        "step": ("step", [number], {"long_name": "load step, counted from 1"}),
         "x": ("x", x[:, 0], {"units": "m", "long_name": "x of the cell centres"}),
         "y": ("y", y[0], {"units": "m", "long_name": "y of the cell centres"}),
     }

@@ -1,4 +1,4 @@
-"""One process at a time in the folder of a study."""
+"""One process at a time at the files of a run or of a study."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ from .storage import reported
 
 
 @contextmanager
-def held(folder: Path) -> Iterator[None]:
-    """Hold ``folder``; its file ``study.lock`` says who does.
+def locked(folder: Path, name: str) -> Iterator[None]:
+    """Lock the files in ``folder`` that begin with ``name``; ``name.lock`` says who holds them.
 
     The lock itself is the operating system's, on a second file, and so ends with the process.
 
     Raises
     ------
     StorageError
-        Another process holds it, or the folder cannot be written.
+        Another process holds them, or the folder cannot be written.
     """
-    sign = folder / "study.lock"
-    lock = filelock.FileLock(folder / ".study.lock")
+    sign = folder / f"{name}.lock"
+    lock = filelock.FileLock(folder / f".{name}.lock")
     with reported(sign):
         folder.mkdir(parents=True, exist_ok=True)
         try:
             lock.acquire(timeout=0)
         except filelock.Timeout:
             raise StorageError(
-                f"{folder} is at work: {_holder(sign)} holds it; wait until it has finished, or "
+                f"{folder / name} is locked by {_holder(sign)}; wait until it has finished, or "
                 "choose another folder (-o DIR)"
             ) from None
     try:
@@ -58,8 +58,8 @@ def held(folder: Path) -> Iterator[None]:
 
 def _holder(sign: Path) -> str:
     try:
-        said = json.loads(sign.read_text(encoding="utf-8"))
-        return f"process {said['pid']} on {said['host']}, since {said['since']},"
+        holder = json.loads(sign.read_text(encoding="utf-8"))
+        return f"process {holder['pid']} on {holder['host']}, since {holder['since']}"
     # It may be just being written.
-    except (OSError, ValueError, LookupError):
+    except (OSError, ValueError, LookupError, TypeError):
         return "another process"

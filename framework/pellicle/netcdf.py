@@ -22,8 +22,8 @@ _OF_SCALES = {
 
 def image(
     dataset: xr.Dataset, *, grows: Collection[str] = (), packed: Collection[str] = ()
-) -> memoryview:
-    """Return a NetCDF-4 file that holds ``dataset``.
+) -> io.BytesIO:
+    """Return a NetCDF-4 file in memory that holds ``dataset``.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def image(
                 stored = _create(file, str(name), variable, grows, packed)
                 for axis, dim in enumerate(variable.dims):
                     stored.dims[axis].attach_scale(file[str(dim)])
-    return whole.getbuffer()
+    return whole
 
 
 def dataset(file: h5py.File, *, without: Collection[str] = ()) -> xr.Dataset:

@@ -8,7 +8,7 @@ import re
 import time
 import warnings
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, nullcontext
 from pathlib import Path
 from traceback import extract_tb
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -21,6 +21,7 @@ from .components import Component, Monitor, Output, Place
 from .config import Run, refuse_study
 from .dataset import DESCRIPTIONS, step_dataset
 from .errors import ConfigError, ConvergenceWarning, PellicleError
+from .lock import locked
 from .operators import Array, Operator, make_operator
 from .plugins import registry
 from .problem import Equilibrium, Problem, Stiffness, measure, measure_stiffness
@@ -69,7 +70,8 @@ def run(
     Raises
     ------
     ConfigError, PluginError, StorageError
-        The run cannot be made; what was computed before is kept.
+        The run cannot be made, or another process writes to the same files; what was computed
+        before is kept.
 
     Warns
     -----
@@ -80,9 +82,9 @@ def run(
     outputs = standard_outputs(made.outputs) if directory is not None else made.outputs or ()
     place = Place(Path(directory or "."), name, made.to_json(), made.identity, overwrite)
     bar = Progress(len(made.loading.values), progress)
-    result = execute(made, place, outputs, bar, threads=threads).result
-    for index, message in result.failures():
-        warnings.warn(f"step {index + 1}: {message}", ConvergenceWarning, stacklevel=2)
+    result = execute_alone(made, place, outputs, bar, threads=threads).result
+    for step, message in result.failures():
+        warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
     if coarse := result.coarse():
         warnings.warn(said_of_steps(coarse), ConvergenceWarning, stacklevel=2)
     return result
@@ -102,6 +104,20 @@ class Executed(NamedTuple):
     """What its outputs left."""
     taken: int
     """How many of its steps an earlier process had done."""
+
+
+def execute_alone(
+    run: Run, place: Place, outputs: Sequence[Output], bar: Bar, *, threads: int | None = None
+) -> Executed:
+    """Solve a run as `execute` does, while no other process may write its files.
+
+    Raises
+    ------
+    StorageError
+        Another process is writing them.
+    """
+    with locked(place.directory, place.name) if outputs else nullcontext():
+        return execute(run, place, outputs, bar, threads=threads)
 
 
 def execute(
@@ -364,7 +380,7 @@ def _solve_steps(
     origin = provenance(run)
     first, pressure = 0, None
     for before in last:
-        first = before["step"].item() + 1
+        first = before["step"].item()
         pressure = before["pressure"].values[0]
     for index, problem in enumerate(problems[first:], first):
         started = time.perf_counter()
@@ -384,7 +400,7 @@ def _solve_steps(
             "status": message,
             "wall_time": time.perf_counter() - started,
         }
-        yield step_dataset(run.grid, index, found, scalars).assign_attrs(origin)
+        yield step_dataset(run.grid, index + 1, found, scalars).assign_attrs(origin)
 
 
 def _solve(

@@ -110,14 +110,14 @@ class Result:
         return bool(self.dataset["converged"].all())
 
     def failures(self) -> list[tuple[int, str]]:
-        """Return the index of each step that did not converge, with its status."""
-        flags, messages = self.dataset["converged"].values, self.dataset["status"].values
-        return [(i, str(messages[i])) for i, converged in enumerate(flags) if not converged]
+        """Return the number of each step that did not converge, counted from 1, with its status."""
+        failed = self.dataset.isel(step=~self.dataset["converged"].values)
+        return _statuses(failed)
 
     def coarse(self) -> list[tuple[int, str]]:
-        """Return the index of each step whose contact the cells do not resolve, with its status."""
-        messages = map(str, self.dataset["status"].values)
-        return [(i, message) for i, message in enumerate(messages) if Status.COARSE.says(message)]
+        """Return the number of each step whose cells do not resolve the contact, with its status."""
+        statuses = _statuses(self.dataset)
+        return [(step, message) for step, message in statuses if Status.COARSE.says(message)]
 
     def _repr_html_(self) -> str:
         """Return what a notebook shows."""
@@ -134,10 +134,14 @@ class Result:
         storage.write(self.dataset, Path(path))
 
 
+def _statuses(data: xr.Dataset) -> list[tuple[int, str]]:
+    return list(zip(data["step"].values.tolist(), map(str, data["status"].values), strict=True))
+
+
 def said_of_steps(steps: Sequence[tuple[int, str]]) -> str:
-    """Return which steps, counted from 1, and what is said of the first of them."""
-    (index, message), *others = steps
-    return f"step {index + 1}{f' and {len(others)} more' if others else ''}: {message}"
+    """Return the number of the first step and its message, and how many steps follow it."""
+    (number, message), *others = steps
+    return f"step {number}{f' and {len(others)} more' if others else ''}: {message}"
 
 
 def load(path: str | Path) -> Result:

@@ -1,4 +1,4 @@
-"""The one HDF5 layout: NetCDF-4 through h5netcdf, one slab along ``step`` per load step.
+"""The one HDF5 layout: NetCDF-4, one slab along ``step`` per load step, and a checksum behind it.
 
 A file is never changed in place: each version is written aside, flushed to disk and renamed, so
 that whatever ends the process, every name holds a whole file. Rewriting a file for each step would
@@ -23,15 +23,18 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from . import netcdf
-from .errors import StorageError
+from . import checksum, netcdf
+from .errors import StorageError, shown
 
 if TYPE_CHECKING:
     import h5py
     import xarray as xr
 
-SCHEMA_VERSION = 1
-"""Version of the layout, in the attribute ``schema_version`` of every file."""
+SCHEMA_VERSION = 2
+"""Version of the layout, in the attribute ``schema_version`` of every file.
+
+Files of version 1 are read: they have no checksum, and count their steps from 0.
+"""
 REPLACING = (
     "choose another folder (-o DIR), or allow it to be replaced (--overwrite, overwrite=True)"
 )
@@ -52,7 +55,9 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     grows = ["step"] if fields and path.suffix != ".tail" else []
     with aside(path) as part:
         described = dataset.assign_attrs(schema_version=SCHEMA_VERSION)
-        part.write_bytes(netcdf.image(described, grows=grows, packed=fields))
+        image = netcdf.image(described, grows=grows, packed=fields)
+        checksum.seal(image)
+        part.write_bytes(image.getbuffer())
         # While the old file still has the name: its tails must never continue the new one.
         for tail in _tails(path):
             tail.unlink()
@@ -64,14 +69,48 @@ def append(dataset: xr.Dataset, path: Path) -> None:
     Raises
     ------
     StorageError
-        The file cannot be read or written.
+        The file cannot be read or written, or ``dataset`` does not continue it.
     """
     first, *tails = _parts(path)
+    with opened(first) as file:
+        version, identity = _version(file), _attributes(file).get("identity")
+    if version != SCHEMA_VERSION:
+        write(joined([read(path), dataset]), path)
+        return
+    _require_continued(path, [first, *tails][-1], identity, dataset)
     own, waiting = _steps(first), sum(map(_steps, tails))
     if waiting + dataset.sizes["step"] >= own or path.stat().st_size < _SMALL:
         _join(path, tails, dataset)
     else:
         write(dataset, path.with_name(f".{path.name}.{own + waiting:08d}.tail"))
+
+
+def _require_continued(path: Path, last: Path, identity: object, dataset: xr.Dataset) -> None:
+    """Refuse steps of another run, or those that do not follow the last step of the file."""
+    with _readable(last), _parsed(last) as file:
+        step = int(file["step"][-1])
+    following = int(dataset["step"].values[0])
+    if dataset.attrs.get("identity") != identity or following != step + 1:
+        raise StorageError(
+            f"{path}: step {following} does not continue it: it ends at step {step}, and another "
+            "process may have replaced it; run one at a time, or choose another folder (-o DIR)"
+        )
+
+
+def require_consecutive(steps: xr.Dataset, path: Path) -> None:
+    """Refuse to resume a file whose steps are not 1, 2, …: two processes may have written it.
+
+    Raises
+    ------
+    StorageError
+        They are not.
+    """
+    numbers = steps["step"].values.tolist()
+    if numbers != list(range(1, len(numbers) + 1)):
+        raise StorageError(
+            f"{path}: its steps are {shown(numbers)}, not 1, 2, …, so it cannot be resumed; "
+            f"{REPLACING}"
+        )
 
 
 def close(path: Path) -> None:
@@ -190,21 +229,19 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
     StorageError
         As for `read`.
     """
-    import h5py
-
     if not path.is_file():
         found = "is a folder" if path.is_dir() else "no such file"
         raise StorageError(f"{path}: {found}; give a result file (.h5) that pellicle wrote")
-    with _readable(path), h5py.File(path) as file:
+    with _readable(path), _parsed(path) as file:
         known = netcdf.attributes(file)
-        version = known.get("schema_version")
+        version = _version(file)
         if version is None or not {"configuration", "versions"} <= known.keys():
             raise StorageError(
                 f"{path}: not a result of pellicle; give an .h5 file that pellicle wrote"
             )
-        if version != SCHEMA_VERSION:
+        if version not in (1, SCHEMA_VERSION):
             raise StorageError(
-                f"{path}: schema version {version}, and this pellicle reads {SCHEMA_VERSION}; "
+                f"{path}: schema version {version}, and this pellicle reads 1 to {SCHEMA_VERSION}; "
                 f"read it with what wrote it ({known['versions']}), or run it again"
             )
         json.loads(known["configuration"])
@@ -218,10 +255,33 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
         yield file
 
 
+@contextmanager
+def _parsed(path: Path) -> Iterator[h5py.File]:
+    """Yield the content of a file whose checksum, if it has one, matches."""
+    import h5py
+
+    sealed = checksum.verify(path)
+    with h5py.File(path) as file:
+        if not sealed and _version(file) not in (None, 1):
+            raise StorageError(
+                f"{path}: was changed after pellicle wrote it, its checksum is missing; restore it "
+                "from a copy, or run it again"
+            )
+        yield file
+
+
+def _version(file: h5py.File) -> Any:
+    return netcdf.attributes(file).get("schema_version")
+
+
 def _content(file: h5py.File, without: Collection[str] = ()) -> xr.Dataset:
-    found = netcdf.dataset(file, without=without)
-    found.attrs = _attributes(file)
-    return found
+    content = netcdf.dataset(file, without=without)
+    if _version(file) == 1 and "step" in content.coords:
+        attributes = content["step"].attrs
+        content = content.assign_coords(step=content["step"] + 1)
+        content["step"].attrs = attributes
+    content.attrs = _attributes(file)
+    return content
 
 
 def _attributes(file: h5py.File) -> dict[str, Any]:
@@ -234,8 +294,11 @@ def _readable(path: Path) -> Iterator[None]:
     try:
         yield
     # The layers below raise nearly anything for a file that is damaged or no HDF5.
-    except (OSError, ValueError, LookupError, RuntimeError, AttributeError, TypeError) as error:
-        reason = str(error).partition("\n")[0]
+    except (
+        *(OSError, ValueError, LookupError, RuntimeError, AttributeError, TypeError),
+        MemoryError,
+    ) as error:
+        reason = str(error).partition("\n")[0] or "it does not fit in memory"
         raise StorageError(
             f"{path}: not a readable result file ({reason}); give an .h5 file that pellicle wrote"
         ) from None
@@ -248,9 +311,7 @@ def _read_one(path: Path) -> xr.Dataset:
 
 def _steps(path: Path) -> int:
     """Return how many steps a file of its own holds."""
-    import h5py
-
-    with _readable(path), h5py.File(path) as file:
+    with _readable(path), _parsed(path) as file:
         return int(file["step"].size)
 
 
@@ -281,11 +342,12 @@ def _join(path: Path, tails: Sequence[Path], *more: xr.Dataset) -> None:
         image = _with_room(path, sum(tail.stat().st_size for tail in tails) + _bytes(more))
         with h5py.File(image, "r+") as file:
             for tail in tails:
-                with _readable(tail), h5py.File(tail) as source:
+                with _readable(tail), _parsed(tail) as source:
                     _extend(file, {name: source[name][:] for name in file if _grows(file[name])})
             for dataset in more:
                 values = {str(name): each.values for name, each in dataset.variables.items()}
                 _extend(file, {name: values[name] for name in file if _grows(file[name])})
+        checksum.seal(image)
         part.write_bytes(image.getbuffer())
     with reported(path):
         for tail in _tails(path):

@@ -20,7 +20,7 @@ from . import memory, storage, table
 from .components import Output, Place, Say
 from .config import Run
 from .errors import ConfigError, ConvergenceWarning, StorageError
-from .lock import held
+from .lock import locked
 from .orchestrator import execute, left_by, standard_outputs
 from .plugins import registry
 from .progress import Saying, StudyProgress
@@ -67,13 +67,16 @@ class RunTask:
         Raises
         ------
         StorageError
-            There is a file, but it cannot be read.
+            There is a file, but it cannot be read or resumed.
         """
         path = self.place.file(".h5")
         if self.place.overwrite or not path.exists():
             return None
-        found = storage.scalars(path)
-        return found if found.attrs.get("identity") == self.place.identity else None
+        scalars = storage.scalars(path)
+        if scalars.attrs.get("identity") != self.place.identity:
+            return None
+        storage.require_consecutive(scalars, path)
+        return scalars
 
 
 class Carried(NamedTuple):
@@ -194,7 +197,7 @@ def carry_out(
 
     What is interrupted leaves the table of all that was finished.
     """
-    with held(directory):
+    with locked(directory, "study"):
         return _carry_out(study, directory, progress, overwrite, threads)
 
 

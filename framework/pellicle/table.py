@@ -79,8 +79,8 @@ class Table:
         }
         coordinates["step"] = (
             "step",
-            np.arange(self._status.shape[-1]),
-            {"long_name": "load step"},
+            np.arange(1, self._status.shape[-1] + 1),
+            {"long_name": "load step, counted from 1"},
         )
         made = xr.Dataset(variables, coordinates, self._attributes)
         return derive(made, self._study.derived) if self._numbers else made

@@ -31,19 +31,19 @@ def print_steps(result: Result) -> None:
     names = ["depth", "force", *areas, *asked, "iterations"]
     coarse = dict(result.coarse())
     rows = []
-    for index in range(data.sizes["step"]):
-        step = data.isel(step=index)
+    for number in data["step"].values.tolist():
+        step = data.sel(step=number)
         row = {name: f"{step[name].item():.6g}" for name in names}
         status = "converged" if step["converged"].item() else "NOT CONVERGED"
-        if index in coarse:
+        if number in coarse:
             status = "too coarse"
-        rows.append({"step": str(index + 1), **row, "status": status})
+        rows.append({"step": str(number), **row, "status": status})
     print_table(["step", *names, "status"], rows, _heads(data, names))
-    for index, (converged, status) in enumerate(
-        zip(data["converged"], data["status"], strict=True)
+    for number, converged, status in zip(
+        data["step"].values.tolist(), data["converged"], data["status"], strict=True
     ):
-        if converged and status != "converged" and index not in coarse:
-            typer.echo(f"step {index + 1}: {status.item()}", err=True)
+        if converged and status != "converged" and number not in coarse:
+            typer.echo(f"step {number}: {status.item()}", err=True)
 
 
 def print_contact(result: Result) -> None:
@@ -57,8 +57,8 @@ def print_contact(result: Result) -> None:
         return
     typer.echo("contact:")
     rows = [
-        {"step": str(index + 1), **{name: f"{data[name].values[index]:.6g}" for name in names}}
-        for index in range(data.sizes["step"])
+        {"step": str(number), **{name: f"{data[name].values[index]:.6g}" for name in names}}
+        for index, number in enumerate(data["step"].values.tolist())
     ]
     print_table(["step", *names], rows, _heads(data, names))
 
@@ -84,8 +84,8 @@ def exit_by_convergence(result: Result) -> None:
     """Exit unless all steps of a run converged, and say which did not or are too coarse."""
     from pellicle.result import said_of_steps
 
-    for index, message in result.failures():
-        typer.echo(f"step {index + 1} did not converge: {message}", err=True)
+    for step, message in result.failures():
+        typer.echo(f"step {step} did not converge: {message}", err=True)
     if coarse := result.coarse():
         print_warning(said_of_steps(coarse))
     if not result.converged:

@@ -119,7 +119,7 @@ def loses_no_step(output: Output) -> None:
     # What holds a date or a random name differs between two equal runs: it says nothing here.
     steady = {name for name, content in _content(output, whole).items() if content == left[name]}
     for lost in range(_STEPS):
-        other = whole.where(whole["step"] != lost, whole.isel(step=(lost + 1) % _STEPS))
+        other = whole.where(whole["step"] != lost + 1, whole.isel(step=(lost + 1) % _STEPS))
         other = other.transpose(*whole.dims).astype({n: v.dtype for n, v in whole.items()})
         changed = _content(output, other)
         require(

@@ -17,7 +17,7 @@ def solved(configuration: dict[str, Any]) -> xr.Dataset:
     """Return the dataset of a run, every step of which must converge."""
     run = Run(**configuration)
     result = solve(run)
-    for index, message in result.failures():
+    for step, message in result.failures():
         what = f"{run.grid.boundary} boundary, {run.loading.prescribed} prescribed"
-        require(False, f"step {index + 1} of a run ({what}) did not converge: {message}")
+        require(False, f"step {step} of a run ({what}) did not converge: {message}")
     return result.dataset

@@ -29,7 +29,7 @@ _LINE = 401
 
 
 def contact(run: xr.Dataset, step: int) -> AxisymmetricContact | None:
-    """Return the contact of a load step, by what is prescribed; None where that is 0.
+    """Return the contact of a load step, counted from 1; None where 0 is prescribed.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
             f"{', '.join(_INDENTERS)}, and free boundaries",
             "reference",
         )
-    value = run.loading.values[step]
+    value = run.loading.values[step - 1]
     if value == 0:
         return None
     indenter = _INDENTERS[shape.pop("type")](**shape)
@@ -78,7 +78,7 @@ def exact(runs: Runs) -> Runs:
 
     def number(quantity: str) -> xr.DataArray:
         def of(run: xr.Dataset) -> list[float]:
-            found = (contact(run, step) for step in range(run.sizes["step"]))
+            found = (contact(run, step) for step in run["step"].values.tolist())
             return [getattr(one, quantity) if one else 0.0 for one in found]
 
         return runs.from_each(of)

@@ -36,16 +36,16 @@ class Csv(Output):
             for name, variable in step.data_vars.items()
             if variable.dims == ("step",)
         }
-        index = step["step"].item()
-        with storage.reported(path), path.open("a+" if index else "w+", **_TEXT) as file:
+        number = step["step"].item()
+        with storage.reported(path), path.open("a+" if number > 1 else "w+", **_TEXT) as file:
             file.seek(0)
             # Steps that an earlier version solved may have fewer columns.
             heads = next(csv.reader(file), ["step", *row])
             file.seek(0, SEEK_END)
             writer = csv.DictWriter(file, heads, extrasaction="ignore")
-            if index == 0:
+            if number == 1:
                 writer.writeheader()
-            writer.writerow({"step": index, **row})
+            writer.writerow({"step": number, **row})
 
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Name the file, which is complete."""

@@ -139,8 +139,8 @@ def _step_of(runs: Runs, picked: xr.Dataset) -> xr.Dataset | None:
         run = runs.open(str(picked["run"].item()))
     except StorageError:
         return None
-    step = int(picked["step"].item())
-    return run.isel(step=step) if step < run.sizes["step"] else None
+    number = int(picked["step"].item())
+    return run.sel(step=number) if number in run["step"] else None
 
 
 def label(template: str | None, data: xr.Dataset, dim: str | None) -> str:

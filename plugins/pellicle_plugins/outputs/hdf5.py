@@ -42,12 +42,16 @@ class Hdf5(Output):
     def resume(self, place: Place) -> xr.Dataset | None:
         """Return the steps in the file."""
         path = place.file(".h5")
-        return None if place.overwrite or not path.exists() else storage.read(path)
+        if place.overwrite or not path.exists():
+            return None
+        steps = storage.read(path)
+        storage.require_consecutive(steps, path)
+        return steps
 
     def step(self, place: Place, step: xr.Dataset) -> None:
         """Write the step behind the ones before it."""
         path = place.file(".h5")
-        if step["step"].item() == 0:
+        if step["step"].item() == 1:
             storage.write(step, path)
         else:
             storage.append(step, path)

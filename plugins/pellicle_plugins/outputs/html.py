@@ -197,7 +197,7 @@ def _status(result: Result) -> Notice:
         said.append(f"{steps} converged.")
     if coarse := result.coarse():
         said.append(f"In {len(coarse)} of {done} the cells are too coarse for the contact.")
-    details = [f"Step {index + 1}: {message}" for index, message in (*failed, *coarse)]
+    details = [f"Step {step}: {message}" for step, message in (*failed, *coarse)]
     return Notice(" ".join(said), not details and done == wanted, details)
 
 
@@ -242,7 +242,7 @@ def _steps(data: xr.Dataset) -> list[Table]:
 
 
 def _table_of_steps(data: xr.Dataset, names: list[str], caption: str) -> Table:
-    columns, texts = [Column("step")], [[str(index + 1) for index in data["step"].values]]
+    columns, texts = [Column("step")], [list(map(str, data["step"].values))]
     for name in names:
         column, factor = _column(name, data[name])
         columns.append(column)

@@ -46,16 +46,16 @@ class Vtk(Output):
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Write the list of the steps and name all files."""
         steps = result.dataset["step"].values.tolist()
-        files = [_file(place, index) for index in steps]
+        files = [_file(place, number) for number in steps]
         root, collection = _root("Collection")
-        for index, path in zip(steps, files, strict=True):
-            Xml.SubElement(collection, "DataSet", timestep=str(index), file=path.name)
+        for number, path in zip(steps, files, strict=True):
+            Xml.SubElement(collection, "DataSet", timestep=str(number), file=path.name)
         _write(root, place.file(".pvd"))
         return (*files, place.file(".pvd"))
 
 
-def _file(place: Place, index: int) -> Path:
-    return place.file(f"-{index:04d}.vts")
+def _file(place: Place, number: int) -> Path:
+    return place.file(f"-{number:04d}.vts")
 
 
 def _of_step(step: xr.Dataset) -> Xml.Element:
