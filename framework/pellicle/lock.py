@@ -6,7 +6,7 @@ import json
 import os
 import socket
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -20,7 +20,8 @@ from .storage import reported
 def locked(folder: Path, name: str) -> Iterator[None]:
     """Lock the files in ``folder`` that begin with ``name``; ``name.lock`` says who holds them.
 
-    The lock itself is the operating system's, on a second file, and so ends with the process.
+    The lock itself is the operating system's, on a second file, and so ends with the process. Both
+    files are removed at the end.
 
     Raises
     ------
@@ -53,6 +54,10 @@ def locked(folder: Path, name: str) -> Iterator[None]:
         yield
     finally:
         sign.unlink(missing_ok=True)
+        # Before it is released: filelock does not take a lock on a file that has lost its name.
+        # Windows cannot remove an open file, and keeps it.
+        with suppress(PermissionError):
+            Path(lock.lock_file).unlink(missing_ok=True)
         lock.release()
 
 

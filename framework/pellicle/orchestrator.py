@@ -8,7 +8,7 @@ import re
 import time
 import warnings
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager, nullcontext
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from traceback import extract_tb
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -82,7 +82,7 @@ def run(
     outputs = standard_outputs(made.outputs) if directory is not None else made.outputs or ()
     place = Place(Path(directory or "."), name, made.to_json(), made.identity, overwrite)
     bar = Progress(len(made.loading.values), progress)
-    result = execute_alone(made, place, outputs, bar, threads=threads).result
+    result = execute(made, place, outputs, bar, threads=threads).result
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
     if coarse := result.coarse():
@@ -106,35 +106,30 @@ class Executed(NamedTuple):
     """How many of its steps an earlier process had done."""
 
 
-def execute_alone(
-    run: Run, place: Place, outputs: Sequence[Output], bar: Bar, *, threads: int | None = None
-) -> Executed:
-    """Solve a run as `execute` does, while no other process may write its files.
-
-    Raises
-    ------
-    StorageError
-        Another process is writing them.
-    """
-    with locked(place.directory, place.name) if outputs else nullcontext():
-        return execute(run, place, outputs, bar, threads=threads)
-
-
 def execute(
-    run: Run, place: Place, outputs: Sequence[Output], bar: Bar, *, threads: int | None = None
+    run: Run,
+    place: Place,
+    outputs: Sequence[Output],
+    bar: Bar,
+    *,
+    threads: int | None = None,
+    lock: bool = True,
 ) -> Executed:
     """Solve the load steps of ``run`` that ``outputs`` do not have yet at ``place``.
 
-    On an interruption the outputs still get the steps that are finished.
+    On an interruption the outputs still get the steps that are finished. No other process may write
+    there meanwhile; without ``lock`` the caller sees to that.
     """
     import scipy.fft
 
     memory.require(run.grid, len(run.loading.values))
     steps: list[xr.Dataset] = []
     files: list[Path] = []
-    with scipy.fft.set_workers(threads or _cores()), bar:
+    with scipy.fft.set_workers(threads or _cores()), bar, ExitStack() as stack:
         try:
             problems = _problems(run)
+            if outputs and lock:
+                stack.enter_context(locked(place.directory, place.name))
             for output in outputs:
                 with blamed(output):
                     output.open(place)

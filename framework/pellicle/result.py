@@ -115,7 +115,7 @@ class Result:
         return _statuses(failed)
 
     def coarse(self) -> list[tuple[int, str]]:
-        """Return the number of each step whose cells do not resolve the contact, with its status."""
+        """Return the number of each step that is too coarse for its contact, with its status."""
         statuses = _statuses(self.dataset)
         return [(step, message) for step, message in statuses if Status.COARSE.says(message)]
 

@@ -262,7 +262,7 @@ def _parsed(path: Path) -> Iterator[h5py.File]:
 
     sealed = checksum.verify(path)
     with h5py.File(path) as file:
-        if not sealed and _version(file) not in (None, 1):
+        if not sealed and _version(file) == SCHEMA_VERSION:
             raise StorageError(
                 f"{path}: was changed after pellicle wrote it, its checksum is missing; restore it "
                 "from a copy, or run it again"

@@ -259,7 +259,8 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
     bar = Saying(task.steps, say)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)
-        done = execute(task.run, task.place, [hdf5, *task.outputs], bar, threads=threads)
+        outputs = [hdf5, *task.outputs]
+        done = execute(task.run, task.place, outputs, bar, threads=threads, lock=False)
     warned = [str(each.message) for each in caught]
     return done.result.dataset.drop_dims(["x", "y"]).assign_attrs({_WARNED: warned})
 

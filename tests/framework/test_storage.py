@@ -142,7 +142,9 @@ def test_other_schema_version(path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(storage, "SCHEMA_VERSION", 99)
     storage.write(steps(0), path)
     monkeypatch.undo()
-    with pytest.raises(StorageError, match=r"version 99, and this pellicle reads 1.*pellicle 0"):
+    with pytest.raises(
+        StorageError, match=r"version 99, and this pellicle reads 1 to 2.*pellicle 0"
+    ):
         storage.read(path)
 
 
@@ -190,3 +192,47 @@ def test_tails_that_were_joined_already(path: Path, monkeypatch: pytest.MonkeyPa
     assert storage.read(path)["step"].values.tolist() == [0, 1, 2, 3, 4]
     storage.write(steps(0), path)
     assert list(path.parent.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("offset", [0, 2])
+def test_only_the_next_step_is_appended(path: Path, offset: int) -> None:
+    """A step that is there already, or that leaves one out, is refused, and the file stays."""
+    storage.write(steps(1, 2), path)
+    before = path.read_bytes()
+    with pytest.raises(StorageError, match=r"step \d does not continue it: it ends at step 2"):
+        storage.append(steps(2 + offset), path)
+    assert path.read_bytes() == before
+
+
+def test_only_steps_of_the_same_run_are_appended(path: Path) -> None:
+    """A file never holds steps of two configurations under one identity."""
+    storage.write(steps(1).assign_attrs(identity="one"), path)
+    with pytest.raises(StorageError, match="step 2 does not continue it"):
+        storage.append(steps(2).assign_attrs(identity="another"), path)
+    assert storage.read(path).sizes["step"] == 1
+
+
+@pytest.mark.parametrize("numbers", [(0, 1), (2, 3), (1, 3, 4), (1, 2, 2)])
+def test_steps_with_gaps_are_not_resumed(path: Path, numbers: tuple[int, ...]) -> None:
+    """What two processes wrote into one file is refused, with the way out."""
+    storage.write(steps(*numbers), path)
+    with pytest.raises(StorageError, match=r"not 1, 2, …, so it cannot be resumed.*--overwrite"):
+        storage.require_consecutive(storage.read(path), path)
+
+
+def test_steps_without_gaps_are_resumed(path: Path) -> None:
+    """What one process wrote goes on."""
+    storage.write(steps(1, 2, 3), path)
+    storage.require_consecutive(storage.read(path), path)
+
+
+def test_lack_of_memory_is_reported(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file whose content does not fit in memory is refused in words."""
+    storage.write(steps(1), path)
+
+    def exhaust(*arguments: object, **options: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(storage.netcdf, "dataset", exhaust)
+    with pytest.raises(StorageError, match="does not fit in memory"):
+        storage.read(path)

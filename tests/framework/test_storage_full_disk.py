@@ -53,7 +53,7 @@ def write_first(path: Path, steps: list[xr.Dataset]) -> None:
 
 def append(path: Path, steps: list[xr.Dataset]) -> None:
     """Add a step."""
-    storage.append(steps[2], path)
+    storage.append(steps[1], path)
 
 
 def join_tails(path: Path, steps: list[xr.Dataset]) -> None:

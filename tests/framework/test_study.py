@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import warnings
@@ -18,7 +17,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle import lock, storage
+from pellicle import storage
 from pellicle import study as study_module
 from pellicle.cli import app
 from pellicle.components import Monitor
@@ -316,7 +315,7 @@ def test_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         )
     rows = next(tmp_path.glob("*.csv")).read_text(encoding="utf-8").splitlines()
     assert len(rows) == 1 + 3
-    assert [row.split(",")[0] for row in rows[1:]] == ["0", "1", "2"]
+    assert [row.split(",")[0] for row in rows[1:]] == ["1", "2", "3"]
     pl.run(run, directory=tmp_path, progress=False, threads=1, overwrite=True)
     assert len(Counting.solved) == 3
 
@@ -330,49 +329,6 @@ def test_title_and_outputs_make_no_other_run(tmp_path: Path) -> None:
         run | {"outputs": [{"type": "hdf5"}, {"type": "csv"}]}, directory=tmp_path, progress=False
     )
     assert Counting.solved == []
-
-
-def test_two_processes_on_one_folder(tmp_path: Path) -> None:
-    """The second process is told who holds the folder; the lock of a dead one is no hindrance."""
-    code = (
-        "import sys, pathlib\nfrom pellicle import lock\n"
-        "with lock.held(pathlib.Path(sys.argv[1])):\n"
-        "    print('held', flush=True)\n    sys.stdin.read()"
-    )
-    holder = subprocess.Popen(
-        [sys.executable, "-c", code, tmp_path], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    )
-    assert holder.stdout is not None
-    try:
-        assert holder.stdout.readline() == b"held\n"
-        said = (
-            f"is at work: process {holder.pid} on .*wait until it has finished, or choose another"
-        )
-        with pytest.raises(pl.StorageError, match=said):
-            carry_out(study(), tmp_path)
-        assert Counting.solved == []
-        holder.send_signal(signal.SIGKILL)
-        holder.wait()
-        assert (tmp_path / "study.lock").exists()
-        carry_out(study(), tmp_path)
-        assert not (tmp_path / "study.lock").exists()
-    finally:
-        holder.kill()
-        holder.wait()
-        holder.stdout.close()
-        assert holder.stdin is not None
-        holder.stdin.close()
-
-
-def test_lock_is_released(tmp_path: Path) -> None:
-    """A folder may be held again by the same process, but not twice at once."""
-    for _ in range(2):
-        with (
-            lock.held(tmp_path),
-            pytest.raises(pl.StorageError, match="is at work"),
-            lock.held(tmp_path),
-        ):
-            raise AssertionError("held twice")
 
 
 @pytest.fixture

@@ -92,13 +92,13 @@ def _run_one(
     made: Run, folder: Path, name: str, *, quiet: bool, threads: int | None, overwrite: bool
 ) -> None:
     from pellicle.components import Place
-    from pellicle.orchestrator import execute_alone, standard_outputs
+    from pellicle.orchestrator import execute, standard_outputs
     from pellicle.progress import Progress
 
     place = Place(folder, name, made.to_json(), made.identity, overwrite)
     bar = Progress(len(made.loading.values), not quiet)
     try:
-        done = execute_alone(made, place, standard_outputs(made.outputs), bar, threads=threads)
+        done = execute(made, place, standard_outputs(made.outputs), bar, threads=threads)
     except KeyboardInterrupt:
         typer.echo(f"interrupted; what steps were finished are in {folder}", err=True)
         raise typer.Exit(INTERRUPTED) from None

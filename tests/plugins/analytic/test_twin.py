@@ -28,7 +28,7 @@ def test_twin_of_each_prescription(prescribed: str, value: float, what: str) -> 
         loading={prescribed: [0.0, value]},
     )
     made = xr.Dataset(attrs={"configuration": run.to_json()})
-    assert contact(made, 0) is None
-    found = contact(made, 1)
+    assert contact(made, 1) is None
+    found = contact(made, 2)
     expected = 1e-4 if prescribed == "contact_area" else value
     assert getattr(found, what) == pytest.approx(expected, rel=1e-9)

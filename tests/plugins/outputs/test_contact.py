@@ -63,7 +63,7 @@ def test_patches_carry_the_force(left: Left) -> None:
     folder, result = left
     for step in range(2):
         data = result.dataset.isel(step=step)
-        found = rows(folder / "rough-patches.csv", step=str(step))
+        found = rows(folder / "rough-patches.csv", step=str(step + 1))
         assert len(found) == data["patches"].item() > 1
         area = column(found, "area [m2]")
         assert area.sum() == pytest.approx(data["contact_area"].item(), rel=1e-12)
@@ -78,7 +78,9 @@ def test_pressure_distribution_integrates_to_the_force(left: Left) -> None:
     folder, result = left
     for step in range(2):
         data = result.dataset.isel(step=step)
-        found = rows(folder / "rough-distributions.csv", curve=f"step = {step}", series="pressure")
+        found = rows(
+            folder / "rough-distributions.csv", curve=f"step = {step + 1}", series="pressure"
+        )
         share = column(found, "density") * (column(found, "upper") - column(found, "lower"))
         assert share.sum() == pytest.approx(1, rel=1e-12)
         force = data["contact_area"].item() * (share @ column(found, "mean"))
@@ -93,7 +95,7 @@ def test_spectrum_holds_the_roughness(left: Left) -> None:
             ("indenter", 10e-6**2),
             ("displacement", result.dataset["displacement"][step].values.var()),
         ):
-            found = rows(folder / "rough-spectrum.csv", curve=f"step = {step}", series=series)
+            found = rows(folder / "rough-spectrum.csv", curve=f"step = {step + 1}", series=series)
             power = column(found, "density [m4]") @ column(found, "wave_vectors")
             assert power / result.grid.area == pytest.approx(expected, rel=1e-9)
 
@@ -120,7 +122,7 @@ def test_vtk_holds_surface_and_fields(left: Left) -> None:
     folder, result = left
     listed = Xml.parse(folder / "rough.pvd").iter("DataSet")
     files = [(each.attrib["timestep"], each.attrib["file"]) for each in listed]
-    assert files == [("0", "rough-0000.vts"), ("1", "rough-0001.vts")]
+    assert files == [("1", "rough-0001.vts"), ("2", "rough-0002.vts")]
     for step, (_, name) in enumerate(files):
         data = result.dataset.isel(step=step)
         root = Xml.parse(folder / name).getroot()
@@ -166,7 +168,7 @@ def test_odd_results(changes: dict[str, Any], tmp_path: Path) -> None:
     pl.run({**ROUGH, **changes, "outputs": outputs}, directory=tmp_path, progress=False)
     assert {path.name for path in tmp_path.iterdir()} == {
         *(f"rough-{name}.{end}" for name in ("patches", "spectrum") for end in ("png", "csv")),
-        *("rough-distributions.png", "rough-distributions.csv", "rough-0000.vts", "rough.pvd"),
+        *("rough-distributions.png", "rough-distributions.csv", "rough-0001.vts", "rough.pvd"),
     }
     has_indenter = bool(rows(tmp_path / "rough-spectrum.csv", series="indenter"))
     assert has_indenter == (changes.get("indenter") is not PUNCH)

@@ -39,7 +39,7 @@ def test_csv(tmp_path: Path) -> None:
     """The table has units in its header and the result's numbers in one row a step."""
     result = pl.run(_run([{"type": "csv"}]), directory=tmp_path, progress=False)
     rows = _read_csv(tmp_path / "two-steps.csv")
-    assert [row["step"] for row in rows] == ["0", "1"]
+    assert [row["step"] for row in rows] == ["1", "2"]
     for header in ("depth [m]", "force [N]", "contact_area [m2]", "contact_area_yastrebov [m2]"):
         name = header.partition(" ")[0]
         written = [float(row[header]) for row in rows]

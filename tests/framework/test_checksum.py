@@ -1,0 +1,182 @@
+"""A result file that was changed is refused before HDF5 parses it; files of version 1 are read."""
+
+from __future__ import annotations
+
+import gzip
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle import checksum, storage
+from pellicle.cli import app
+
+DATA = Path(__file__).parents[1] / "data"
+RUN = {
+    "grid": {"points": 16, "size": "0.4 mm", "boundary": "periodic"},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "50 mN/m"},
+    "indenter": {"type": "paraboloid", "radius": "1 mm"},
+    "loading": {"mean_pressure": ["50 Pa", "60 Pa", "70 Pa"]},
+    "corrections": [{"type": "yastrebov"}],
+}
+
+
+@pytest.fixture(scope="module")
+def content(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """Return the bytes of a result file of three steps, which were written one by one."""
+    path = tmp_path_factory.mktemp("content") / "r.h5"
+    steps = pl.run(RUN, progress=False, threads=1).dataset
+    storage.write(steps.isel(step=[0]), path)
+    for index in (1, 2):
+        storage.append(steps.isel(step=[index]), path)
+    return path.read_bytes()
+
+
+def test_a_changed_byte_is_never_another_number(content: bytes, tmp_path: Path) -> None:
+    """With any bit of the file changed it is refused, or all that it holds is as it was."""
+    path = tmp_path / "r.h5"
+    path.write_bytes(content)
+    whole = pl.load(path).dataset
+    chance = np.random.default_rng(7)
+    # The end is the checksum itself; the rest is sampled.
+    places = [
+        *chance.choice(len(content), 120, replace=False),
+        *range(len(content) - 30, len(content)),
+    ]
+    refused = 0
+    for place in map(int, places):
+        changed = bytearray(content)
+        changed[place] ^= 1 << int(chance.integers(8))
+        path.write_bytes(changed)
+        try:
+            again = pl.load(path).dataset
+        except pl.StorageError:
+            refused += 1
+        else:
+            xr.testing.assert_identical(again, whole)
+    # Unless the fields are a large part of a file, hardly a byte is not told.
+    assert refused > 0.9 * len(places)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.99, 0.9999])
+def test_a_truncated_file_is_refused(share: float, content: bytes, tmp_path: Path) -> None:
+    """A copy that ended early is not read."""
+    path = tmp_path / "r.h5"
+    path.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(pl.StorageError, match=r"r\.h5: "):
+        pl.load(path)
+
+
+def test_a_file_that_others_changed_is_refused(content: bytes, tmp_path: Path) -> None:
+    """What h5py writes into a result takes its checksum away, and the message says so."""
+    path = tmp_path / "r.h5"
+    path.write_bytes(content)
+    with h5py.File(path, "r+") as file:
+        file["force"][0] *= 2
+        file.attrs["note"] = "a longer text than there was room for" * 100
+    with pytest.raises(
+        pl.StorageError, match=r"its checksum is missing|does not match its checksum"
+    ):
+        pl.load(path)
+
+
+def test_fields_are_verified_as_they_are_read(content: bytes, tmp_path: Path) -> None:
+    """The checksum leaves compressed chunks out, whose own check is met when they are read."""
+    path = tmp_path / "r.h5"
+    path.write_bytes(content)
+    with h5py.File(path) as file:
+        chunk = file["pressure"].id.get_chunk_info(1)
+    changed = bytearray(content)
+    changed[chunk.byte_offset + chunk.size // 2] ^= 16
+    path.write_bytes(changed)
+    assert checksum.verify(path)
+    assert storage.scalars(path).sizes["step"] == 3
+    with pytest.raises(pl.StorageError, match="not a readable result file"):
+        pl.load(path)
+
+
+@pytest.mark.parametrize(
+    "record",
+    [
+        b"",
+        b"[]",
+        b"{}",
+        b'{"sha256": "", "end": -1, "skipped": []}',
+        b'{"sha256": "", "end": 1e9, "skipped": [[0, -5]]}',
+        b'{"sha256": "", "end": 0, "skipped": [["a", 3]]}',
+        b"[" * 100_000,
+        b"\xff\xfe",
+    ],
+)
+def test_strange_records_are_refused(record: bytes, content: bytes, tmp_path: Path) -> None:
+    """Whatever stands where the checksum should, the file is refused in words."""
+    path = tmp_path / "r.h5"
+    path.write_bytes(content + record + b"%016x" % len(record) + b"pellicle")
+    with pytest.raises(pl.StorageError, match="does not match its checksum"):
+        pl.load(path)
+
+
+def test_other_readers_are_not_disturbed(content: bytes, tmp_path: Path) -> None:
+    """With the checksum behind it the file opens with h5py and with xarray."""
+    path = tmp_path / "r.h5"
+    path.write_bytes(content)
+    force = pl.load(path).dataset["force"].values
+    with h5py.File(path) as file:
+        np.testing.assert_array_equal(file["force"][:], force)
+    with xr.open_dataset(path, engine="h5netcdf") as opened:
+        np.testing.assert_array_equal(opened["force"].values, force)
+
+
+@pytest.fixture
+def version_1(tmp_path: Path) -> Path:
+    """Return a result of two steps of three, as the version before the checksum wrote it.
+
+    By commit 0ead6f1 of this repository; the run is the one in its attributes, interrupted.
+    """
+    path = tmp_path / "old.h5"
+    path.write_bytes(gzip.decompress((DATA / "result_v1.h5.gz").read_bytes()))
+    return path
+
+
+def test_version_1_is_read(version_1: Path) -> None:
+    """A file without a checksum is read as it is; its steps, which counted from 0, from 1."""
+    data = pl.load(version_1).dataset
+    assert data["step"].values.tolist() == [1, 2]
+    assert data["force"].values.tolist() == [1e-6, 2e-6]
+    assert storage.scalars(version_1)["step"].values.tolist() == [1, 2]
+
+
+def test_version_1_is_resumed(version_1: Path) -> None:
+    """The same run goes on in it: the identity of a run is not that of its file's layout."""
+    held = pl.load(version_1)
+    run = held.configuration | {"title": "old"}
+    with pytest.warns(pl.ConvergenceWarning, match="too coarse"):
+        result = pl.run(run, directory=version_1.parent, progress=False, threads=1)
+    assert result.dataset["step"].values.tolist() == [1, 2, 3]
+    again = pl.load(version_1).dataset
+    xr.testing.assert_equal(again, result.dataset)
+    xr.testing.assert_equal(again.isel(step=[0, 1]), held.dataset)
+    assert storage.attributes(version_1)["identity"] == held.dataset.attrs["identity"]
+    assert checksum.verify(version_1)
+
+
+def test_steps_count_from_1_everywhere(tmp_path: Path) -> None:
+    """File, CSV, dataset, console and messages give a step the same number."""
+    file = tmp_path / "count.toml"
+    run = pl.Run(**RUN | {"outputs": [{"type": "hdf5"}, {"type": "csv"}]})
+    file.write_text(run.to_toml(), encoding="utf-8")
+    shown = CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path)])
+    assert [line.split()[0] for line in shown.stdout.splitlines()[1:4]] == ["1", "2", "3"]
+    assert pl.load(tmp_path / "count.h5").dataset["step"].values.tolist() == [1, 2, 3]
+    with h5py.File(tmp_path / "count.h5") as stored:
+        assert stored["step"][:].tolist() == [1, 2, 3]
+    rows = (tmp_path / "count.csv").read_text(encoding="utf-8").splitlines()
+    assert [row.split(",")[0] for row in rows] == ["step", "1", "2", "3"]
+    study = json.loads(run.to_json()) | {"study": {"vary": {"kernel.tension": [0.0, 0.1]}}}
+    table = pl.run_study(study, progress=False)
+    assert table["step"].values.tolist() == [1, 2, 3]

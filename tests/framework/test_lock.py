@@ -1,0 +1,126 @@
+"""One process at a time writes the files of a run or of a study."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle.cli import app
+from pellicle.lock import locked
+
+RUN = """
+[grid]
+points = 16
+size = "0.4 mm"
+[kernel]
+type = "half_space"
+reduced_modulus = "10 kPa"
+[indenter]
+type = "flat_punch"
+radius = "0.1 mm"
+[loading]
+depth = ["5 um", "10 um"]
+[[outputs]]
+type = "hdf5"
+"""
+STUDY = (
+    RUN
+    + """
+[study.vary]
+kernel.reduced_modulus = ["10 kPa", "20 kPa"]
+"""
+)
+
+
+@contextmanager
+def another_process(folder: Path, name: str) -> Iterator[subprocess.Popen[bytes]]:
+    """Have another process lock files."""
+    code = (
+        "import sys, pathlib\nfrom pellicle.lock import locked\n"
+        "with locked(pathlib.Path(sys.argv[1]), sys.argv[2]):\n"
+        "    print('locked', flush=True)\n    sys.stdin.read()"
+    )
+    holder = subprocess.Popen(
+        [sys.executable, "-c", code, folder, name], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    assert holder.stdin is not None
+    assert holder.stdout is not None
+    try:
+        assert holder.stdout.readline() == b"locked\n"
+        yield holder
+    finally:
+        holder.kill()
+        holder.wait()
+        holder.stdin.close()
+        holder.stdout.close()
+
+
+@pytest.mark.parametrize(("text", "name"), [(RUN, "work"), (STUDY, "study")])
+def test_second_process_is_refused(text: str, name: str, tmp_path: Path) -> None:
+    """A second run or study at the same files ends at once, and names the holder.
+
+    The lock of a process that was killed is no hindrance, and no lock is left behind.
+    """
+    file, out = tmp_path / "work.toml", tmp_path / "out"
+    file.write_text(text, encoding="utf-8")
+    command = ["run", str(file), "-o", str(out), "-q"]
+    with another_process(out, name) as holder:
+        refused = CliRunner().invoke(app, command)
+        assert refused.exit_code == 2
+        assert f"{out / name} is locked by process {holder.pid} on " in refused.stderr.replace(
+            "\n", ""
+        )
+        assert "choose another folder (-o DIR)" in refused.stderr.replace("\n", " ")
+        assert sorted(path.name for path in out.iterdir()) == [f".{name}.lock", f"{name}.lock"]
+        holder.send_signal(signal.SIGKILL)
+        holder.wait()
+        assert CliRunner().invoke(app, command).exit_code == 0
+    assert not list(out.rglob("*.lock"))
+
+
+def test_library_run_is_refused(tmp_path: Path) -> None:
+    """A run from Python locks its files too, by the name of its file."""
+    (tmp_path / "work.toml").write_text(RUN, encoding="utf-8")
+    with (
+        locked(tmp_path / "out", "work"),
+        pytest.raises(pl.StorageError, match="work is locked by process"),
+    ):
+        pl.run(tmp_path / "work.toml", directory=tmp_path / "out", progress=False)
+
+
+def test_other_files_are_not_locked(tmp_path: Path) -> None:
+    """Runs of another name in the same folder, and of the same name elsewhere, do not wait."""
+    (tmp_path / "work.toml").write_text(RUN, encoding="utf-8")
+    with locked(tmp_path / "out", "other"), locked(tmp_path / "elsewhere", "work"):
+        result = pl.run(tmp_path / "work.toml", directory=tmp_path / "out", progress=False)
+    assert result.converged
+
+
+def test_nothing_is_locked_where_nothing_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run without outputs leaves the folder alone."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "work.toml").write_text(RUN.replace('[[outputs]]\ntype = "hdf5"', ""), "utf-8")
+    with locked(tmp_path, "work"):
+        assert pl.run("work.toml", progress=False).converged
+
+
+def test_lock_is_released(tmp_path: Path) -> None:
+    """Files may be locked again by the same process, but not twice at once."""
+    for _ in range(2):
+        with (
+            locked(tmp_path, "work"),
+            pytest.raises(pl.StorageError, match="is locked by process"),
+            locked(tmp_path, "work"),
+        ):
+            raise AssertionError("locked twice")
+    assert list(tmp_path.iterdir()) == []
