@@ -11,21 +11,21 @@ import json
 from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Self, TypeVar
+from typing import Annotated, Any, Self
 
+import tomli_w
 from pydantic import Field, model_validator
 
 from .clashes import refuse_clashes
-from .components import AreaCorrection, Component, Indenter, Kernel, Output, Solver
+from .components import AreaCorrection, Indenter, Kernel, Output, Solver
 from .errors import ConfigError
 from .fields import FromRegistry
 from .grid import Grid
 from .loading import Loading
 from .model import Model, paths_relative_to, replaced
 from .plugins import registry
-from .toml import parse_override, read_toml, toml_lines
+from .toml import parse_override, read_toml
 
-AnyComponent = TypeVar("AnyComponent", bound=Component)
 DEFAULT_SOLVER = "active_set"
 # Raised when equal configurations begin to give other numbers, not with the layout of files.
 _NUMBERS_VERSION = 1
@@ -140,7 +140,7 @@ class Run(Model):
 
     def to_toml(self) -> str:
         """Return the whole configuration as TOML, defaults included, SI floats."""
-        return "".join(toml_lines(json.loads(self.to_json())))
+        return tomli_w.dumps(json.loads(self.to_json()))
 
 
 def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
@@ -201,14 +201,3 @@ def _identified(value: object, said: Any) -> Any:
 def _digest(path: Path, changed: int, size: int) -> str:
     """Return the hash of a file; the runs of a study may all name the same large one."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
-
-
-def component(base: type[AnyComponent], type_: str, fields: Mapping[str, Any]) -> AnyComponent:
-    """Return a component of ``base``'s family by its type and fields.
-
-    Raises
-    ------
-    ConfigError, PluginError
-        As for a run.
-    """
-    return registry().make(base, {"type": type_, **fields})

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
+import tomli_w
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from . import axes, memory
@@ -24,7 +25,6 @@ from .fields import FromRegistry, json_schema
 from .loading import ON_DEMAND
 from .model import Model, paths_relative_to, replaced
 from .plugins import registry
-from .toml import toml_lines
 from .units import quantity_of, split
 
 DEFAULT_EXECUTOR = "serial"
@@ -306,7 +306,7 @@ class Study(Model):
 
     def to_toml(self) -> str:
         """Return the study as a TOML file."""
-        return "".join(toml_lines(json.loads(self.to_json())))
+        return tomli_w.dumps(json.loads(self.to_json()))
 
     def _along(self, key: str, values: axes.Values) -> Iterator[tuple[Any, Run]]:
         """Yield each value of an axis with a run that has it."""

@@ -1,13 +1,10 @@
-"""Run files: read, changed by ``--set``, and written."""
+"""Run files: read, and changed by ``--set``."""
 
 from __future__ import annotations
 
-import json
-import re
 import tomllib
-from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from .errors import ConfigError
 
@@ -56,36 +53,3 @@ def _value(text: str) -> Any:
         return tomllib.loads(f"value = {text}")["value"]
     except (ValueError, RecursionError):
         return text.strip()
-
-
-def toml_lines(table: Mapping[str, Any], path: str = "") -> Iterable[str]:
-    """Yield the TOML of a table whose values are JSON's: plain values first, then its tables."""
-    tables = {k: v for k, v in table.items() if _is_table(v)}
-    for key, value in table.items():
-        if key not in tables:
-            yield f"{_key(key)} = {_inline(value)}\n"
-    for key, value in tables.items():
-        inner = f"{path}{_key(key)}"
-        for entry in value if isinstance(value, list) else [value]:
-            yield f"\n[[{inner}]]\n" if isinstance(value, list) else f"\n[{inner}]\n"
-            yield from toml_lines(entry, f"{inner}.")
-
-
-def _is_table(value: object) -> bool:
-    is_list = isinstance(value, list) and value
-    return isinstance(value, dict) or (
-        bool(is_list) and all(isinstance(entry, dict) for entry in cast("list[Any]", value))
-    )
-
-
-def _key(name: str) -> str:
-    return name if re.fullmatch(r"[\w-]+", name, re.ASCII) else _inline(name)
-
-
-def _inline(value: Any) -> str:
-    if isinstance(value, dict):
-        return f"{{{', '.join(f'{_key(k)} = {_inline(v)}' for k, v in value.items())}}}"
-    if isinstance(value, list):
-        return f"[{', '.join(map(_inline, value))}]"
-    # JSON's text is TOML's, but for this one character.
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -10,12 +10,12 @@ from collections.abc import Callable, Iterable, Iterator
 from importlib.metadata import PackageNotFoundError, version
 from typing import Annotated, Any, get_args, get_origin
 
+import tomli_w
 from pydantic import ValidationError
 
 from pellicle.components import FAMILIES, Component
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.plugins import GROUP, checked_type, registry
-from pellicle.toml import toml_lines
 from pellicle.units import Quantity
 
 from .rules import Rule, keep, require
@@ -134,7 +134,7 @@ def _table(component: Component) -> dict[str, Any]:
 
 
 def _by_toml(table: dict[str, Any]) -> dict[str, Any]:
-    read: dict[str, Any] = tomllib.loads("".join(toml_lines({"it": table})))["it"]
+    read: dict[str, Any] = tomllib.loads(tomli_w.dumps({"it": table}))["it"]
     return read
 
 

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import tomli_w
 from pydantic import Field
 
 from pellicle import Grid, Loading, hookimpl, storage
@@ -36,7 +37,6 @@ from pellicle.plotting import FIGURES, STUDY_FIGURES, axis_unit, study_curves, s
 from pellicle.result import Result
 from pellicle.study import coarse, each_run, failures, reasons, standing
 from pellicle.table import verdict
-from pellicle.toml import toml_lines
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -375,9 +375,7 @@ def _origin(attributes: dict[str, str], configuration: dict[str, Any]) -> Iterat
 
 def _reproduce(place: Place) -> Iterator[Code]:
     name, folder = f"{place.name}.toml", place.directory.resolve().name or place.name
-    yield Code(
-        "".join(toml_lines(json.loads(place.configuration))), "All that was asked, in SI.", name
-    )
+    yield Code(tomli_w.dumps(json.loads(place.configuration)), "All that was asked, in SI.", name)
     yield Code(
         f"pellicle run {shlex.quote(name)} -o {shlex.quote(folder)}",
         "With that file in the current folder:",
