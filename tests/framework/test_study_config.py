@@ -168,8 +168,8 @@ def test_derived_names_what_the_loading_brings() -> None:
 
 def test_axes_without_quotes(tmp_path: Path) -> None:
     """A dotted key without quotes makes nested tables in TOML, and means the same."""
-    text = pl.Run(**RUN).to_toml() + "[study.vary]\nkernel.tension = [0, 1]\nkernel.NAME = [1e4, 2e4]"
-    (tmp_path / "a.toml").write_text(text.replace("NAME", "reduced_modulus"), encoding="utf-8")
+    vary = "[study.vary]\nkernel.tension = [0, 1]\nkernel.reduced_modulus = [1e4, 2e4]"
+    (tmp_path / "a.toml").write_text(pl.Run(**RUN).to_toml() + vary, encoding="utf-8")
     made = Study.from_toml(tmp_path / "a.toml", ["study.vary.kernel.tension=[0, 1, 2]"])
     assert made.dimensions.keys() == {TENSION, "kernel.reduced_modulus"}
     assert made.shape == (3, 2)
