@@ -36,9 +36,9 @@ from .plugins import registry as registry
 from .problem import Problem as Problem
 from .result import Result as Result
 from .result import Solution as Solution
-from .result import Status as Status
-from .result import Stop as Stop
 from .result import load as load
+from .status import Status as Status
+from .status import Stop as Stop
 from .study import run_study as run_study
 from .study_config import Study as Study
 from .study_config import schema as schema

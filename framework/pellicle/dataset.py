@@ -41,7 +41,8 @@ DESCRIPTIONS = {
     "residual_load": ("1", "relative error of the prescribed force"),
     "residual_area": ("1", "relative error of the contact area or radius, where prescribed"),
     "converged": ("1", "whether every residual is under the tolerance"),
-    "status": ("", "how the step ended"),
+    "status_code": ("", "how the step ended, a name of pellicle.Status"),
+    "status": ("", "how the step ended, in a sentence"),
     "wall_time": ("s", "time that the step took"),
 }
 """Unit and meaning of each variable of a result."""

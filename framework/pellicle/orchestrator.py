@@ -28,8 +28,9 @@ from .problem import Equilibrium, Problem, Stiffness, measure, measure_stiffness
 from .progress import Bar, Progress
 from .provenance import provenance
 from .resolution import warn_of_cells
-from .result import Result, Solution, Status, said_of_steps
+from .result import Result, Solution, said_of_steps
 from .seam import warn_of_seam
+from .status import Status
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -391,7 +392,8 @@ def _solve_steps(
             **_asked(run, problem, found, step, stiffness),
             "iterations": step.solution.iterations,
             "operator_applications": used,
-            "converged": status in (Status.CONVERGED, Status.NEAREST_AREA, Status.COARSE),
+            "converged": status.converged,
+            "status_code": status.name,
             "status": message,
             "wall_time": time.perf_counter() - started,
         }

@@ -1,78 +1,23 @@
-"""What comes out: the status of a step, what a solver returns, and the result of a run."""
+"""What comes out: what a solver returns, and the result of a run."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import storage
 from .errors import StorageError
 from .grid import Grid
+from .status import Status as Status
+from .status import Stop as Stop
 
 if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
     from numpy.typing import NDArray
-
-
-class Status(Enum):
-    """How a step ended; the value is what the user is told."""
-
-    CONVERGED = "converged"
-    NEAREST_AREA = (
-        "converged; the contact area misses the prescribed one by {measure:.1e}, and no load "
-        "brings a nearer number of whole cells: more points do"
-    )
-    COARSE = (
-        "converged, but the cells are too coarse for this contact, which covers {cells} of them: "
-        "force, depth and area may be far off; use more points, or a smaller grid.size"
-    )
-    NOT_FINITE = (
-        "the pressure became NaN or infinite; check the kernel's compliance and the profile for "
-        "extreme values"
-    )
-    NEGATIVE_PRESSURE = "the solver returned a negative pressure, {measure:.1e} of the highest"
-    CONTACT_RESIDUAL = (
-        "the surface misses the indenter inside the contact by {measure:.1e} of the indenter's "
-        "height range there, over the tolerance {tolerance:.1e}; {remedy}"
-    )
-    PENETRATION = (
-        "the surface penetrates the indenter outside the contact by {measure:.1e} of the height "
-        "range in contact, over the tolerance {tolerance:.1e}; {remedy}"
-    )
-    COMPLEMENTARITY = (
-        "pressure acts across a gap: complementarity {measure:.1e} is over the tolerance "
-        "{tolerance:.1e}; {remedy}"
-    )
-    LOAD = "the force misses the prescribed one by {measure:.1e}, over {tolerance:.1e}; {remedy}"
-    AREA = (
-        "the contact area misses the prescribed one by {measure:.1e}, over {tolerance:g}; {remedy}"
-    )
-    STIFFNESS = (
-        "the contact stiffness is not known: its displacement misses by {measure:.1e}, over the "
-        "tolerance {tolerance:.1e}; loosen solver.tolerance, or leave loading.stiffness out"
-    )
-    CONTACT_AT_EDGE = (
-        "the contact reaches the edge of the domain, where the indenter does not end, so force "
-        "and area are wrong; enlarge grid.size = {size} or prescribe less than {prescribed}"
-    )
-
-    def says(self, message: str) -> bool:
-        """Whether this is what a user was told by ``message``, up to its first figure."""
-        return message.startswith(self.value.partition("{")[0])
-
-
-class Stop(Enum):
-    """Why a solver stopped; the value is the remedy if the result is not good enough."""
-
-    DONE = "tighten the solver's own criterion"
-    ITERATION_LIMIT = "the limit of iterations was reached: raise solver.max_iterations"
-    STALLED = "no progress any more: the tolerance is below round-off here, loosen solver.tolerance"
-    NOT_FINITE = "the iteration met a value that is not finite"
 
 
 @dataclass(frozen=True)
@@ -116,8 +61,8 @@ class Result:
 
     def coarse(self) -> list[tuple[int, str]]:
         """Return the number of each step that is too coarse for its contact, with its status."""
-        statuses = _statuses(self.dataset)
-        return [(step, message) for step, message in statuses if Status.COARSE.says(message)]
+        coarse = self.dataset["status_code"].values == Status.COARSE.name
+        return _statuses(self.dataset.isel(step=coarse))
 
     def _repr_html_(self) -> str:
         """Return what a notebook shows."""

@@ -24,7 +24,7 @@ from .lock import locked
 from .orchestrator import execute, left_by, standard_outputs
 from .plugins import registry
 from .progress import Saying, StudyProgress
-from .result import Status
+from .status import Status
 from .study_config import Study
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 _SHOWN = ("depth", "force", "contact_area", "contact_fraction")
 """Numbers of the last step that the list of runs has, besides derived ones."""
 _TABLE_SHARE = 0.05
+_WITHOUT_NUMBERS = (Status.NOT_RUN, Status.FAILED)
 _WARNED = "warned"
 
 
@@ -155,7 +156,7 @@ def run_study(
             threads=threads,
         ).table
     if message := failures(made):
-        warnings.warn(message, ConvergenceWarning, stacklevel=2)
+        warnings.warn(f"{message}; see status", ConvergenceWarning, stacklevel=2)
     return add_fields(made, Path(directory) / "runs") if fields and directory else made
 
 
@@ -230,7 +231,7 @@ def _carry_out(
                 del left[task.index]
                 if isinstance(outcome, Exception):
                     _collect(task, rows)
-                    rows.fail(task.index, f"{table.FAILED}{_one_line(outcome)}")
+                    rows.fail(task.index, _one_line(outcome))
                 else:
                     rows.put(task.index, outcome)
                     doubts |= dict.fromkeys(outcome.attrs.pop(_WARNED))
@@ -245,7 +246,7 @@ def _carry_out(
         drawn = left_by(
             outputs, lambda output: output.study(place, made), study.points[0].run.outputs
         )
-    for message in (*doubts, *coarse(made)):
+    for message in (*doubts, *(f"{message}; see status" for message in coarse(made))):
         warnings.warn(message, stacklevel=4)
     return Carried(made, (*files.paths, *drawn), taken)
 
@@ -327,22 +328,22 @@ def rows(made: xr.Dataset) -> list[dict[str, str]]:
 
 def standing(row: xr.Dataset) -> tuple[int, int, str]:
     """Return the steps that a run of a table has, those that it should have, and its worst end."""
-    verdicts = [table.verdict(str(status)) for status in row["status"].values if status]
-    worst = next((w for w in ("failed", table.NOT_RUN, "NOT CONVERGED") if w in verdicts), "")
-    done = sum(verdict in ("converged", "NOT CONVERGED") for verdict in verdicts)
-    return done, len(verdicts), worst or "converged"
+    statuses = [Status[code] for code in row["status_code"].values if code]
+    verdicts = {status.verdict for status in statuses}
+    worst = next((w for w in ("failed", "not run", "NOT CONVERGED") if w in verdicts), "converged")
+    done = sum(status not in _WITHOUT_NUMBERS for status in statuses)
+    return done, len(statuses), worst
 
 
 def reasons(made: xr.Dataset) -> Iterator[str]:
     """Yield a line for each run of a table that is not as it should be: which, and why."""
     for row in each_run(made):
-        bad = [
-            s for s in map(str, row["status"].values) if table.verdict(s) not in ("", "converged")
-        ]
-        if bad and bad[0] != table.NOT_RUN:
+        codes = [code for code in row["status_code"].values if code]
+        bad = next((n for n, code in enumerate(codes) if not Status[code].converged), None)
+        if bad is not None and codes[bad] != Status.NOT_RUN.name:
             names = (name for name in row.coords if name != "step")
             where = ", ".join(f"{name} = {_text(row[name].item())}" for name in names)
-            yield f"{row['run'].item()} ({where}): {bad[0]}"
+            yield f"{row['run'].item()} ({where}): {row['status'].values[bad]}"
 
 
 def each_run(made: xr.Dataset) -> Iterator[xr.Dataset]:
@@ -357,31 +358,30 @@ def _text(value: object) -> str:
 
 
 def failures(made: xr.Dataset) -> str:
-    """Return in a sentence which runs of a table are not as they should be; empty if all are."""
-    verdicts = [list(map(table.verdict, each)) for each in _statuses(made)]
-    counts = {
-        "failed": sum("failed" in each for each in verdicts),
-        "did not converge": sum("NOT CONVERGED" in each for each in verdicts),
-        "were not finished": sum(table.NOT_RUN in each for each in verdicts),
+    """Return how many runs of a table are not as they should be, and how; empty if all are."""
+    verdicts = [{status.verdict for status in statuses} for statuses in _statuses(made)]
+    messages = {
+        "failed": "failed",
+        "NOT CONVERGED": "did not converge",
+        "not run": "were not finished",
     }
-    said = [f"{count} {what}" for what, count in counts.items() if count]
-    return f"of {len(verdicts)} runs {', '.join(said)}; see status" if said else ""
+    counts = {verdict: sum(verdict in run for run in verdicts) for verdict in messages}
+    parts = [f"{count} {messages[verdict]}" for verdict, count in counts.items() if count]
+    return f"of {len(verdicts)} runs {', '.join(parts)}" if parts else ""
 
 
 def coarse(made: xr.Dataset) -> Iterator[str]:
     """Yield in a sentence how many runs of a table have contacts that the cells do not resolve."""
     statuses = _statuses(made)
-    count = sum(any(Status.COARSE.says(str(each)) for each in row) for row in statuses)
+    count = sum(Status.COARSE in run for run in statuses)
     if count:
-        yield (
-            f"of {len(statuses)} runs, in {count} the cells are too coarse for this contact; "
-            "see status"
-        )
+        yield f"of {len(statuses)} runs, in {count} the cells are too coarse for this contact"
 
 
-def _statuses(made: xr.Dataset) -> Any:
-    status = made["status"].values
-    return status.reshape(-1, status.shape[-1])
+def _statuses(made: xr.Dataset) -> list[list[Status]]:
+    """Return the statuses of the steps of each run of a table."""
+    codes = made["status_code"].values
+    return [[Status[code] for code in run if code] for run in codes.reshape(-1, codes.shape[-1])]
 
 
 def _by_run(named: Sequence[Output]) -> tuple[Output, ...]:
@@ -415,7 +415,7 @@ def _require_table(path: Path, overwrite: bool) -> None:
 
 def _verdict(outcome: xr.Dataset | Exception) -> tuple[str, bool]:
     if isinstance(outcome, Exception):
-        return f"{table.FAILED}{_one_line(outcome)}", True
+        return Status.FAILED.value.format(reason=_one_line(outcome)), True
     if outcome["converged"].values.all():
         return "converged", False
     return "NOT CONVERGED", True

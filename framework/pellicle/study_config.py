@@ -337,11 +337,11 @@ class Study(Model):
     def _check_derived(self) -> None:
         """Refuse expressions that name what a table will not have, before anything is run."""
         run = self.points[0].run
-        absent = {"status"} | (ON_DEMAND - run.loading.brings)
+        absent = {"status", "status_code"} | (ON_DEMAND - run.loading.brings)
         there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - absent
         there |= {f"contact_area_{getattr(each, 'type', '')}" for each in run.corrections}
         there |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
-        taken = {*FUNCTIONS, *CONSTANTS, "status", "run", "step", "x", "y"}
+        taken = {*FUNCTIONS, *CONSTANTS, "status", "status_code", "run", "step", "x", "y"}
         problems: list[Problem] = []
         for name, text in self.derived.items():
             try:

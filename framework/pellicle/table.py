@@ -13,13 +13,11 @@ from . import storage
 from .columns import FIRST_RUN, derive
 from .dataset import header
 from .provenance import now_with
-from .result import Status
+from .status import Status
 from .study_config import Study
 
 if TYPE_CHECKING:
     import xarray as xr
-
-NOT_RUN = "not run"
 
 
 class Table:
@@ -36,10 +34,12 @@ class Table:
         }
         steps = {point.place: len(point.run.loading.values) for point in study.points}
         shape = *study.shape, max(steps.values())
-        self._status = np.full(shape, "", dtype=object)
+        self._texts = {name: np.full(shape, "", dtype=object) for name in _TEXTS}
         self._runs = np.full(study.shape, "", dtype=object)
         for point in study.points:
-            self._status[point.place][: steps[point.place]] = NOT_RUN
+            count = steps[point.place]
+            self._texts["status"][point.place][:count] = Status.NOT_RUN.value
+            self._texts["status_code"][point.place][:count] = Status.NOT_RUN.name
             self._runs[point.place] = point.run.identity[:16]
         self._numbers: dict[str, np.ndarray[Any, np.dtype[Any]]] = {}
         self._said: dict[str, dict[str, str]] = {}
@@ -49,17 +49,21 @@ class Table:
         count = scalars.sizes["step"]
         for name, variable in scalars.data_vars.items():
             self._said.setdefault(str(name), dict(variable.attrs))
-            if name == "status":
-                self._status[index][:count] = variable.values
+            if name in _TEXTS:
+                self._texts[str(name)][index][:count] = variable.values
                 continue
             missing = False if variable.dtype == bool else np.nan
-            kept = self._numbers.setdefault(str(name), np.full(self._status.shape, missing))
+            kept = self._numbers.setdefault(
+                str(name), np.full(self._texts["status"].shape, missing)
+            )
             kept[index][:count] = variable.values
 
-    def fail(self, index: tuple[int, ...], message: str) -> None:
-        """Say why a run has no more steps."""
-        status = self._status[index]
-        status[status == NOT_RUN] = message
+    def fail(self, index: tuple[int, ...], reason: str) -> None:
+        """Record why a run has no more steps."""
+        codes = self._texts["status_code"][index]
+        missing = codes == Status.NOT_RUN.name
+        codes[missing] = Status.FAILED.name
+        self._texts["status"][index][missing] = Status.FAILED.value.format(reason=reason)
 
     def dataset(self) -> xr.Dataset:
         """Return the table, NaN where there is no number."""
@@ -70,7 +74,8 @@ class Table:
             name: (dimensions, _whole(values, name), self._said[name])
             for name, values in self._numbers.items()
         }
-        variables["status"] = dimensions, self._status.copy(), self._said.get("status", {})
+        for name, texts in self._texts.items():
+            variables[name] = dimensions, texts.copy(), self._said.get(name, {})
         about = {"long_name": "name of the run's file"}
         variables["run"] = dimensions[:-1], self._runs.copy(), about
         coordinates: dict[str, Any] = {
@@ -79,30 +84,20 @@ class Table:
         }
         coordinates["step"] = (
             "step",
-            np.arange(1, self._status.shape[-1] + 1),
+            np.arange(1, self._texts["status"].shape[-1] + 1),
             {"long_name": "load step, counted from 1"},
         )
         made = xr.Dataset(variables, coordinates, self._attributes)
         return derive(made, self._study.derived) if self._numbers else made
 
 
+_TEXTS = ("status_code", "status")
 _COUNTS = ("iterations", "operator_applications", "patches")
 
 
 def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any, np.dtype[Any]]:
     """Return a copy, in whole numbers where they count something and none is missing."""
     return values.astype(int) if name in _COUNTS and np.isfinite(values).all() else values.copy()
-
-
-def verdict(status: str) -> str:
-    """Return one word for the status of a step in a table."""
-    if status in ("", NOT_RUN):
-        return status
-    begins = {Status.CONVERGED.value: "converged", FAILED: "failed"}
-    return next((begins[head] for head in begins if status.startswith(head)), "NOT CONVERGED")
-
-
-FAILED = "failed: "
 
 
 def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:

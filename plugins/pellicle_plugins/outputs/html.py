@@ -35,8 +35,8 @@ from pellicle.page import (
 from pellicle.page import Field as Shown
 from pellicle.plotting import FIGURES, STUDY_FIGURES, axis_unit, study_curves, svg
 from pellicle.result import Result
+from pellicle.status import Status
 from pellicle.study import coarse, each_run, failures, reasons, standing
-from pellicle.table import verdict
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -203,10 +203,10 @@ def _status(result: Result) -> Notice:
 
 def _status_of_study(table: xr.Dataset, count: int) -> Notice:
     bad = failures(table)
-    doubts = [text.removesuffix("; see status") for text in coarse(table)]
+    doubts = [*coarse(table)]
     if not bad:
         return Notice(f"Every step of all {count} runs converged.", not doubts, doubts)
-    said = f"Not all is well: {bad.removesuffix('; see status')}."
+    said = f"Not all is well: {bad}."
     return Notice(said, False, [*reasons(table), *doubts])
 
 
@@ -249,8 +249,8 @@ def _table_of_steps(data: xr.Dataset, names: list[str], caption: str) -> Table:
         style = ".1e" if name.startswith("residual_") else ".6g"
         texts.append([_said(value, factor, style) for value in data[name].values.tolist()])
     rows = [
-        [*cells, _verdict(verdict(str(status)))]
-        for *cells, status in zip(*texts, data["status"].values, strict=True)
+        [*cells, _verdict(Status[code].verdict)]
+        for *cells, code in zip(*texts, data["status_code"].values, strict=True)
     ]
     return Table(caption, [*columns, Column("status", words=True)], rows)
 
