@@ -141,7 +141,7 @@ def whole_number(value: object, unit: str) -> int:
     ValueError
         It is not a whole number ≥ 1; ``unit`` says of what.
     """
-    number = value.item() if hasattr(value, "item") else value
+    number = value.item() if getattr(value, "ndim", None) == 0 else value  # type: ignore[attr-defined]
     if not isinstance(number, int) or isinstance(number, bool) or number < 1:
         raise ValueError(f"{shown(value)} is not allowed; give a whole number of {unit} ≥ 1")
     return number

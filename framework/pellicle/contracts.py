@@ -230,10 +230,23 @@ def earlier_steps(output: Output, place: Place, steps: int) -> xr.Dataset | None
     return returned
 
 
-def hand_over(output: Output, place: Place, step: xr.Dataset) -> None:
-    """Give a finished step to an output, which cannot change it."""
-    with blamed(output):
-        output.step(place, read_only_dataset(step))
+def hand_over(outputs: Sequence[Output], place: Place, step: xr.Dataset) -> None:
+    """Give a finished step to every output, even where one of them fails; none can change it.
+
+    Raises
+    ------
+    Exception
+        What the first that failed raised.
+    """
+    errors: list[Exception] = []
+    for output in outputs:
+        try:
+            with blamed(output):
+                output.step(place, read_only_dataset(step))
+        except Exception as error:
+            errors.append(error)
+    if errors:
+        raise errors[0]
 
 
 def files_of(output: Output, call: str, leave: Callable[[Output], object]) -> tuple[Path, ...]:
@@ -242,16 +255,16 @@ def files_of(output: Output, call: str, leave: Callable[[Output], object]) -> tu
     Raises
     ------
     PluginError
-        They are not a tuple of paths of files.
+        They are not a tuple of paths.
     """
     with blamed(output):
         returned = leave(output)
     if not isinstance(returned, (tuple, list)) or not all(
-        isinstance(path, Path) and path.exists() for path in returned
+        isinstance(path, Path) for path in returned
     ):
         raise PluginError(
             f"{component_name(output)}: {call} returned {shown(returned)}; it has to return a "
-            "tuple of pathlib.Path, each of a file that exists, empty if there is none"
+            "tuple of pathlib.Path, empty if there is none"
         )
     return tuple(returned)
 

@@ -137,8 +137,7 @@ def execute(
             with closing(_solve_steps(run, problems, steps[-1:], bar)) as solved:
                 for step in solved:
                     steps.append(step)
-                    for output in outputs:
-                        hand_over(output, place, step)
+                    hand_over(outputs, place, step)
         except MemoryError:
             raise ConfigError(
                 f"{run.grid.points} cells do not fit in memory; use fewer points", "grid.points"
@@ -188,9 +187,9 @@ def _resume(outputs: Sequence[Output], place: Place, number: int) -> list[xr.Dat
         if held is None:
             continue
         steps = [held.isel(step=[index]) for index in range(held.sizes["step"])]
-        for output in outputs:
-            for step in steps if output is not source else ():
-                hand_over(output, place, step)
+        others = [output for output in outputs if output is not source]
+        for step in steps:
+            hand_over(others, place, step)
         return steps
     return []
 
