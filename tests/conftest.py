@@ -1,7 +1,13 @@
 """What holds for every test: floating-point errors raise, and the checkout is installed."""
 
+import json
 import multiprocessing
-from collections.abc import Iterator
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from importlib.metadata import entry_points
 
 import numpy as np
@@ -24,17 +30,72 @@ def _floating_point_errors_raise() -> Iterator[None]:
         yield
 
 
-@pytest.fixture(scope="module")
-def forked_dask() -> Iterator[None]:
-    """Have dask fork its workers off a process that has loaded its libraries: a fifth of the time.
+StartDask = Callable[..., AbstractContextManager[str]]
 
-    Where the system cannot, and in tests without this, they are started as for users.
+
+def end(process: subprocess.Popen[bytes]) -> None:
+    """End a process: a worker whose scheduler is gone would take ten seconds to give up."""
+    process.terminate()
+    try:
+        process.wait(2)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+@pytest.fixture(scope="session")
+def start_dask(tmp_path_factory: pytest.TempPathFactory) -> StartDask:
+    """Return a function that starts a dask scheduler and workers of one thread on 127.0.0.1.
+
+    It is a context whose value is the scheduler's address. Workers are forked off a process that
+    has loaded its libraries, which takes a fifth of the time; ``environment`` is for all of them.
     """
-    # Its defaults, first: `set` would take them along when it takes back what it has set.
-    import distributed  # noqa: F401
-    from dask import config
 
-    method = "forkserver"
-    there = method in multiprocessing.get_all_start_methods()
-    with config.set({"distributed.worker.multiprocessing-method": method} if there else {}):
-        yield
+    @contextmanager
+    def start(workers: int = 2, *options: str, **environment: str) -> Iterator[str]:
+        import distributed
+
+        folder = tmp_path_factory.mktemp("dask")
+        file = folder / "scheduler.json"
+        forked = "forkserver" in multiprocessing.get_all_start_methods()
+        method = "forkserver" if forked else "spawn"
+        here = {"DASK_DISTRIBUTED__WORKER__MULTIPROCESSING_METHOD": method}
+        common = {
+            "env": os.environ | here | environment,
+            "stdout": subprocess.DEVNULL,
+            "stderr": subprocess.DEVNULL,
+        }
+        loopback = ["--host", "127.0.0.1", "--no-dashboard"]
+        scheduler = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0"]
+        worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--nthreads", "1"]
+        with ExitStack() as processes:
+
+            def run(*command: str) -> None:
+                process = subprocess.Popen(command, **common)  # type: ignore[call-overload]
+                processes.callback(end, process)
+
+            run(*scheduler, *loopback, "--scheduler-file", str(file))
+            latest = time.monotonic() + 60
+            while not file.exists():
+                assert time.monotonic() < latest
+                time.sleep(0.02)
+            address = json.loads(file.read_text())["address"]
+            assert address.startswith("tcp://127.0.0.1:")
+            if workers:
+                local = ["--local-directory", str(folder), "--nworkers", str(workers)]
+                run(*worker, *loopback, *local, *options, address)
+                with distributed.Client(address, set_as_default=False) as client:
+                    client.wait_for_workers(workers, timeout=60)
+            yield address
+
+    return start
+
+
+@pytest.fixture(scope="session")
+def dask_address(start_dask: StartDask) -> Iterator[str]:
+    """Return the address of a scheduler with two workers, which gives a task up at its first death.
+
+    The default of dask is its fourth.
+    """
+    with start_dask(DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as address:
+        yield address

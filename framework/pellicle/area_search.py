@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from .components import Monitor, Solver
+from .contracts import solution_of
 from .operators import Array
 from .problem import Problem
 from .result import Solution
@@ -116,7 +117,8 @@ class _Search:
         return self.tried[log_force]
 
     def _try(self, force: float) -> float:
-        found = self.solver.solve(replace(self.problem, value=force), self.pressure, self.monitor)
+        problem = replace(self.problem, value=force)
+        found = solution_of(self.solver, problem, self.pressure, self.monitor)
         self.pressure = found.pressure
         self.iterations += found.iterations
         cell = self.problem.grid.cell_area

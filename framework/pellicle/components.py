@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from operator import lt
 from pathlib import Path
 from typing import (
@@ -26,9 +27,10 @@ from typing import (
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from . import storage
+from .checks import whole_number
 from .model import Model
 from .operators import Array
 from .problem import Problem
@@ -40,6 +42,18 @@ if TYPE_CHECKING:
 
 Monitor = Callable[[int, float], None]
 """Called by a solver with its iteration and its residual over the tolerance, to show progress."""
+
+_Count = Annotated[int, Field(ge=1)]
+Threads = Annotated[
+    int,
+    BeforeValidator(partial(whole_number, unit="threads"), json_schema_input_type=_Count),
+]
+"""A number of threads ≥ 1; text, fractions and true are refused."""
+Workers = Annotated[
+    int,
+    BeforeValidator(partial(whole_number, unit="workers"), json_schema_input_type=_Count),
+]
+"""A number of workers ≥ 1, likewise."""
 
 Outcome = TypeVar("Outcome")
 Footprint = Literal["unbounded", "domain"]
@@ -365,8 +379,8 @@ class Executor(Component):
     family: ClassVar[str] = "executor"
 
     threads: Annotated[
-        int | None,
-        Field(ge=1, description="threads of each run's Fourier transforms; all cores if absent"),
+        Threads | None,
+        Field(description="threads of each run's Fourier transforms; all cores if absent"),
     ] = None
 
     @abstractmethod

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Final, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from .errors import ConfigError, shown
+from .checks import whole_number
+from .errors import ConfigError
 from .model import Model
 from .units import Length
 
@@ -25,10 +26,7 @@ def pair(value: object) -> object:
 
 
 def _whole(value: object) -> int:
-    number = value.item() if hasattr(value, "item") else value
-    if not isinstance(number, int) or isinstance(number, bool) or number < 1:
-        raise ValueError(f"{shown(value)} is not allowed; give a whole number of cells ≥ 1")
-    return number
+    return whole_number(value, "cells")
 
 
 _Whole = Annotated[int, Field(ge=1)]

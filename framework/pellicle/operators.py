@@ -7,13 +7,16 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from .errors import ConfigError, shown
+from .checks import blamed, component_name, read_only, real_array, real_number
+from .closed_form import disagreement
+from .errors import ConfigError, PluginError, shown
 from .grid import Grid
 from .hankel import Tabulated
 from .influence import cell_coefficients
@@ -24,6 +27,9 @@ Float = TypeVar("Float", np.float32, np.float64)
 
 # A cell's displacement under its own pressure over that of the finest wave, at least.
 _LEAST_OWN = 0.25
+# Waves up to this many times shorter than the grid's shortest tell whether G(q) grows for good.
+_SHORTER = np.geomspace(1.0, 1e6, 7)
+_GROWTH = 1e-6  # relative; less is rounding
 
 
 class HasCompliance(Protocol):
@@ -62,7 +68,29 @@ class HasMeanCompliance(HasCompliance, Protocol):
 
 def mean_compliance(kernel: HasCompliance) -> float:
     """Return G(0) [m/Pa] of a kernel, ∞ if it says nothing, as a half-space does."""
-    return kernel.mean_compliance() if isinstance(kernel, HasMeanCompliance) else math.inf
+    if not isinstance(kernel, HasMeanCompliance):
+        return math.inf
+    with blamed(kernel):
+        returned = kernel.mean_compliance()
+    return real_number(kernel, "mean_compliance()", returned)
+
+
+def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
+    """Return a method of a kernel that cannot change its argument and whose values are checked.
+
+    It raises PluginError where the kernel returns anything but an array of real numbers of the
+    shape of its argument.
+    """
+    method = getattr(kernel, name)
+
+    def call(argument: Array) -> Array:
+        with blamed(kernel):
+            returned = method(read_only(argument))
+        return real_array(
+            kernel, f"{name}({'q' if name == 'compliance' else 'r'})", returned, argument.shape
+        )
+
+    return call
 
 
 class Operator(ABC):
@@ -74,17 +102,30 @@ class Operator(ABC):
     fixes_mean: bool
     """Whether a uniform pressure has a displacement; if not, the mean displacement is zero."""
 
+    _symbol: _Symbol
+
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
         self.kernel = kernel
         self.grid = grid
-        self.applications = 0
+        self._applications = 0
+
+    @property
+    def applications(self) -> int:
+        """How often it was applied."""
+        return self._applications
+
+    def parts(self) -> dict[str, object]:
+        """Return what it consists of, by which a change is noticed."""
+        parts = {**vars(self), "class": type(self), "symbol": self._symbol.double}
+        del parts["_applications"]
+        return parts
 
     def __call__(self, pressure: NDArray[Float]) -> NDArray[Float]:
         """Return the displacement [m], a new array, for a pressure [Pa].
 
         A pressure in single precision is worked on in single precision, in half of the time.
         """
-        self.applications += 1
+        self._applications += 1
         return np.asarray(self._apply(pressure), dtype=pressure.dtype)
 
     @abstractmethod
@@ -95,13 +136,16 @@ class _Symbol:
     """The transform of an operator, which is real, in both precisions."""
 
     def __init__(self, values: Array) -> None:
-        self._values: dict[str, NDArray[Any]] = {"D": values}
+        self.double = read_only(values)
+        self._single: NDArray[np.float32] | None = None
 
     def __getitem__(self, kind: str) -> NDArray[Any]:
         """Return it for transforms of this kind of complex number; single only if asked for."""
-        if kind not in self._values:
-            self._values[kind] = self._values["D"].astype(np.float32)
-        return self._values[kind]
+        if kind == "D":
+            return self.double
+        if self._single is None:
+            self._single = read_only(self.double.astype(np.float32))
+        return self._single
 
 
 class PeriodicOperator(Operator):
@@ -120,8 +164,16 @@ class PeriodicOperator(Operator):
         symbol = np.empty(q.shape)
         # The first wavenumber is 0.
         symbol.ravel()[0] = 0.0 if mean == math.inf else mean
-        symbol.ravel()[1:] = kernel.compliance(q.ravel()[1:])
-        self._symbol = _Symbol(_checked(symbol))
+        compliance = checked_call(kernel, "compliance")
+        symbol.ravel()[1:] = _positive(kernel, q.ravel()[1:], compliance(q.ravel()[1:]))
+        if not mean >= 0:
+            raise ConfigError(
+                f"mean_compliance() of {component_name(kernel)} is {mean:g} m/Pa; it has to be 0, "
+                "positive or infinite; check the parameters, or the formula if the kernel is yours",
+                "kernel",
+            )
+        _refuse_growth(kernel, compliance, float(q.max()))
+        self._symbol = _Symbol(symbol)
 
     def _apply(self, pressure: NDArray[Any]) -> object:
         transform = scipy.fft.rfft2(pressure)
@@ -140,7 +192,10 @@ class FreeOperator(Operator):
     def __init__(self, kernel: HasClosedForm, grid: Grid) -> None:
         super().__init__(kernel, grid)
         cells = cell_coefficients(
-            kernel.greens_function, kernel.radial_primitive, grid.shape, grid.spacing
+            checked_call(kernel, "greens_function"),
+            checked_call(kernel, "radial_primitive"),
+            grid.shape,
+            grid.spacing,
         )
         if not np.isfinite(cells).all():
             raise ConfigError(
@@ -148,12 +203,13 @@ class FreeOperator(Operator):
                 "kernel is yours",
                 "kernel",
             )
-        finest = float(kernel.compliance(np.array([np.pi / min(grid.spacing)]))[0])
+        compliance = checked_call(kernel, "compliance")
+        finest = float(compliance(np.array([np.pi / min(grid.spacing)]))[0])
         if not cells[0, 0] > _LEAST_OWN * finest:
             raise ConfigError(
                 f"a pressed cell sinks by {cells[0, 0]:.2g} m/Pa at its centre, the finest wave by "
-                f"{finest:.2g}: the cells are much wider than an incompressible layer is thick, or "
-                "the formulas of the kernel contradict each other; use more points",
+                f"{finest:.2g}: the cells are much wider than an incompressible layer is thick; "
+                "use more points",
                 "grid.points",
             )
         self._padded = tuple(scipy.fft.next_fast_len(2 * n - 1, real=True) for n in grid.shape)
@@ -187,6 +243,10 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
     ------
     ConfigError
         The kernel cannot work on this boundary, or its values are not finite and positive.
+    PluginError
+        The kernel breaks its contract: it changes its argument, returns anything but an array of
+        real numbers of the argument's shape, grows for ever shorter waves, or its closed form
+        contradicts its compliance.
     """
     if grid.boundary == "periodic":
         return PeriodicOperator(kernel, grid)
@@ -198,7 +258,35 @@ def _in_real_space(kernel: HasCompliance, grid: Grid) -> HasClosedForm:
     radii = 0.2 * min(grid.spacing), 3 * math.hypot(*grid.size)
     if isinstance(kernel, Tabulated):
         return kernel if kernel.covers(*radii) else Tabulated(kernel.compliance, *radii)
-    return kernel if isinstance(kernel, HasClosedForm) else Tabulated(kernel.compliance, *radii)
+    compliance = checked_call(kernel, "compliance")
+    if not isinstance(kernel, HasClosedForm):
+        return Tabulated(compliance, *radii)
+    _refuse_contradiction(kernel, compliance, grid)
+    return kernel
+
+
+def _refuse_contradiction(
+    kernel: HasClosedForm, compliance: Callable[[Array], Array], grid: Grid
+) -> None:
+    """Refuse a kernel whose closed form is not the transform of its compliance."""
+
+    def positive(q: Array) -> Array:
+        with np.errstate(all="ignore"):
+            values = compliance(q)
+        # A formula may cancel for waves far longer than the domain, which hardly count.
+        near = q > 1e-3 / math.hypot(*grid.size)
+        _positive(kernel, q[near], values[near])
+        return np.where(np.isfinite(values), values, 0.0)
+
+    message = disagreement(
+        positive,
+        checked_call(kernel, "greens_function"),
+        checked_call(kernel, "radial_primitive"),
+        min(grid.spacing),
+        math.hypot(*grid.size),
+    )
+    if message:
+        raise PluginError(f"{component_name(kernel)}: {message}")
 
 
 def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array:
@@ -246,11 +334,40 @@ def _wrap(cells: Array, padded: tuple[int, ...]) -> Array:
     return wrapped
 
 
-def _checked(values: Array) -> Array:
-    if not (np.isfinite(values).all() and (values >= 0).all()):
+def _positive(kernel: HasCompliance, q: Array, values: Array) -> Array:
+    """Return G(q) [m/Pa] if every value is positive and finite, or refuse the kernel."""
+    wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
+    if wrong.size:
         raise ConfigError(
-            "the compliance has values that are negative, NaN or infinite; check the parameters, "
-            "or the formula if the kernel is yours",
+            f"compliance(q) of {component_name(kernel)} is {values[wrong[0]]:.3g} m/Pa at q = "
+            f"{q[wrong[0]]:.3g} rad/m; it has to be positive and finite; check the parameters, or "
+            "the formula if the kernel is yours",
             "kernel",
         )
     return values
+
+
+def _refuse_growth(
+    kernel: HasCompliance, compliance: Callable[[Array], Array], shortest: float
+) -> None:
+    """Refuse a kernel whose G(q) grows with q at the grid's shortest waves and does not stop.
+
+    The work of a point force would be infinite. G(q) of an incompressible layer grows too, up to
+    waves as short as the layer is thick: therefore shorter waves than the grid's decide.
+    """
+    if not shortest > 0:
+        return
+    with np.errstate(all="ignore"):
+        half, last = compliance(shortest * np.array([0.5, 1.0]))
+        if not last > half * (1 + _GROWTH):
+            return
+        q: Array = shortest * _SHORTER
+        values = compliance(q)
+    # A formula may overflow far beyond the grid.
+    known = int(np.argmin(np.append(np.isfinite(values), False)))
+    if known < 2 or values[known - 1] > values[known - 2] * (1 + _GROWTH):
+        raise PluginError(
+            f"{component_name(kernel)}: compliance(q) grows with q, from {half:.3g} m/Pa at "
+            f"{shortest / 2:.3g} rad/m to {values[known - 1]:.3g} m/Pa at {q[known - 1]:.3g} "
+            "rad/m; for short waves it has to fall, or to tend to a constant"
+        )

@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
-import inspect
 import os
 import re
 import time
 import warnings
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from contextlib import ExitStack, closing
 from pathlib import Path
-from traceback import extract_tb
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
 from . import memory, storage
 from .area_search import Reached, reach_area
-from .components import Component, Monitor, Output, Place
+from .checks import blamed, checked_threads, read_only_dataset
+from .components import Monitor, Output, Place
 from .config import Run, refuse_study
+from .contracts import (
+    corrected_area,
+    earlier_steps,
+    files_of,
+    hand_over,
+    profile_of,
+    punch_pressure_of,
+    solution_of,
+)
 from .dataset import DESCRIPTIONS, step_dataset
-from .errors import ConfigError, ConvergenceWarning, PellicleError
+from .errors import ConfigError, ConvergenceWarning
 from .lock import locked
 from .operators import Array, Operator, make_operator
 from .plugins import registry
@@ -63,7 +71,7 @@ def run(
     progress
         Show a bar, if there is a terminal.
     threads
-        Threads of the Fourier transforms; all cores if None.
+        Threads of the Fourier transforms, a whole number ≥ 1; all cores if None.
     overwrite
         Begin anew, in place of whatever result is there. Otherwise the steps that the folder holds
         of the same run are taken from there, and what is of another run is refused.
@@ -79,6 +87,7 @@ def run(
     ConvergenceWarning
         A step is in the result but marked: as not converged, or as too coarse.
     """
+    threads = checked_threads(threads)
     made, name = _as_run(configuration)
     outputs = standard_outputs(made.outputs) if directory is not None else made.outputs or ()
     place = Place(Path(directory or "."), name, made.to_json(), made.identity, overwrite)
@@ -134,15 +143,13 @@ def execute(
             for output in outputs:
                 with blamed(output):
                     output.open(place)
-            steps = _resume(outputs, place)
+            steps = _resume(outputs, place, len(problems))
             taken = len(steps)
             # closing: the generator's arrays go before the outputs draw.
             with closing(_solve_steps(run, problems, steps[-1:], bar)) as solved:
                 for step in solved:
                     steps.append(step)
-                    for output in outputs:
-                        with blamed(output):
-                            output.step(place, step)
+                    hand_over(outputs, place, step)
         except MemoryError:
             raise ConfigError(
                 f"{run.grid.points} cells do not fit in memory; use fewer points", "grid.points"
@@ -152,25 +159,29 @@ def execute(
                 # What has been solved with makes room.
                 problems.clear()
                 result = Result(storage.joined(steps))
-                files = left_by(outputs, lambda output: output.close(place, result), run.outputs)
+                protected = Result(read_only_dataset(result.dataset))
+                files = left_by(
+                    outputs, "close()", lambda output: output.close(place, protected), run.outputs
+                )
     return Executed(result, tuple(files), taken)
 
 
 def left_by(
     outputs: Sequence[Output],
+    call: str,
     leave: Callable[[Output], Iterable[Path]],
     named: Sequence[Output] | None,
 ) -> list[Path]:
     """Return the files that outputs leave; one that fails does not keep the others from it.
 
-    ``named`` are the outputs of the configuration, by which a field is found.
+    ``call`` is the name of the method that ``leave`` calls. ``named`` are the outputs of the
+    configuration, by which a field is found.
     """
     files: list[Path] = []
     errors: list[Exception] = []
     for output in outputs:
         try:
-            with blamed(output):
-                files.extend(leave(output))
+            files.extend(files_of(output, call, leave))
         except ConfigError as error:
             at = [index for index, each in enumerate(named or ()) if each is output]
             errors.append(error.within(f"outputs.{at[0]}") if at else error)
@@ -181,32 +192,16 @@ def left_by(
     return files
 
 
-@contextmanager
-def blamed(component: Component) -> Iterator[None]:
-    """Note on what a component raises of its own which it is, and the place in its code."""
-    try:
-        yield
-    except (PellicleError, MemoryError):
-        raise
-    except Exception as error:
-        name = f"{component.family} {getattr(component, 'type', type(component).__name__)!r}"
-        home = inspect.getsourcefile(type(component))
-        inside = [each for each in extract_tb(error.__traceback__) if each.filename == home]
-        place = f" ({home}, line {inside[-1].lineno})" if inside else ""
-        error.add_note(f"{name} failed{place}")
-        raise
-
-
-def _resume(outputs: Sequence[Output], place: Place) -> list[xr.Dataset]:
-    """Return the steps that the first output which has any has, each on its own."""
+def _resume(outputs: Sequence[Output], place: Place, number: int) -> list[xr.Dataset]:
+    """Return the steps, of a ``number``, that the first output which has any has, one by one."""
     for source in outputs:
-        held = source.resume(place)
+        held = earlier_steps(source, place, number)
         if held is None:
             continue
         steps = [held.isel(step=[index]) for index in range(held.sizes["step"])]
-        for output in outputs:
-            for step in steps if output is not source else ():
-                output.step(place, step)
+        others = [output for output in outputs if output is not source]
+        for step in steps:
+            hand_over(others, place, step)
         return steps
     return []
 
@@ -250,8 +245,7 @@ def _problems(run: Run) -> list[Problem]:
     with blamed(run.kernel):
         operator = make_operator(run.kernel, run.grid)
         warn_of_cells(run.kernel.compliance, run.grid)
-    with blamed(run.indenter):
-        profile = _profile(run)
+    profile = profile_of(run.indenter, run.grid)
     if run.indenter.footprint == "domain":
         warn_of_seam(profile, run.grid)
 
@@ -274,27 +268,6 @@ def _problems(run: Run) -> list[Problem]:
     _check_areas(run, profile)
     # The force is searched for.
     return each("force", [0.0] * len(values))
-
-
-def _profile(run: Run) -> Array:
-    x, y = run.grid.coordinates()
-    try:
-        profile = np.asarray(run.indenter.profile(x, y), dtype=np.float64)
-    except ConfigError as error:
-        raise error.within("indenter") from None
-    if profile.shape != run.grid.shape:
-        raise ConfigError(
-            f"the profile is of shape {profile.shape}, the grid of shape {run.grid.shape}; check "
-            "profile(x, y)",
-            "indenter",
-        )
-    if not (profile <= 0).all() or not np.isfinite(profile).any():
-        raise ConfigError(
-            "the profile has values that are positive or NaN, or none that is finite; it must be "
-            "≤ 0 everywhere and 0 at the lowest point",
-            "indenter",
-        )
-    return profile
 
 
 def _mean_plane(run: Run, profile: Array) -> float:
@@ -408,8 +381,7 @@ def _solve(
         return reach_area(problem, areas[index], run.solver, start, monitor)
     solution = Solution(np.zeros(run.grid.shape), 0)
     if problem.touches:
-        with blamed(run.solver):
-            solution = run.solver.solve(problem, start, monitor)
+        solution = solution_of(run.solver, problem, start, monitor)
     return Reached(problem, solution, 0.0, "met")
 
 
@@ -424,7 +396,7 @@ def _stiffness(
         return Stiffness(np.inf, 0.0)
     punch = np.zeros(run.grid.shape)
     if contact.any():
-        punch = run.solver.punch_pressure(problem, contact, monitor)
+        punch = punch_pressure_of(run.solver, problem, contact, monitor)
     return measure_stiffness(problem, contact, punch)
 
 
@@ -437,12 +409,11 @@ def _asked(
         "residual_area": step.missed,
         "stiffness": stiffness.value if stiffness else np.nan,
     }
-    periodic = run.grid.boundary == "periodic"
     corrected = {
-        f"contact_area_{each.type}": (  # type: ignore[attr-defined]
-            each.periodic_area if periodic else each.area
-        )(found.contact, run.grid.spacing)
-        for each in run.corrections
+        f"contact_area_{correction.type}": corrected_area(  # type: ignore[attr-defined]
+            correction, found.contact, run.grid
+        )
+        for correction in run.corrections
     }
     return corrected | {name: loading[name] for name in loading if name in run.loading.brings}
 

@@ -21,6 +21,7 @@ import pluggy
 from . import hookspecs
 from .components import FAMILIES, Component, Suite
 from .errors import ConfigError, PluginError
+from .foreign_code import diverted_output, noted_interrupts
 from .model import nearest
 from .units import quantity_of
 
@@ -162,15 +163,11 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
         if _is_disabled(origin, disable):
             disabled.append(origin)
             continue
-        try:
-            components, its_suites = _call_hooks(entry.load(), origin)
-        except KeyboardInterrupt:
-            raise
-        # A plugin may fail in any way, sys.exit() at import included; it must not take us along.
-        except BaseException as error:
-            kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
-            broken.append(Broken(origin, f"{kind}{error}"))
+        loaded = _load_one(entry, origin)
+        if isinstance(loaded, Broken):
+            broken.append(loaded)
             continue
+        components, its_suites = loaded
         suites.extend(its_suites)
         for registered in components:
             claims.setdefault((registered.component.family, registered.type), []).append(registered)
@@ -189,6 +186,25 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
         },
         disabled=tuple(disabled),
     )
+
+
+def _load_one(entry: EntryPoint, origin: Origin) -> tuple[list[Registered], list[Suite]] | Broken:
+    """Return what one plugin registers, or what is wrong with it.
+
+    A plugin may fail in any way, even by sys.exit() or by what looks like Ctrl-C; only the user's
+    own Ctrl-C ends the command.
+    """
+    loaded: tuple[list[Registered], list[Suite]] | Broken
+    with noted_interrupts() as pressed:
+        try:
+            with diverted_output():
+                loaded = _call_hooks(entry.load(), origin)
+        except BaseException as error:
+            kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
+            loaded = Broken(origin, f"{kind}{error}".removesuffix(": "))
+    if pressed.is_set():
+        raise KeyboardInterrupt
+    return loaded
 
 
 def _is_disabled(origin: Origin, disable: str) -> bool:

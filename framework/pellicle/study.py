@@ -12,13 +12,15 @@ from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from . import memory, storage, table
+from .checks import checked_threads, read_only_dataset
 from .components import Output, Place, Say
 from .config import Run
+from .contracts import outcomes_of
 from .errors import ConfigError, ConvergenceWarning, StorageError
 from .lock import locked
 from .orchestrator import execute, left_by, standard_outputs
@@ -28,8 +30,6 @@ from .status import Status
 from .study_config import Study
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
-
     import xarray as xr
 
 _SHOWN = ("depth", "force", "contact_area", "contact_fraction")
@@ -115,7 +115,7 @@ def run_study(
     overwrite
         Begin anew, in place of what the folder holds.
     threads
-        Threads of each run's Fourier transforms; as the executor says if None.
+        Threads of each run's Fourier transforms, a whole number ≥ 1; as the executor says if None.
 
     Returns
     -------
@@ -138,6 +138,7 @@ def run_study(
     """
     from .lazy import add_fields
 
+    threads = checked_threads(threads)
     study = as_study(configuration)
     if fields:
         if directory is None:
@@ -205,6 +206,8 @@ def carry_out(
 def _carry_out(
     study: Study, directory: Path, progress: bool, overwrite: bool, threads: int | None
 ) -> Carried:
+    import xarray as xr
+
     place = Place(directory, "study", study.to_json(), overwrite=overwrite)
     outputs = [o for o in standard_outputs(study.points[0].run.outputs) if o.draws_studies]
     for output in outputs:
@@ -223,9 +226,7 @@ def _carry_out(
     try:
         with (
             StudyProgress(len(study.points), taken, progress) as bar,
-            closing(
-                cast("Generator[Any]", study.executor.map(work, unfinished, bar.report))
-            ) as ends,
+            closing(outcomes_of(study.executor, work, unfinished, bar.report, xr.Dataset)) as ends,
         ):
             for task, outcome in ends:
                 del left[task.index]
@@ -243,8 +244,12 @@ def _carry_out(
             _collect(task, rows)
         files.write(rows, at_once=True)
         made = rows.dataset()
+        protected = read_only_dataset(made)
         drawn = left_by(
-            outputs, lambda output: output.study(place, made), study.points[0].run.outputs
+            outputs,
+            "study()",
+            lambda output: output.study(place, protected),
+            study.points[0].run.outputs,
         )
     for message in (*doubts, *(f"{message}; see status" for message in coarse(made))):
         warnings.warn(message, stacklevel=4)

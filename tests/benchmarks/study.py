@@ -2,8 +2,9 @@
 
 Prints one of three tables, each timed in processes of their own, one thread a run:
 
-efficiency  a study of equal runs by `serial` and by as many processes as it is given, here and by
-            dask: seconds, and the time by `serial` over that of all workers together
+efficiency  a study of equal runs by `serial`, by as many processes as it is given, and by the
+            workers of a dask scheduler if its address is given: seconds, and the time by `serial`
+            over that of all workers together
 overhead    a study of tiny runs by each executor: seconds before the first run ends, and what each
             further run takes of a worker beside its solves, on average
 cost        a run as a user has it, result file included, against N, boundary and tension: solves
@@ -56,12 +57,13 @@ def run_of(case: str, points: int, tension: float, steps: int = 1) -> dict[str, 
     }
 
 
-def study_of(run: dict[str, Any], runs: int, executor: str, workers: int) -> Any:
+def study_of(run: dict[str, Any], runs: int, executor: str, workers: int, address: str) -> Any:
     """Return a study of equal runs."""
     import pellicle as pl
 
     tension = run["kernel"]["tension"]
-    how = {"type": executor} | ({} if executor == "serial" else {"workers": workers})
+    more = {"serial": {}, "processes": {"workers": workers}, "dask": {"address": address}}
+    how = {"type": executor, **more[executor]}
     values = [tension * (1 + 1e-9 * number) for number in range(runs)]
     return pl.Study(run=run, vary={"kernel.tension": values}, executor=how)
 
@@ -71,7 +73,7 @@ def carry_out(options: argparse.Namespace) -> dict[str, float]:
     import pellicle as pl
 
     run = run_of(options.cases[0], options.points[0], options.tension[0], options.steps)
-    made = study_of(run, options.runs, options.executor, options.workers)
+    made = study_of(run, options.runs, options.executor, options.workers, options.address)
     with tempfile.TemporaryDirectory() as folder:
         started = time.perf_counter()
         table = pl.run_study(made, folder, progress=False, threads=1)
@@ -197,8 +199,11 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=1)
     parser.add_argument("--runs", type=int, default=16)
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--executors", nargs="+", default=EXECUTORS, choices=EXECUTORS)
+    parser.add_argument("--executors", nargs="+", default=EXECUTORS[:2], choices=EXECUTORS)
+    parser.add_argument("--address", help="dask scheduler that has --workers workers of one thread")
     options = parser.parse_args()
+    if "dask" in options.executors and not options.address:
+        parser.error("--executors dask needs --address")
     TABLES[options.table](options)
 
 

@@ -41,9 +41,10 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 def _make(request: pytest.FixtureRequest) -> Component:
     family, type_ = request.param
+    fields = EXAMPLES[family][type_]
     if type_ == "dask":
-        request.getfixturevalue("forked_dask")
-    return registry().make(FAMILIES[family], {"type": type_, **EXAMPLES[family][type_]})
+        fields = fields | {"address": request.getfixturevalue("dask_address")}
+    return registry().make(FAMILIES[family], {"type": type_, **fields})
 
 
 for _name in ("component", *FAMILIES):

@@ -101,5 +101,10 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
         "spectrum": {"by": "step", "label": "{depth * 1e6} µm"},
         "vtk": {},
     },
-    "executor": {"serial": {"threads": 1}, "processes": {"workers": 2}, "dask": {"workers": 2}},
+    # The address of dask is that of the fixture dask_address.
+    "executor": {
+        "serial": {"threads": 1},
+        "processes": {"workers": 2},
+        "dask": {"address": "tcp://127.0.0.1:8786"},
+    },
 }

@@ -1,6 +1,11 @@
 """The loader, with entry points made by hand: each plugin is judged on its own."""
 
 import itertools
+import json
+import os
+import signal
+import subprocess
+import sys
 from collections.abc import Callable
 from importlib.metadata import Distribution, EntryPoint, entry_points
 from pathlib import Path
@@ -35,9 +40,16 @@ TYPE = 'type: Literal["soft"] = "soft"'
 DOCSTRING = '"""Kernel of a stranger."""'
 FIELD = 'Annotated[float, Field(description="scale of G [m/Pa]")] = 1.0'
 REGISTER = "    register(Soft)\n"
+_REPLACED = "import os; os.dup2(os.open(os.devnull, os.O_WRONLY), 1)"
 BROKEN = {
     "raises at import": ("", "raise OSError('no library')", "OSError: no library"),
     "exits at import": ("", "raise SystemExit(3)", "SystemExit: 3"),
+    "passes for Ctrl-C": ("", "raise KeyboardInterrupt", "KeyboardInterrupt"),
+    "ends a generator": ("", "raise GeneratorExit", "GeneratorExit"),
+    "passes for Ctrl-C in a hook": (REGISTER, "    raise KeyboardInterrupt", "KeyboardInterrupt"),
+    "closes what it prints to": ("", "import sys; sys.stdout.close()", "closes standard output"),
+    "closes standard output": ("", "import os; os.close(1)", "closes standard output"),
+    "puts another in its place": ("", _REPLACED, "closes standard output"),
     "misspelt hook": ("register_kernels", "register_kernel", "did you mean 'register_kernels'?"),
     "no hook": ("@hookimpl", "", "implements no hook; decorate with @pellicle.hookimpl"),
     "wrong argument": ("(register):", "(add):", "'add'"),
@@ -150,10 +162,91 @@ def test_a_missing_module_is_a_broken_plugin() -> None:
     assert found.broken == (Broken(Origin("kernel.soft", "unknown distribution", "?"), error),)
 
 
-def test_an_interrupt_is_no_broken_plugin(plugin: Plugin) -> None:
-    """Ctrl-C while plugins load ends the program."""
+INTERRUPTED = "import signal; signal.raise_signal(signal.SIGINT)"
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        f"{INTERRUPTED}",
+        f"try:\n    {INTERRUPTED}\nexcept KeyboardInterrupt:\n    raise ImportError",
+        f"try:\n    {INTERRUPTED}\nexcept BaseException:\n    pass\n{SOFT}",
+    ],
+    ids=["passed on", "turned into another", "swallowed"],
+)
+def test_ctrl_c_ends_loading(plugin: Plugin, source: str) -> None:
+    """Ctrl-C of the user while plugins load ends the program, whatever a plugin makes of it."""
+    before = signal.getsignal(signal.SIGINT)
     with pytest.raises(KeyboardInterrupt):
-        load([plugin("raise KeyboardInterrupt")])
+        load([plugin(source)])
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_a_plugin_cannot_take_ctrl_c_away(plugin: Plugin) -> None:
+    """A handler that a plugin sets at import does not stay."""
+    before = signal.getsignal(signal.SIGINT)
+    load([plugin("import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n" + SOFT)])
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+PRINTING = {
+    "print": "print('hello')",
+    "sys.stdout": "import sys; sys.stdout.write('hello')",
+    "its buffer": "import sys; sys.stdout.buffer.write(b'hello')",
+    "the first standard output": "import sys; sys.__stdout__.write('hello')",
+    "the descriptor": "import os; os.write(1, b'hello')",
+    "C": "import ctypes; ctypes.CDLL(None).printf(b'hello')",
+    "a subprocess": "import subprocess; subprocess.run(['echo', 'hello'], check=True)",
+    "a hook": SOFT.replace(REGISTER, REGISTER + "    print('hello')\n"),
+}
+
+
+@pytest.mark.parametrize("source", PRINTING.values(), ids=PRINTING)
+def test_what_a_plugin_prints_at_import_is_no_output(
+    plugin: Plugin, source: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Printed by whatever way, it comes on standard error, and the plugin is as good as before."""
+    if ("ctypes" in source or "echo" in source) and sys.platform == "win32":
+        pytest.skip("has neither there")
+    sys.stdout.write("before\n")
+    found = load([plugin(source if source.startswith("\n") else f"{source}\n{SOFT}")])
+    sys.stdout.write("after\n")
+    assert found.broken == ()
+    assert "soft" in found.components["kernel"]
+    output, errors = capfd.readouterr()
+    assert output == "before\nafter\n"
+    assert errors.strip() == "hello"
+
+
+@pytest.mark.parametrize("close", ["sys.stdout.close()", "sys.__stdout__.close()", "os.close(1)"])
+@pytest.mark.parametrize("fail", ["", "; raise KeyboardInterrupt"])
+def test_commands_outlive_a_plugin_that_closes_standard_output(
+    close: str, fail: str, tmp_path: Path
+) -> None:
+    """``pellicle plugins --json`` prints JSON that names the plugin as broken, as any other."""
+    site = tmp_path / "site"
+    metadata = site / "stranger-1.2.dist-info"
+    metadata.mkdir(parents=True)
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: stranger\nVersion: 1.2\n")
+    (metadata / "entry_points.txt").write_text("[pellicle]\nkernel.soft = stranger\n")
+    (site / "stranger.py").write_text(f"import os, sys\nprint('hello'); {close}{fail}\n{SOFT}")
+    path = os.pathsep.join([str(site), *filter(None, sys.path)])
+    for command in (["plugins", "--json"], ["schema"]):
+        done = subprocess.run(
+            [sys.executable, "-m", "pellicle", *command],
+            env=os.environ | {"PYTHONPATH": path, "PYTHONUTF8": "1"},
+            capture_output=True,
+            encoding="utf-8",
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        printed = json.loads(done.stdout)
+        assert done.stderr.strip() == "hello"
+        if command[0] == "plugins":
+            (broken,) = printed["broken"]
+            assert (broken["entry_point"], broken["origin"]) == ("kernel.soft", "stranger")
+            expected = "KeyboardInterrupt" if fail else "closes standard output; leave it open"
+            assert broken["error"] == expected
 
 
 def test_a_suite_is_registered_only_with_the_rest_of_its_plugin(plugin: Plugin) -> None:

@@ -1,4 +1,4 @@
-"""A study on two workers of a dask cluster, of which one is killed in the midst of it."""
+"""A study on two workers of a dask scheduler, one of which is killed in the midst of it."""
 
 from __future__ import annotations
 
@@ -33,36 +33,37 @@ def study(**executor: object) -> pl.Study:
     return pl.Study(run=STUDY, vary=VARY, executor=executor)
 
 
-def kill_one_worker(runs: Path, over: threading.Event, finished: list[int]) -> None:
-    """Kill a worker as soon as there is a result, and note how many there were."""
+def kill_one_worker(address: str, runs: Path, over: threading.Event, finished: list[int]) -> None:
+    """Kill a worker of a scheduler as soon as there is a result, and note how many there are."""
     while not list(runs.glob("*.h5")):
         if over.wait(0.005):
             return
     time.sleep(0.02)
     helpers = ("resource_tracker", "semaphore_tracker")
+    (nannies,) = (child for child in psutil.Process().children() if child.cmdline()[-1] == address)
     workers = [
         child
-        for child in psutil.Process().children(recursive=True)
+        for child in nannies.children(recursive=True)
         if not child.children() and not any(name in " ".join(child.cmdline()) for name in helpers)
     ]
     workers[0].kill()
     finished.append(len(list(runs.glob("*.h5"))))
 
 
-@pytest.mark.usefixtures("forked_dask")
 @pytest.mark.skipif(sys.platform == "win32", reason="a file in use cannot be replaced there")
-def test_worker_killed_in_mid_study(tmp_path: Path) -> None:
+def test_worker_killed_in_mid_study(start_dask: Any, tmp_path: Path) -> None:
     """The table is that of an undisturbed study, and another start solves nothing."""
     finished: list[int] = []
     over = threading.Event()
     runs = tmp_path / "runs"
-    killer = threading.Thread(target=kill_one_worker, args=(runs, over, finished))
-    killer.start()
-    try:
-        table = pl.run_study(study(type="dask", workers=2), tmp_path, progress=False)
-    finally:
-        over.set()
-        killer.join()
+    with start_dask() as address:
+        killer = threading.Thread(target=kill_one_worker, args=(address, runs, over, finished))
+        killer.start()
+        try:
+            table = pl.run_study(study(type="dask", address=address), tmp_path, progress=False)
+        finally:
+            over.set()
+            killer.join()
     assert finished
     assert finished[0] < 18
     undisturbed = pl.run_study(study(type="serial"), progress=False, threads=1)

@@ -10,9 +10,10 @@ from contextlib import closing
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pellicle.components import Component, Executor, HasForceCurve, Indenter, Say
+from pellicle.contracts import outcomes_of
 from pellicle.errors import PellicleError
 from pellicle.plugins import registry
 from pellicle.progress import StudyProgress
@@ -28,8 +29,6 @@ from .sources import Curves, Source, gather
 from .written import write_json
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
-
     import xarray as xr
 
 _BYTES_A_POINT = 2000
@@ -191,7 +190,7 @@ def carry_out(
     try:
         with (
             StudyProgress(len(sources), len(sources) - len(tasks), progress) as bar,
-            closing(cast("Generator[Any]", carrier.map(work, tasks, bar.report))) as ends,
+            closing(outcomes_of(carrier, work, tasks, bar.report, dict)) as ends,
         ):
             for task, outcome in ends:
                 if isinstance(outcome, Exception):

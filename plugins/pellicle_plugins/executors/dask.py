@@ -8,35 +8,28 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pellicle import ConfigError, hookimpl
-from pellicle.components import AnyTask, Executor, Outcome, Report, Say
+from pellicle.components import AnyTask, Executor, Outcome, Report, Say, Threads
 
 
 class Dask(Executor):
     """Runs on the workers of a dask scheduler, on this machine or on a cluster.
 
-    A run whose worker dies is begun again on another, and given up when four have died of it (the
+    A run whose worker dies starts again on another, and is given up when four have died of it (the
     setting ``distributed.scheduler.allowed-failures`` is 3). Needs the extra ``cluster``, pellicle
     of one version on all workers, and a folder of the study that all of them see under the same
-    path. A script that has no address needs ``if __name__ == "__main__":``.
+    path.
     """
 
     type: Literal["dask"] = "dask"
     address: Annotated[
-        str | None,
+        str,
         Field(
-            description='scheduler, as in "tcp://node1:8786"; if absent, one is started here, with '
-            "workers of its own"
+            description='address of the scheduler, such as "tcp://node1:8786"; start one with '
+            "`dask scheduler`, its workers with `dask worker ADDRESS`, or use the executor "
+            '"processes" on one machine'
         ),
-    ] = None
-    workers: Annotated[
-        int | None,
-        Field(
-            ge=1,
-            description="processes of a scheduler that is started here; as many as fill the cores "
-            "that we may use if absent",
-        ),
-    ] = None
-    threads: Annotated[int, Field(ge=1, description="threads of each run's Fourier transforms")] = 1
+    ]
+    threads: Annotated[Threads, Field(description="threads of each run's Fourier transforms")] = 1
 
     def map(
         self,
@@ -46,8 +39,8 @@ class Dask(Executor):
     ) -> Iterator[tuple[AnyTask, Outcome | Exception]]:
         """Yield each task as it finishes; see `Executor.map`.
 
-        Where the iterator is closed early, or this process dies, tasks at work on a scheduler that
-        was not started here end when they next say something.
+        Where the iterator is closed early, running tasks end when they next report something, which
+        is waited for up to 10 s. If this process dies, they do so too.
 
         Raises
         ------
@@ -57,17 +50,14 @@ class Dask(Executor):
         if not tasks:
             return
         try:
-            from .submission import Submission, cluster
+            from .submission import Submission, connected
         except ImportError as error:
             raise ConfigError(
                 f"'dask' needs {error.name}, which is not installed; pip install "
                 "'pellicle[cluster]'",
                 "type",
             ) from None
-        with (
-            cluster(self.address, self.workers, self.threads) as client,
-            Submission(client, work, tasks) as submission,
-        ):
+        with connected(self.address) as client, Submission(client, work, tasks) as submission:
             yield from submission.outcomes(report)
 
 

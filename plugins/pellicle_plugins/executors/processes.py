@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.components import AnyTask, Executor, Outcome, Report, Say
+from pellicle.components import AnyTask, Executor, Outcome, Report, Say, Threads, Workers
 
 
 class Processes(Executor):
@@ -21,11 +21,11 @@ class Processes(Executor):
 
     type: Literal["processes"] = "processes"
     workers: Annotated[
-        int | None,
-        Field(ge=1, description="processes; as many as fill the cores that we may use if absent"),
+        Workers | None,
+        Field(description="processes; as many as fill the cores that we may use if absent"),
     ] = None
     threads: Annotated[
-        int, Field(ge=1, description="threads of each run's Fourier transforms and linear algebra")
+        Threads, Field(description="threads of each run's Fourier transforms and linear algebra")
     ] = 1
 
     def map(

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import logging
 import pickle
+import time
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
-from contextlib import contextmanager, suppress
 from importlib.metadata import version
 from queue import Empty, SimpleQueue
 from types import TracebackType
@@ -14,9 +14,7 @@ from typing import Any, Generic, Self
 from uuid import uuid4
 
 import cloudpickle
-from dask import config
-from dask.system import CPU_COUNT
-from distributed import Client, Future, KilledWorker, LocalCluster, get_worker
+from distributed import Client, Future, KilledWorker, get_worker
 
 from pellicle import ConfigError, PellicleError, memory
 from pellicle.components import AnyTask, Report, Say
@@ -25,71 +23,30 @@ from .attempt import attempt_far, pack
 
 _LOOK_EVERY = 2.0
 """Time without news after which we look whether there are workers [s]."""
-_RESTARTS = 3
-"""Times that we start workers in place of those that dask has given up, before we do too."""
-_START_WITHIN = 30.0
-"""Time that dask has to start a worker again [s]."""
-
-# dask has its workers give memory back as soon as it is free; arrays that come and go, as those of
-# a solve do, would then cost page faults each time. 2**25 is the most that malloc takes.
-_KEEPS_MEMORY = {"MALLOC_TRIM_THRESHOLD_": str(2**30), "MALLOC_MMAP_THRESHOLD_": str(2**25)}
-
-
-class _Local(LocalCluster):
-    """A cluster on this machine that can lose a worker before it has heard of it.
-
-    dask would stop listening to its scheduler over it, and raise when it closes.
-    """
-
-    def _update_worker_status(self, op: str, msg: Any) -> None:
-        with suppress(KeyError):
-            super()._update_worker_status(op, msg)  # type: ignore[no-untyped-call]
+_END_WITHIN = 10.0
+"""Time that running tasks have to end, which they do when they next report something [s]."""
+_LOOK_AGAIN = 0.05
+_NO_WORKERS = (
+    "the dask scheduler has no workers; runs wait until there are some: start them with `dask "
+    "worker ADDRESS`"
+)
 
 
-@contextmanager
-def cluster(address: str | None, workers: int | None, threads: int) -> Iterator[Client]:
-    """Yield a client of the scheduler at ``address``, or of one that lives as long as this does.
+def connected(address: str) -> Client:
+    """Return a client of the scheduler at ``address``.
 
     Raises
     ------
     ConfigError
-        No scheduler answers, or none can be started.
+        No scheduler answers.
     """
-    if address is not None:
-        try:
-            client = Client(address, set_as_default=False)
-        except (OSError, ValueError) as error:
-            raise ConfigError(
-                f"no scheduler answers at {address!r} ({error}); give the address that `dask "
-                "scheduler` prints, or none to start one here",
-                "address",
-            ) from None
-        with client:
-            yield client
-        return
-    with (
-        _started_here(workers or max(1, CPU_COUNT // threads)) as ours,
-        Client(ours, set_as_default=False) as client,
-    ):
-        yield client
-
-
-def _started_here(workers: int) -> LocalCluster:
-    before = config.get("distributed.nanny.pre-spawn-environ")
     try:
-        with config.set({"distributed.nanny.pre-spawn-environ": before | _KEEPS_MEMORY}):
-            return _Local(  # type: ignore[no-untyped-call]
-                n_workers=workers,
-                threads_per_worker=1,
-                # Without an address its port is 8787, and another scheduler here has that.
-                dashboard_address=":0",
-                scheduler_kwargs={"dashboard": False},
-                silence_logs=logging.CRITICAL,
-            )
-    except RuntimeError as error:
+        return Client(address, set_as_default=False)
+    except (OSError, ValueError) as error:
         raise ConfigError(
-            f"dask cannot start its workers ({error}); they import the script that starts them, so "
-            'put what it does under if __name__ == "__main__":, or take the executor "processes"'
+            f"no scheduler answers at {address!r} ({error}); give the address that `dask "
+            'scheduler` prints, or use the executor "processes" on one machine',
+            "address",
         ) from None
 
 
@@ -130,6 +87,9 @@ class Submission(Generic[AnyTask]):
     ) -> None:
         self._client.cancel(list(self._futures.values()), force=True)
         self._client.unsubscribe_topic(self._name)
+        end = time.monotonic() + _END_WITHIN
+        while self._futures and _runs_any(self._client, self._name) and time.monotonic() < end:
+            time.sleep(_LOOK_AGAIN)
 
     def outcomes(self, report: Report[AnyTask]) -> Iterator[tuple[AnyTask, Any]]:
         """Yield each task with its outcome, as they finish.
@@ -148,8 +108,9 @@ class Submission(Generic[AnyTask]):
             self._submit(one)
             for index, outcome in self._finished(report):
                 if isinstance(outcome, KilledWorker):
+                    deaths = outcome.allowed_failures + 1
                     outcome = PellicleError(
-                        f"{outcome.allowed_failures + 1} workers died of it, as when the system is "
+                        f"{deaths} worker{'s' * (deaths > 1)} died of it, as when the system is "
                         "out of memory; the other runs went on"
                     )
                 yield self._tasks[index], outcome
@@ -169,53 +130,21 @@ class Submission(Generic[AnyTask]):
 
     def _finished(self, report: Report[AnyTask]) -> Iterator[tuple[int, Any]]:
         """Yield the outcome of each task that is submitted, and report what is said meanwhile."""
-        left = _RESTARTS
+        warned = False
         while self._futures:
             try:
+                # Without a timeout Windows would not let Ctrl-C through.
                 index, said = self._news.get(timeout=_LOOK_EVERY)
             except Empty:
-                if _is_deserted(self._client):
-                    if left:
-                        left -= 1
-                        _restart(self._client)
-                    else:
-                        yield from self._lost()
+                if not warned and not self._client.scheduler_info()["workers"]:
+                    warned = True
+                    warnings.warn(_NO_WORKERS, stacklevel=2)
                 continue
-            left = _RESTARTS
             if said is not None:
                 report(self._tasks[index], pickle.loads(said))
             elif index in self._futures:
                 # A result that is taken is let go of: nobody computes it again if its worker dies.
                 yield index, _outcome(self._futures.pop(index))
-
-    def _lost(self) -> Iterator[tuple[int, Any]]:
-        """Yield every task that is submitted, as failed."""
-        for index in [*self._futures]:
-            del self._futures[index]
-            yield index, PellicleError("all workers that were started for it died")
-
-
-def _is_deserted(client: Client) -> bool:
-    """Whether a scheduler that was started here has no worker left, so that tasks would wait on.
-
-    dask starts a worker that died again, but not one that died while it started. To a scheduler
-    with an address workers may yet come.
-    """
-    if client.cluster is None or client.cluster.scheduler_info["workers"]:
-        return False
-    try:
-        client.wait_for_workers(1, timeout=_START_WITHIN)
-    except TimeoutError:
-        return True
-    return False
-
-
-def _restart(client: Client) -> None:
-    """Start as many workers as there were at first."""
-    assert client.cluster is not None
-    workers = len(client.cluster.worker_spec)
-    client.cluster.scale(0)
-    client.cluster.scale(workers)
 
 
 def _bootstrap() -> Callable[..., bytes]:
@@ -249,6 +178,15 @@ def carry_out(parcel: bytes, our_version: str, topic: str, index: int) -> bytes:
         worker.log_event(topic, (index, cloudpickle.dumps(said)))
 
     return attempt_far(parcel, say)
+
+
+def _runs_any(client: Client, prefix: str) -> bool:
+    """Whether a worker is still at a task whose key begins with ``prefix``, withdrawn or not."""
+
+    def runs(dask_worker: Any) -> bool:
+        return any(str(key).startswith(prefix) for key in dask_worker.state.tasks)
+
+    return client.status == "running" and any(client.run(runs, on_error="ignore").values())
 
 
 def _largest_worker(client: Client) -> float:

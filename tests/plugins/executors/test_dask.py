@@ -1,4 +1,4 @@
-"""Runs by a dask scheduler: workers die, clusters are elsewhere, and the extra may be missing."""
+"""Runs by a dask scheduler: workers die or never come, and the extra may be missing."""
 
 import builtins
 import os
@@ -7,13 +7,16 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import cloudpickle
 import distributed
+import psutil
 import pytest
 from dask import config as configuration
 
@@ -24,7 +27,6 @@ from pellicle.plugins import registry
 # Workers cannot import a module of a folder that is no package.
 cloudpickle.register_pickle_by_value(sys.modules[__name__])
 
-pytestmark = pytest.mark.usefixtures("forked_dask")
 posix = pytest.mark.skipif(sys.platform == "win32", reason="has other signals")
 PATIENCE = 60.0
 
@@ -74,9 +76,11 @@ def always_die(job: Job, say: Say) -> int:
     return job.number
 
 
-def die_at_once(job: Job, say: Say) -> None:
-    """Kill the own worker, as soon as there is one."""
-    os.kill(os.getpid(), signal.SIGKILL)
+def talk_a_while(job: Job, say: Say) -> None:
+    """Say something, again and again, for some seconds."""
+    for _ in range(1000):
+        say("on and on")
+        time.sleep(0.01)
 
 
 def talk_for_ever(job: Job, say: Say) -> None:
@@ -90,16 +94,9 @@ def talk_for_ever(job: Job, say: Say) -> None:
 
 
 @pytest.fixture(scope="module")
-def address() -> Iterator[str]:
-    """Return the address of a scheduler that is not the executor's own."""
-    with distributed.LocalCluster(
-        n_workers=2,
-        threads_per_worker=1,
-        dashboard_address=":0",
-        scheduler_kwargs={"dashboard": False},
-        memory_limit=2 * 10**9,
-    ) as cluster:
-        yield cluster.scheduler_address
+def address(dask_address: str) -> str:
+    """Return the address of a scheduler with two workers."""
+    return dask_address
 
 
 def test_scheduler_by_address(address: str) -> None:
@@ -109,48 +106,89 @@ def test_scheduler_by_address(address: str) -> None:
         assert found == {Job(i): i**2 for i in range(4)}
 
 
+def test_an_address_is_needed() -> None:
+    """Without one the message says how to start a scheduler, and what to use on one machine."""
+    with pytest.raises(pl.ConfigError, match="address: is missing") as error:
+        dask()
+    for part in ("`dask scheduler`", "`dask worker ADDRESS`", '"processes"'):
+        assert part in str(error.value)
+
+
+def test_nothing_is_started_here() -> None:
+    """A number of workers is refused: an open port on all interfaces came with them."""
+    with pytest.raises(pl.ConfigError, match="workers: is not a field here"):
+        dask(address="tcp://127.0.0.1:8786", workers=2)
+
+
 @posix
-def test_task_of_a_killed_worker_runs_elsewhere(tmp_path: Path) -> None:
+def test_task_of_a_killed_worker_runs_elsewhere(start_dask: Any, tmp_path: Path) -> None:
     """The table is that of an undisturbed study, and no finished task was begun again."""
     jobs = [Job(i, tmp_path) for i in range(6)]
-    # Here as for users: by default dask starts each worker afresh.
-    with configuration.set({"distributed.worker.multiprocessing-method": "spawn"}):
-        found = dict(dask(workers=2).map(die_the_first_time, jobs, silence))
+    with start_dask() as address:
+        found = dict(dask(address=address).map(die_the_first_time, jobs, silence))
     assert found == {job: job.number for job in jobs}
     assert len(list(tmp_path.glob("1-*"))) == 2
 
 
 @posix
-def test_task_that_kills_every_worker_is_given_up() -> None:
+def test_task_that_kills_every_worker_is_given_up(address: str) -> None:
     """It says how many died of it; the others are carried out."""
-    with configuration.set({"distributed.scheduler.allowed-failures": 1}):
-        found = dict(dask(workers=2).map(always_die, [Job(i) for i in range(3)], silence))
+    found = dict(dask(address=address).map(always_die, [Job(i) for i in range(3)], silence))
     assert (found[Job(0)], found[Job(2)]) == (0, 2)
     assert isinstance(found[Job(1)], pl.PellicleError)
-    assert str(found[Job(1)]).startswith("2 workers died of it")
+    assert str(found[Job(1)]).startswith("1 worker died of it")
+
+
+def test_no_workers_are_warned_of(start_dask: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who waits for workers that do not come is told so, and how to start them."""
+    monkeypatch.setattr("pellicle_plugins.executors.submission._LOOK_EVERY", 0.05)
+    with (
+        start_dask(0) as address,
+        pytest.raises(UserWarning, match=r"has no workers; .* `dask worker ADDRESS`"),
+    ):
+        list(dask(address=address).map(square, [Job(2)], silence))
+
+
+def test_workers_may_come_later(start_dask: Any, tmp_path: Path) -> None:
+    """Runs wait for the first worker, as a queue may take its time to start one."""
+    with start_dask(0) as address, worker_of(address, tmp_path), warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        found = dict(dask(address=address).map(square, [Job(i) for i in range(3)], silence))
+    assert found == {Job(i): i**2 for i in range(3)}
 
 
 @posix
-def test_no_worker_is_left() -> None:
-    """Tasks for which there are no workers any more fail, and do not wait for ever."""
-    found = list(dask(workers=1).map(die_at_once, [Job(0), Job(1)], silence))
+def test_a_scheduler_that_dies_fails_its_tasks(start_dask: Any) -> None:
+    """Without a scheduler tasks come with an exception, and nothing waits for ever."""
+    with start_dask(1, "--no-nanny", "--death-timeout", "1") as address:
+        port = int(address.rpartition(":")[2])
+        scheduler = next(
+            process
+            for process in psutil.Process().children()
+            if any(c.laddr.port == port for c in process.net_connections() if c.status == "LISTEN")
+        )
+
+        def report(job: Job, said: Any) -> None:
+            scheduler.kill()
+
+        found = list(dask(address=address).map(talk_a_while, [Job(0), Job(1)], report))
     assert len(found) == 2
     for _, outcome in found:
-        assert isinstance(outcome, pl.PellicleError)
-        assert "died" in str(outcome)
+        assert str(outcome) == "the connection to the scheduler was lost"
 
 
-def test_task_larger_than_every_worker(address: str) -> None:
+def test_task_larger_than_every_worker(start_dask: Any) -> None:
     """It is not sent off to die four times; the others run."""
     jobs = [Job(0, memory=3 * 10**9), Job(2)]
-    found = dict(dask(address=address).map(square, jobs, silence))
+    with start_dask(1, "--no-nanny", "--memory-limit", "2GB") as address:
+        found = dict(dask(address=address).map(square, jobs, silence))
     assert found[jobs[1]] == 4
     message = "job 0 needs about 3 GB, and 2 GB are available on the largest worker; use fewer"
     assert str(found[jobs[0]]).startswith(message)
 
 
 def test_tasks_at_work_elsewhere_end_when_nobody_waits(address: str, tmp_path: Path) -> None:
-    """On a scheduler that goes on without us, tasks end at their next word."""
+    """On a scheduler that goes on without us, tasks have ended when the iterator is closed."""
     jobs = [Job(i, tmp_path) for i in range(2)]
     heard = threading.Event()
 
@@ -161,12 +199,11 @@ def test_tasks_at_work_elsewhere_end_when_nobody_waits(address: str, tmp_path: P
     with pytest.raises(KeyboardInterrupt):
         list(dask(address=address).map(talk_for_ever, jobs, report))
     assert heard.is_set()
-    end = time.monotonic() + PATIENCE
+    ended = sorted(tmp_path.iterdir())
+    assert ended
     # Both workers are free again, or this would wait for ever.
     assert len(list(dask(address=address).map(square, [Job(i) for i in range(4)], silence))) == 4
-    while not list(tmp_path.iterdir()):
-        assert time.monotonic() < end
-        time.sleep(0.01)
+    assert sorted(tmp_path.iterdir()) == ended
 
 
 def test_no_scheduler_at_the_address() -> None:
@@ -198,35 +235,37 @@ def test_without_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(builtins, "__import__", without_distributed)
     with pytest.raises(pl.ConfigError, match=r"pip install 'pellicle\[cluster\]'"):
-        list(dask().map(square, [Job(0)], silence))
+        list(dask(address="tcp://127.0.0.1:9").map(square, [Job(0)], silence))
+
+
+@contextmanager
+def worker_of(address: str, folder: Path, **environment: str) -> Iterator[None]:
+    """Start a worker, and end it afterwards."""
+    command = [
+        *(sys.executable, "-m", "distributed.cli.dask_worker", address),
+        *("--host", "127.0.0.1", "--no-nanny", "--no-dashboard", "--nthreads=1"),
+        *("--local-directory", str(folder)),
+    ]
+    worker = subprocess.Popen(command, env=os.environ | environment, stderr=subprocess.DEVNULL)
+    try:
+        yield
+    finally:
+        worker.terminate()
+        worker.wait()
 
 
 @posix
-def test_workers_without_pellicle(tmp_path: Path) -> None:
+def test_workers_without_pellicle(start_dask: Any, tmp_path: Path) -> None:
     """A cluster that lacks it says so, for each task."""
     hidden = tmp_path / "hidden" / "pellicle_plugins"
     hidden.mkdir(parents=True)
     (hidden / "__init__.py").write_text(
         "raise ModuleNotFoundError(\"No module named 'pellicle_plugins'\", name='pellicle_plugins')"
     )
-    environment = {**os.environ, "PYTHONPATH": str(hidden.parent)}
-    with distributed.LocalCluster(
-        n_workers=0, dashboard_address=":0", scheduler_kwargs={"dashboard": False}
-    ) as cluster:
-        worker = subprocess.Popen(
-            [
-                *(sys.executable, "-m", "distributed.cli.dask_worker", cluster.scheduler_address),
-                *("--no-nanny", "--no-dashboard", "--nthreads=1"),
-                *("--local-directory", str(tmp_path)),
-            ],
-            env=environment,
-            stderr=subprocess.DEVNULL,
-        )
-        try:
-            executor = dask(address=cluster.scheduler_address)
-            ((_, outcome),) = executor.map(square, [Job(0)], silence)
-        finally:
-            worker.terminate()
-            worker.wait()
+    path = str(hidden.parent)
+    with start_dask(0) as address, worker_of(address, tmp_path, PYTHONPATH=path):
+        with distributed.Client(address, set_as_default=False) as client:
+            client.wait_for_workers(1, timeout=PATIENCE)
+        ((_, outcome),) = dask(address=address).map(square, [Job(0)], silence)
     assert isinstance(outcome, pl.PellicleError)
     assert "workers lack pellicle_plugins; install there" in str(outcome)

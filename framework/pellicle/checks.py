@@ -1,0 +1,161 @@
+"""What a component returns is checked where the framework calls it.
+
+A component that breaks its contract at work raises a `PluginError` that names the component, what
+it returned and what is required. Its arguments are read-only, so that it cannot change them.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator
+from contextlib import contextmanager
+from numbers import Real
+from traceback import extract_tb
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import ConfigError, PellicleError, PluginError, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[np.float64]
+
+# In the messages of numpy, Cython, dataclasses and pydantic about an object that must not change.
+_REFUSALS = "read-only", "cannot assign to field", "Instance is frozen"
+
+
+def component_name(component: object) -> str:
+    """Return what messages call a component, such as ``kernel 'half_space'``."""
+    family = getattr(component, "family", "component")
+    return f"{family} {getattr(component, 'type', type(component).__name__)!r}"
+
+
+@contextmanager
+def blamed(component: object) -> Iterator[None]:
+    """Note on an exception which component raised it, and where in its code.
+
+    Raises
+    ------
+    PluginError
+        The component tried to change one of its arguments.
+    """
+    try:
+        yield
+    except (PellicleError, MemoryError):
+        raise
+    except Exception as error:
+        if getattr(error, "__notes__", ()):
+            raise
+        name, place = component_name(component), _place(component, error)
+        if any(refusal in str(error) for refusal in _REFUSALS):
+            raise PluginError(
+                f"{name} changes what it is given{place}: {error}; it has to work on a copy"
+            ) from error
+        error.add_note(f"{name} failed{place}")
+        raise
+
+
+def _place(component: object, error: Exception) -> str:
+    """Return the file of a component's class and the line in it that an error comes from."""
+    home = inspect.getsourcefile(type(component))
+    inside = [frame for frame in extract_tb(error.__traceback__) if frame.filename == home]
+    return f" ({home}, line {inside[-1].lineno})" if inside else ""
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """Return a view of an array that cannot be written to."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
+
+
+def read_only_dataset(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a dataset that shares the arrays of ``dataset`` and cannot be used to change them."""
+    copy = dataset.copy()
+    for name, variable in dataset.variables.items():
+        # Text has no view that xarray would keep, and coordinates are shared with an index.
+        if name in dataset.coords or variable.dtype.kind == "O":
+            copy[name] = variable.copy(deep=True)
+        else:
+            copy[name] = variable.copy(data=read_only(np.asarray(variable.data)))
+    return copy
+
+
+def real_array(component: object, call: str, returned: object, shape: tuple[int, ...]) -> Array:
+    """Return what ``call`` of a component returned, as an array of float64.
+
+    Whole numbers are refused: in SI units they are values that lost their digits.
+
+    Raises
+    ------
+    PluginError
+        It is not an array of real floating-point numbers of this shape.
+    """
+    try:
+        values = np.asarray(returned)
+    except ValueError:
+        values = np.empty(0, dtype=object)
+    masked = isinstance(returned, np.ma.MaskedArray)
+    if masked or values.dtype.kind != "f" or values.shape != shape:
+        raise PluginError(
+            f"{component_name(component)}: {call} returned {_description(returned)}; it has to "
+            f"return an array of float64 of shape {shape}"
+        )
+    return values.astype(np.float64, copy=False)
+
+
+def real_number(component: object, call: str, returned: object) -> float:
+    """Return the number that ``call`` of a component returned; it may be infinite.
+
+    Raises
+    ------
+    PluginError
+        It is not a real number, or it is NaN.
+    """
+    number = (
+        returned.item() if isinstance(returned, np.ndarray) and returned.ndim == 0 else returned
+    )
+    if not isinstance(number, Real) or isinstance(number, bool) or number != number:
+        raise PluginError(
+            f"{component_name(component)}: {call} returned {_description(returned)}; it has to "
+            "return a real number"
+        )
+    return float(number)
+
+
+def _description(returned: object) -> str:
+    if isinstance(returned, np.ndarray):
+        kind = "a masked array" if isinstance(returned, np.ma.MaskedArray) else "an array"
+        return f"{kind} of {returned.dtype} of shape {returned.shape}"
+    return shown(returned)
+
+
+def whole_number(value: object, unit: str) -> int:
+    """Return a number of cells, threads and the like.
+
+    Raises
+    ------
+    ValueError
+        It is not a whole number ≥ 1; ``unit`` says of what.
+    """
+    number = value.item() if getattr(value, "ndim", None) == 0 else value  # type: ignore[attr-defined]
+    if not isinstance(number, int) or isinstance(number, bool) or number < 1:
+        raise ValueError(f"{shown(value)} is not allowed; give a whole number of {unit} ≥ 1")
+    return number
+
+
+def checked_threads(threads: object) -> int | None:
+    """Return a number of threads, None for as many as there are by default.
+
+    Raises
+    ------
+    ConfigError
+        It is neither None nor a whole number ≥ 1.
+    """
+    try:
+        return None if threads is None else whole_number(threads, "threads")
+    except ValueError as error:
+        raise ConfigError(f"{error}, or None for the default", "threads") from None

@@ -1,0 +1,123 @@
+"""Guards around code of plugins: it cannot print to standard output or pass for Ctrl-C.
+
+Commands print JSON to standard output, which one line of a plugin would spoil.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from io import StringIO
+from types import FrameType
+from typing import TextIO
+
+from .errors import PluginError
+
+# File descriptors, which C libraries and subprocesses write to directly.
+_OUT, _ERR = 1, 2
+
+
+@contextmanager
+def diverted_output() -> Iterator[None]:
+    """Send to standard error what is written to standard output meanwhile.
+
+    Raises
+    ------
+    PluginError
+        Standard output was closed. It is open again.
+    """
+    stream = sys.stdout
+    was_closed = _is_closed(stream)
+    _flush(stream, sys.__stdout__)
+    sys.stdout = stand_in = _stand_in()
+    descriptor = _divert_descriptor()
+    try:
+        yield
+    finally:
+        _flush(sys.stdout, stand_in, stream, sys.__stdout__)
+        closed = stand_in.closed or (descriptor is not None and not _same_file(_OUT, _ERR))
+        if descriptor is not None:
+            os.dup2(descriptor, _OUT)
+            os.close(descriptor)
+        sys.stdout = stream
+        if _is_closed(stream) and not was_closed:
+            closed = True
+            sys.stdout = open(  # noqa: SIM115 - for the rest of the process
+                _OUT, "w", encoding=stream.encoding, errors=stream.errors, closefd=False
+            )
+    if closed:
+        raise PluginError("closes standard output; leave it open")
+
+
+@contextmanager
+def noted_interrupts() -> Iterator[threading.Event]:
+    """Yield an event that is set when the user presses Ctrl-C, whatever becomes of the exception.
+
+    Handlers are as before afterwards. In threads other than the main one there is no Ctrl-C.
+    """
+    pressed = threading.Event()
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(before):
+        yield pressed
+        return
+
+    def handle(number: int, frame: FrameType | None) -> None:
+        pressed.set()
+        before(number, frame)
+
+    signal.signal(signal.SIGINT, handle)
+    try:
+        yield pressed
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _stand_in() -> TextIO:
+    """Return a stream to standard error; closing it closes nothing else."""
+    encoding = getattr(sys.stderr, "encoding", None) or "utf-8"
+    try:
+        return open(
+            _ERR, "w", buffering=1, encoding=encoding, errors="backslashreplace", closefd=False
+        )
+    except OSError:
+        return StringIO()
+
+
+def _divert_descriptor() -> int | None:
+    """Let the descriptor of standard output be that of standard error; return a copy of it."""
+    try:
+        copy = os.dup(_OUT)
+    except OSError:
+        return None
+    try:
+        os.dup2(_ERR, _OUT)
+    except OSError:
+        os.close(copy)
+        return None
+    return copy
+
+
+def _same_file(first: int, second: int) -> bool:
+    try:
+        return os.path.sameopenfile(first, second)
+    except OSError:
+        return False
+
+
+def _is_closed(stream: TextIO | None) -> bool:
+    return stream is None or stream.closed
+
+
+def _flush(*streams: TextIO | None) -> None:
+    for stream in streams:
+        with suppress(OSError, ValueError, AttributeError):
+            assert stream is not None
+            stream.flush()
+    # What C libraries have printed waits in a buffer of their own.
+    with suppress(OSError, AttributeError, TypeError):
+        ctypes.CDLL(None).fflush(None)
