@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from pellicle.errors import ConfigError, PellicleError, StorageError, shown
+from pellicle.text_files import read_text
 
 from . import afm
 from .measured import EXAMPLE, NAMES, Calibration, Column, Measured, from_columns, is_curve
@@ -136,10 +137,10 @@ Number = Callable[[list[str], int], float]
 def _cells(path: Path) -> tuple[list[tuple[str, str]], list[list[str]], Number] | None:
     """Return name and unit of each column, the rows below, and how numbers are read."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_text(path)
     except OSError as error:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except UnicodeDecodeError:
+    except ValueError:
         return None
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     if not lines:

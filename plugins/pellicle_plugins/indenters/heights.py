@@ -15,6 +15,7 @@ from pellicle.components import Indenter
 from pellicle.errors import ConfigError
 from pellicle.model import InputPath
 from pellicle.operators import Array
+from pellicle.text_files import read_text
 from pellicle.units import Length
 
 from .measured import Measured
@@ -113,7 +114,7 @@ def _load_npy(path: Path, dataset: str | None) -> Any:
 
 
 def _load_text(path: Path, dataset: str | None) -> Any:
-    lines = path.read_text(encoding="utf-8-sig").splitlines()
+    lines = read_text(path).splitlines()
     if not any(line.partition("#")[0].strip() for line in lines):
         raise ValueError("it holds no numbers")
     delimiter = "," if any("," in line.partition("#")[0] for line in lines) else None
