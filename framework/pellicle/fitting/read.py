@@ -15,7 +15,7 @@ from pellicle.text_files import read_text
 from . import afm
 from .measured import EXAMPLE, NAMES, Calibration, Column, Measured, from_columns, is_curve
 
-_HEADER = re.compile(r"\s*([^\[(]*?)\s*(?:[\[(]([^\])]*)[\])])?\s*")
+_HEADER = re.compile(r"([^\[(]*)(?:[\[(]([^\])]*)[\])])?")
 _HDF5 = (".h5", ".hdf5", ".nc")
 SUFFIXES = (".csv", ".tsv", ".txt", *_HDF5, *afm.SUFFIXES)
 """Endings of the files of a folder that are curves."""
@@ -146,7 +146,11 @@ def _cells(path: Path) -> tuple[list[tuple[str, str]], list[list[str]], Number] 
     if not lines:
         raise ConfigError(f"{path}: is empty; give a table with the header {EXAMPLE!r}")
     separator = max("\t;,", key=lines[0].count)
-    first, *rows = csv.reader(lines, delimiter=separator)
+    try:
+        first, *rows = csv.reader(lines, delimiter=separator)
+    except csv.Error:
+        # A cell longer than any number.
+        return None
     # Where semicolons separate, commas are decimal.
     comma = separator == ";"
 
@@ -160,8 +164,10 @@ def _cells(path: Path) -> tuple[list[tuple[str, str]], list[list[str]], Number] 
 
 
 def _head(text: str) -> tuple[str, str]:
-    match = _HEADER.fullmatch(text)
-    return (match[1].lower(), (match[2] or "").strip()) if match else (text.lower(), "")
+    match = _HEADER.fullmatch(text.strip())
+    if match is None:
+        return text.lower(), ""
+    return match[1].rstrip().lower(), (match[2] or "").strip()
 
 
 def _hdf5(path: Path) -> dict[str, Columns]:
