@@ -39,6 +39,8 @@ _AREA_TOLERANCE = 0.05
 # Of a paraboloid nine or twelve cells have the force to 8 %, five to 14 %, fewer do not have it.
 _RESOLVED = 13
 _RESOLVED_ACROSS = 4
+# Heights [m] whose squares, over those of cells, are still numbers.
+_LARGEST = 1e100
 
 
 def run(
@@ -267,9 +269,15 @@ def _problems(run: Run) -> list[Problem]:
 def _profile(run: Run) -> Array:
     x, y = run.grid.coordinates()
     try:
-        profile = np.asarray(run.indenter.profile(x, y), dtype=np.float64)
+        with np.errstate(over="raise"):
+            given = np.asarray(run.indenter.profile(x, y))
     except ConfigError as error:
         raise error.within("indenter") from None
+    except (OverflowError, FloatingPointError):
+        raise _beyond_numbers("overflow") from None
+    if np.iscomplexobj(given):
+        raise ConfigError("the profile has complex values; give real heights", "indenter")
+    profile = np.asarray(given, dtype=np.float64)
     if profile.shape != run.grid.shape:
         raise ConfigError(
             f"the profile is of shape {profile.shape}, the grid of shape {run.grid.shape}; check "
@@ -282,7 +290,18 @@ def _profile(run: Run) -> Array:
             "≤ 0 everywhere and 0 at the lowest point",
             "indenter",
         )
+    highest = -float(profile.min(where=np.isfinite(profile), initial=0.0))
+    if highest and not 1 / _LARGEST < highest < _LARGEST:
+        raise _beyond_numbers(f"reach {highest:g} m")
     return profile
+
+
+def _beyond_numbers(what: str) -> ConfigError:
+    return ConfigError(
+        f"its heights on this grid {what}, and squares of them are beyond the numbers that a "
+        "computer has; check the units of its lengths",
+        "indenter",
+    )
 
 
 def _mean_plane(run: Run, profile: Array) -> float:
