@@ -14,13 +14,19 @@ from pathlib import Path
 from typing import Annotated, Any, Self
 
 import tomli_w
-from pydantic import Field, model_validator
+from pydantic import (
+    Field,
+    ValidationInfo,
+    ValidatorFunctionWrapHandler,
+    field_validator,
+    model_validator,
+)
 
 from .clashes import refuse_clashes
 from .components import AreaCorrection, Indenter, Kernel, Output, Solver
 from .errors import ConfigError
 from .fields import FromRegistry
-from .grid import Grid
+from .grid import Grid, grid_of_run
 from .loading import Loading
 from .model import Model, paths_relative_to, replaced
 from .plugins import registry
@@ -55,6 +61,14 @@ class Run(Model):
         tuple[Annotated[Output, FromRegistry()], ...] | None,
         Field(description="what the run leaves behind; all the standard outputs if not given"),
     ] = None
+
+    @field_validator("indenter", mode="wrap")
+    @classmethod
+    def _made_for_the_grid(
+        cls, given: object, make: ValidatorFunctionWrapHandler, info: ValidationInfo
+    ) -> Any:
+        with grid_of_run(info.data.get("grid")):
+            return make(given)
 
     @model_validator(mode="after")
     def _pressure_needs_period(self) -> Self:

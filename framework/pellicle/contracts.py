@@ -39,7 +39,7 @@ from .components import (
     Solver,
 )
 from .errors import ConfigError, PluginError, shown
-from .grid import Grid
+from .grid import LARGEST, Grid
 from .operators import Array
 from .problem import Problem
 from .result import Solution, Stop
@@ -63,11 +63,13 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
     """
     x, y = (read_only(points) for points in grid.coordinates())
     try:
-        with blamed(indenter):
+        with blamed(indenter), np.errstate(over="raise"):
             returned = indenter.profile(x, y)
             footprint = indenter.footprint
     except ConfigError as error:
         raise error.within("indenter") from None
+    except (OverflowError, FloatingPointError):
+        raise _beyond_numbers("overflow") from None
     profile = real_array(indenter, "profile(x, y)", returned, grid.shape)
     name = component_name(indenter)
     if footprint not in get_args(Footprint):
@@ -80,6 +82,9 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
             "it must be ≤ 0 everywhere and 0 at the lowest point",
             "indenter",
         )
+    height = -float(profile.min(where=np.isfinite(profile), initial=0.0))
+    if height and not 1 / LARGEST < height < LARGEST:
+        raise _beyond_numbers(f"reach {height:g} m")
     highest = float(profile.max())
     rounding = _ROUNDING * max(grid.size)
     if highest < -rounding and highest < -(hidden := _hidden_height(profile, footprint)):
@@ -89,6 +94,14 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
             "point"
         )
     return read_only(profile)
+
+
+def _beyond_numbers(what: str) -> ConfigError:
+    return ConfigError(
+        f"its heights on this grid {what}, and squares of them are beyond the numbers that a "
+        "computer has; check the units of its lengths",
+        "indenter",
+    )
 
 
 def _hidden_height(profile: Array, footprint: Footprint) -> float:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import TYPE_CHECKING, Annotated, Final, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -17,7 +20,27 @@ if TYPE_CHECKING:
 
 Boundary = Literal["free", "periodic"]
 
-_LARGEST: Final = 1e100
+LARGEST: Final = 1e100
+_of_run: ContextVar[Grid | None] = ContextVar("grid of the run", default=None)
+
+
+@contextmanager
+def grid_of_run(grid: Grid | None) -> Iterator[None]:
+    """Let components that are made here know the grid of their run; None if it is not known."""
+    token = _of_run.set(grid)
+    try:
+        yield
+    finally:
+        _of_run.reset(token)
+
+
+def shape_of_run() -> tuple[int, int] | None:
+    """Return the shape of the grid of the run that is being made; None outside of one.
+
+    What is read from a file is compared with it before memory is spent on it.
+    """
+    grid = _of_run.get()
+    return None if grid is None else grid.shape
 
 
 def pair(value: object) -> object:
@@ -56,7 +79,7 @@ class Grid(Model):
 
     @model_validator(mode="after")
     def _measurable(self) -> Self:
-        if not 1 / _LARGEST < min(self.size) <= max(self.size) < _LARGEST:
+        if not 1 / LARGEST < min(self.size) <= max(self.size) < LARGEST:
             raise ConfigError(
                 f"{self.size[0]:g} × {self.size[1]:g} m has cells whose area is beyond the numbers "
                 "that a computer has; check the unit",

@@ -49,6 +49,7 @@ _AREA_TOLERANCE = 0.05
 # Of a paraboloid nine or twelve cells have the force to 8 %, five to 14 %, fewer do not have it.
 _RESOLVED = 13
 _RESOLVED_ACROSS = 4
+# Heights [m] whose squares, over those of cells, are still numbers.
 
 
 def run(

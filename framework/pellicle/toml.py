@@ -26,8 +26,11 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise ConfigError(
             f"{path}: {error.strerror}; give a TOML file (`pellicle new` writes one)"
         ) from None
-    except UnicodeDecodeError:
-        raise ConfigError(f"{path}: not a text file; give a TOML file in UTF-8") from None
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        raise ConfigError(
+            f"{path}: not a text file in UTF-8 (see line {line}); give a TOML file in UTF-8"
+        ) from None
     except (ValueError, RecursionError) as error:
         last = f"at line {len(text.splitlines())}, the end of the file"
         reason = str(error).replace("at end of document", last)

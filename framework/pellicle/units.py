@@ -35,9 +35,21 @@ _EXAMPLES = {
     "rad": "70 degree",
 }
 _NUMBER_AND_UNIT = re.compile(
-    r"\s*([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*?)\s*",
+    r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)",
     re.DOTALL | re.IGNORECASE,
 )
+# pint evaluates every number and power in a text, and "Pa*9**9**9**9" never ends. It is given names
+# with one small power, multiplied and divided, and nothing else.
+_LETTER = r"[^\W\d⁰¹²³⁴-⁹]"
+_NAME = rf"(?:{_LETTER}|[°%‰])(?:{_LETTER}|[0-9])*"
+_EXPONENT = r"[-+]?\d{1,2}(?:\.\d{1,20})?"
+_POWER = (
+    rf"(?: ?(?:\*\*|\^) ?(?:{_EXPONENT}|\({_EXPONENT}(?:/\d{{1,2}})?\))"
+    r"|⁻?[⁰¹²³⁴-⁹]{1,2})?"
+)
+_FACTOR = rf"(?:\( ?)*(?:1(?![\w.])|{_NAME}){_POWER}(?: ?\){_POWER})*"
+_UNIT = re.compile(rf"{_FACTOR}(?:(?: ?[*/·⋅×.] ?| ){_FACTOR})*")
+_LONGEST_UNIT = 100
 
 
 def _root(one: Any) -> str:
@@ -68,8 +80,13 @@ def ramp(start: float, stop: float, num: int, *, log: bool = False) -> list[floa
 
 def split(text: str) -> tuple[float, str] | None:
     """Return number and unit of a text like ``"10 kPa"``; None if it is none."""
-    match = _NUMBER_AND_UNIT.fullmatch(text)
+    match = _NUMBER_AND_UNIT.fullmatch(text.strip())
     return (float(match[1]), match[2]) if match else None
+
+
+def _is_unit(text: str) -> bool:
+    """Whether a text is a product of names with powers, which pint reads in no time."""
+    return len(text) <= _LONGEST_UNIT and _UNIT.fullmatch(text) is not None
 
 
 @dataclass(frozen=True)
@@ -117,7 +134,7 @@ class Quantity:
             raise ValueError(f"{shown(value)} is not a number; give {self._wanted()}")
         if value.strip().lower().lstrip("+-") in ("nan", "inf", "infinity"):
             return float(value)
-        match = _NUMBER_AND_UNIT.fullmatch(value)
+        match = _NUMBER_AND_UNIT.fullmatch(value.strip())
         if match is None:
             raise ValueError(f"{shown(value)} is not a number with a unit; give {self._wanted()}")
         number, unit = match.groups()
@@ -131,20 +148,28 @@ class Quantity:
 
     def _convert(self, number: str, unit: str, value: str) -> float:
         registry = _registry()
-        why = ""
+        why, factor = "", 1.0
+        unknown = f"has no unit that is known ({shown(unit)})"
+        unit = " ".join(unit.split())
         try:
+            if not _is_unit(unit):
+                raise ValueError
             one = registry.Quantity(1.0, unit)
             factor = float(one.to(self.unit).magnitude)
             # Per cent, decibels and counts have no dimension in pint, as an angle has none.
             if _root(one) != _root(registry.Quantity(1.0, self.unit)):
                 why = f"measures {_root(one)}, not {self._dimension()}"
+            elif (zero := registry.Quantity(0.0, unit).to(self.unit).magnitude) != 0:
+                why = f"is in a unit whose zero is {zero:.6g} {self.unit}"
+            elif not 0 < factor < math.inf:
+                why = f"is in a unit of {factor:g} {self.unit}"
         except Exception as error:
             # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
             kind = type(error).__name__
             why = (
                 f"measures {registry.Unit(unit).dimensionality}, not {self._dimension()}"
                 if kind == "DimensionalityError"
-                else f"has no unit that is known ({shown(unit)})"
+                else unknown
             )
         if why:
             raise ValueError(f"{shown(value)} {why}; give {self._wanted()}")

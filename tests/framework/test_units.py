@@ -133,6 +133,67 @@ def test_unknown_unit(unit: str) -> None:
         TENSION(f"1 {unit}")
 
 
+@pytest.mark.parametrize(
+    "unit",
+    [
+        "Pa*9**9**9**9",
+        "9**9**9*Pa",
+        "Pa^9^9^9^9",
+        "Pa⁹⁹⁹⁹⁹⁹⁹⁹ ⁹⁹⁹⁹⁹⁹⁹⁹",
+        "Pa*(9**9**9)",
+        "Pa" + " " * 1_000_000 + "(",
+        "m*" * 100_000 + "m",
+        "(" * 5000 + "Pa" + ")" * 5000,
+    ],
+)
+def test_unit_that_would_never_end(unit: str) -> None:
+    """Towers of powers and endless texts are refused at once: pint is not given them."""
+    with pytest.raises(ValueError, match="has no unit that is known"):
+        Quantity("Pa")(f"1 {unit}")
+
+
+@pytest.mark.parametrize("unit", ["Pa\0", "{Pa}", "Pa#x", "Pa\x1b[2J", "Pa;Pa", "[Pa]"])
+def test_unit_with_marks_of_other_languages(unit: str) -> None:
+    """A unit is letters, small powers, products and quotients; nothing else is ignored."""
+    with pytest.raises(ValueError, match="has no unit that is known"):
+        Quantity("Pa")(f"1 {unit}")
+
+
+@pytest.mark.parametrize(
+    ("unit", "given", "message"),
+    [
+        ("K", "20 degC", r"a unit whose zero is 273\.15 K"),
+        ("W", "3 dBm", r"a unit whose zero is 0\.001 W"),
+        ("m", "1 um**99/m**98", "a unit of 0 m"),
+    ],
+)
+def test_unit_that_no_factor_converts(unit: str, given: str, message: str) -> None:
+    """A scale with another zero, a logarithm and a vanishing factor are refused, not multiplied."""
+    with pytest.raises(ValueError, match=message):
+        Quantity(unit)(given)
+
+
+@pytest.mark.parametrize(
+    ("unit", "given", "expected"),
+    [
+        ("N*m", "3 N·m", 3.0),
+        ("N*m", "3 N⋅m", 3.0),
+        ("N*m", "3 N×mm", 3e-3),
+        ("1/m", "3 1/mm", 3e3),
+        ("1/m", "3 mm⁻¹", 3e3),
+        ("N/m", "3 newton per meter", 3.0),
+        ("Pa*m**0.5", "3 MPa*m**(1/2)", 3e6),
+        ("Pa*m**0.5", "3 MPa m^0.5", 3e6),
+        ("J", "3 kg·m²·s⁻²", 3.0),
+        ("Pa/m", "3 ((N / mm ** 2) / (mm))", 3e9),
+        ("m", "3 Å", 3e-10),
+    ],
+)
+def test_units_as_people_write_them(unit: str, given: str, expected: float) -> None:
+    """Dots, superscripts, roots, words and parentheses are read."""
+    assert Quantity(unit)(given) == pytest.approx(expected, rel=1e-14)
+
+
 def test_long_value_is_shortened() -> None:
     """A message quotes a long value in part."""
     with pytest.raises(ValueError, match="…") as caught:

@@ -5,6 +5,7 @@ Heavy imports are inside the commands, so that ``pellicle --help`` is there at o
 
 from __future__ import annotations
 
+import sys
 import warnings
 from typing import Any
 
@@ -14,12 +15,18 @@ from typer.core import TyperGroup
 from pellicle.errors import PellicleError
 
 from . import fit, new, plot, plugins, run, schema, show, validate
+from .encoding import encode_readably
 from .exits import BAD_INPUT, INTERRUPTED
 from .printing import print_warning
 
 
 class _Group(TyperGroup):
     """Turns errors into one message and an exit code: no traceback reaches a user."""
+
+    def main(self, *args: Any, **kwargs: Any) -> Any:
+        for stream in (sys.stdout, sys.stderr):
+            encode_readably(stream)
+        return super().main(*args, **kwargs)
 
     def invoke(self, ctx: Any) -> Any:
         try:

@@ -33,8 +33,8 @@ def print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
 
 
 def print_json(value: object) -> None:
-    """Print JSON."""
+    """Print JSON in ASCII, which any code page of a terminal or of a pipe has."""
     import json
 
-    json.dump(value, sys.stdout, indent=2, ensure_ascii=False)
+    json.dump(value, sys.stdout, indent=2)
     sys.stdout.write("\n")

@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from pellicle.errors import ConfigError, PellicleError, StorageError, shown
+from pellicle.text_files import read_text
 
 from . import afm
 from .measured import EXAMPLE, NAMES, Calibration, Column, Measured, from_columns, is_curve
 
-_HEADER = re.compile(r"\s*([^\[(]*?)\s*(?:[\[(]([^\])]*)[\])])?\s*")
+_HEADER = re.compile(r"([^\[(]*)(?:[\[(]([^\])]*)[\])])?")
 _HDF5 = (".h5", ".hdf5", ".nc")
 SUFFIXES = (".csv", ".tsv", ".txt", *_HDF5, *afm.SUFFIXES)
 """Endings of the files of a folder that are curves."""
@@ -136,16 +137,20 @@ Number = Callable[[list[str], int], float]
 def _cells(path: Path) -> tuple[list[tuple[str, str]], list[list[str]], Number] | None:
     """Return name and unit of each column, the rows below, and how numbers are read."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_text(path)
     except OSError as error:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except UnicodeDecodeError:
+    except ValueError:
         return None
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     if not lines:
         raise ConfigError(f"{path}: is empty; give a table with the header {EXAMPLE!r}")
     separator = max("\t;,", key=lines[0].count)
-    first, *rows = csv.reader(lines, delimiter=separator)
+    try:
+        first, *rows = csv.reader(lines, delimiter=separator)
+    except csv.Error:
+        # A cell longer than any number.
+        return None
     # Where semicolons separate, commas are decimal.
     comma = separator == ";"
 
@@ -159,8 +164,10 @@ def _cells(path: Path) -> tuple[list[tuple[str, str]], list[list[str]], Number] 
 
 
 def _head(text: str) -> tuple[str, str]:
-    match = _HEADER.fullmatch(text)
-    return (match[1].lower(), (match[2] or "").strip()) if match else (text.lower(), "")
+    match = _HEADER.fullmatch(text.strip())
+    if match is None:
+        return text.lower(), ""
+    return match[1].rstrip().lower(), (match[2] or "").strip()
 
 
 def _hdf5(path: Path) -> dict[str, Columns]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, NoReturn, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -13,11 +13,17 @@ from pydantic import Field, model_validator
 from pellicle import hookimpl
 from pellicle.components import Indenter
 from pellicle.errors import ConfigError
+from pellicle.grid import shape_of_run
 from pellicle.model import InputPath
 from pellicle.operators import Array
+from pellicle.text_files import read_text
 from pellicle.units import Length
 
 from .measured import Measured
+from .scan import require_content, require_memory
+
+# Peak while an array is read and checked, in bytes for each value beside its own.
+_BYTES = 10
 
 
 class Heights(Measured):
@@ -54,7 +60,9 @@ class Heights(Measured):
             raise ConfigError(f"give either a file or, from the library, values{hint}", "path")
         field = "values" if self.path is None else "path"
         raw = self.values if self.path is None else _load(self.path, self.dataset)
-        heights = _checked(raw, str(self.path or "the array"), field)
+        name = str(self.path or "the array")
+        _require_kind(raw, name, field)
+        heights = _checked(raw, name, field)
         self._keep(heights, hashlib.sha256(heights.tobytes()).hexdigest())
         object.__setattr__(self, "values", None)
         return self
@@ -69,9 +77,10 @@ class Heights(Measured):
         """
         shape = np.broadcast_shapes(x.shape, y.shape)
         if self._heights.shape != shape:
-            raise ConfigError(
-                f"{self.path or 'the array'} is of shape {self._heights.shape}, and the grid of "
-                f"shape {shape}; set grid.points = {list(self._heights.shape)}, or resample it",
+            _refuse_shape(
+                self._heights.shape,
+                shape,
+                str(self.path or "the array"),
                 "path" if self.path else "values",
             )
         below: Array = (self._heights - self._heights.max()) * self.unit
@@ -100,10 +109,10 @@ def _load(path: Path, dataset: str | None) -> Any:
 
 def _load_npy(path: Path, dataset: str | None) -> Any:
     try:
-        with path.open("rb") as file:
-            return np.lib.format.read_array(file, allow_pickle=False)
+        # Mapped: an array of the shape and type that the header claims takes no memory.
+        mapped = np.lib.format.open_memmap(path, mode="r")
     except ValueError as error:
-        if not any(word in str(error) for word in ("pickle", "magic")):
+        if not any(word in str(error) for word in ("pickle", "magic", "Python objects")):
             raise
         raise ConfigError(
             f"{path} is pickled or no .npy file, and a pickle can run any code; save a plain array "
@@ -111,9 +120,12 @@ def _load_npy(path: Path, dataset: str | None) -> Any:
             "path",
         ) from None
 
+    _require_header(mapped, path)
+    return mapped
+
 
 def _load_text(path: Path, dataset: str | None) -> Any:
-    lines = path.read_text(encoding="utf-8-sig").splitlines()
+    lines = read_text(path).splitlines()
     if not any(line.partition("#")[0].strip() for line in lines):
         raise ValueError("it holds no numbers")
     delimiter = "," if any("," in line.partition("#")[0] for line in lines) else None
@@ -135,23 +147,66 @@ def _load_hdf5(path: Path, dataset: str | None) -> Any:
                 raise ValueError("it holds no array")
             asked = f"no array {dataset!r}" if dataset else "more than one array"
             raise ConfigError(f"{path} has {asked}; give one of: {', '.join(names)}", "dataset")
+        _require_header(file[dataset], path)
         return file[dataset][...]
 
 
+def _require_header(array: Any, path: Path) -> None:
+    """Refuse by its shape and type an array that would not be used, before it is read."""
+    _require_kind(array, str(path), "path")
+    expected = shape_of_run()
+    if expected is not None and array.shape != expected:
+        _refuse_shape(array.shape, expected, str(path), "path")
+    require_content(array.size, path)
+    require_memory(
+        float(array.size) * (array.dtype.itemsize + _BYTES),
+        f"{path} with its {array.shape[0]} × {array.shape[1]} values",
+        "resample it",
+        "path",
+    )
+
+
+def _refuse_shape(
+    shape: tuple[int, ...], expected: tuple[int, ...], name: str, field: str
+) -> NoReturn:
+    raise ConfigError(
+        f"{name} is of shape {shape}, and the grid of shape {expected}; set grid.points = "
+        f"{list(shape)}, or resample it",
+        field,
+    )
+
+
+def _require_kind(raw: Any, name: str, field: str) -> None:
+    """Refuse what is not an array of real numbers over two dimensions."""
+    given = raw if hasattr(raw, "dtype") and hasattr(raw, "shape") else np.asarray(raw)
+    # An HDF5 dataset may have no shape at all.
+    kind, shape = given.dtype.kind, tuple(given.shape or ())
+    if kind not in "fiu":
+        values = "complex" if kind == "c" else str(given.dtype)
+        raise ConfigError(f"{name} holds {values} values; give real numbers", field)
+    if len(shape) != 2 or 0 in shape:
+        remedy = (
+            f"; a profile along a line is of shape ({shape[0]}, 1), with grid.points = "
+            f'[{shape[0]}, 1] and grid.boundary = "periodic"'
+            if len(shape) == 1 and 0 not in shape
+            else ""
+        )
+        raise ConfigError(
+            f"{name} is of shape {shape}; give a 2-D array [along x, along y]{remedy}", field
+        )
+
+
 def _checked(raw: Any, name: str, field: str) -> Array:
-    """Return heights as a fresh float64 array, or say what is wrong with them."""
+    """Return heights as a fresh float64 array; refuse those that are not numbers or masked."""
     given = np.asarray(raw)
-    problem = None
-    if given.dtype.kind not in "fiu":
-        kind = "complex" if given.dtype.kind == "c" else str(given.dtype)
-        problem = f"holds {kind} values; give real numbers"
-    elif given.ndim != 2 or given.size == 0:
-        problem = f"is of shape {given.shape}; give a 2-D array [along x, along y]"
-    elif not np.isfinite(given).all():
-        count = np.count_nonzero(~np.isfinite(given))
-        problem = f"holds {count} NaN or infinite heights; fill or crop them first"
-    if problem:
-        raise ConfigError(f"{name} {problem}", field)
+    bad = ~np.isfinite(given)
+    if masked := np.ma.isMaskedArray(raw):
+        bad |= np.ma.getmaskarray(raw)
+    if count := np.count_nonzero(bad):
+        what = "masked, NaN" if masked else "NaN"
+        raise ConfigError(
+            f"{name} holds {count} {what} or infinite heights; fill or crop them first", field
+        )
     return np.array(given, dtype=np.float64, order="C")
 
 

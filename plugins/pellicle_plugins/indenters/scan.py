@@ -21,6 +21,12 @@ from pellicle.units import Quantity
 # parsed, in lengths of the file: above what was measured at 2000² points (8) and 1000² (11).
 _ARRAYS = 9
 _TIMES_TEXT = 12
+# What deflate, which HDF5, zip and gzip pack by, makes of equal bytes: no file holds more.
+_POINTS_PER_BYTE = 1032
+# Share of their distance by which the places of regular points may be off, as they are rounded.
+_OFF_PLACE = 0.05
+# Share by which the size in a header may differ from that which the coordinates have.
+_OFF_SIZE = 0.02
 
 
 class Scan(NamedTuple):
@@ -85,6 +91,7 @@ def _read(
     # The readers warn of what is not ours to mend, and raise whatever a damaged file leads to.
     with file, warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
+        warnings.simplefilter("error", np.exceptions.ComplexWarning)
         text = b"\0" not in file.read(512)
         require_memory(
             length * (_TIMES_TEXT if text else 1),
@@ -96,10 +103,15 @@ def _read(
         digest = hashlib.file_digest(file, "sha256").hexdigest()
         file.seek(0)
         try:
-            found = _channel(io.open_topography(file), path, channel)
+            reader = io.open_topography(file)
+            if reader.format() == "hgt" and path.suffix.lower() != ".hgt":
+                # Any file of 2n² bytes passes as this format, which is n² bare whole numbers.
+                raise io.CannotDetectFileFormat
+            found = _channel(reader, path, channel)
             scale = _scale(found, path, unit)
             edges = _size(found, path, scale, size)
             nx, ny = found.nb_grid_pts
+            require_content(nx * ny, path)
             require_memory(
                 8.0 * _ARRAYS * nx * ny,
                 f"{path} with its {nx} × {ny} points",
@@ -108,7 +120,10 @@ def _read(
             )
             # Sizes are not needed for the heights, but asked for where the file has none.
             dummy = None if found.physical_sizes is not None else (1.0, 1.0)
-            heights = found.topography(physical_sizes=dummy).heights()
+            read = found.topography(physical_sizes=dummy).heights()
+            heights = np.ma.filled(np.ma.asarray(read, dtype=np.float64), np.nan)
+            if _is_coordinates(reader, found):
+                heights = _on_grid(heights, edges, path)
         except ConfigError:
             raise
         except io.CannotDetectFileFormat:
@@ -118,11 +133,13 @@ def _read(
                 "numbers as type = 'heights'",
                 "path",
             ) from None
+        except np.exceptions.ComplexWarning:
+            raise ConfigError(f"{path} holds complex values; give real numbers", "path") from None
         except Exception as error:
             raise ConfigError(
                 f"{path} is damaged or incomplete ({_reason(error)}); export it again", "path"
             ) from None
-        values = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan) * scale
+        values = heights * scale
     values[~np.isfinite(values)] = np.nan
     values.setflags(write=False)
     return Scan(values, edges, digest)
@@ -171,13 +188,63 @@ def _channel(reader: Any, path: Path, name: str | None) -> Any:
             "for line contact, the heights alone as type = 'heights' with grid.points = […, 1]",
             "path",
         )
-    # Columns x, y, z that make no regular grid are read as a narrow matrix of heights.
-    if found.is_uniform is False or (reader.format() == "asc" and found.nb_grid_pts[0] == 3):
+    # A reader of coordinates has refused those that are read as a matrix, but for their header.
+    if found.is_uniform is False or (
+        _is_coordinates(reader, found) and found.physical_sizes is None
+    ):
+        raise _irregular(path)
+    return found
+
+
+def _irregular(path: Path) -> ConfigError:
+    return ConfigError(
+        f"{path} has points at irregular distances; resample them to a regular grid first", "path"
+    )
+
+
+def _is_coordinates(reader: Any, found: Any) -> bool:
+    """Whether what was read as a matrix of three columns are points x, y, z."""
+    return bool(reader.format() == "asc" and found.nb_grid_pts[0] == 3)
+
+
+def _on_grid(columns: Array, size: tuple[float, float], path: Path) -> Array:
+    """Return the heights of points x, y, z, of shape (3, n), over the regular grid they make.
+
+    Raises
+    ------
+    ConfigError
+        They make none, or one whose edges are not as ``size``, stated in the file, is.
+    """
+    *positions, heights = columns
+    rows, extents = [], []
+    for position in positions:
+        if not np.isfinite(position).all() or np.ptp(position) == 0:
+            raise _irregular(path)
+        gaps = np.diff(np.sort(position))
+        pitch = np.ptp(position) / np.count_nonzero(gaps > gaps.max() / 2)
+        place = (position - position.min()) / pitch
+        if (np.abs(place - np.rint(place)) > _OFF_PLACE).any():
+            raise _irregular(path)
+        rows.append(np.rint(place).astype(int))
+        extents.append(np.ptp(position) + pitch)
+    shape = rows[0].max() + 1, rows[1].max() + 1
+    index = rows[0] * shape[1] + rows[1]
+    if heights.size != shape[0] * shape[1] or (np.bincount(index) != 1).any():
+        raise _irregular(path)
+    # Coordinates and size may be in different units, and the size with or without the last pitch.
+    ratios = [
+        {edge / extent, edge / (extent * (n - 1) / n)}
+        for edge, extent, n in zip(size, extents, shape, strict=True)
+    ]
+    if all(abs(one / other - 1) > _OFF_SIZE for one in ratios[0] for other in ratios[1]):
         raise ConfigError(
-            f"{path} has points at irregular distances; resample them to a regular grid first",
+            f"{path} states a size of {size[0]:g} × {size[1]:g} m, and its coordinates are as "
+            f"{extents[0]:g} to {extents[1]:g}; correct its header",
             "path",
         )
-    return found
+    grid = np.empty(heights.size)
+    grid[index] = heights
+    return grid.reshape(shape)
 
 
 def _scale(found: Any, path: Path, unit: float | None) -> float:
@@ -215,6 +282,23 @@ def _size(
     if size is not None:
         raise ConfigError(f"{path} states its own size, {x:g} × {y:g} m; leave this out", "size")
     return x, y
+
+
+def require_content(points: int, path: Path) -> None:
+    """Refuse a file whose header claims more points than its bytes can hold, packed or not.
+
+    Raises
+    ------
+    ConfigError
+        In ``path``: it claims so.
+    """
+    length = path.stat().st_size
+    if points > _POINTS_PER_BYTE * length:
+        raise ConfigError(
+            f"{path} claims {points} points, more than its {length} bytes can hold: it is damaged "
+            "or incomplete; export it again",
+            "path",
+        )
 
 
 def require_memory(needed: float, asked: str, remedy: str, field: str) -> None:

@@ -23,7 +23,7 @@ from pellicle.units import Length, Quantity
 
 from .axis import Axis
 from .measured import Measured
-from .scan import library, read_scan, require_memory
+from .scan import Scan, library, read_scan, require_memory
 
 _Position = Annotated[float, Quantity("m", at_least=0)]
 _Level = Literal["none", "mean", "tilt", "curvature"]
@@ -31,6 +31,8 @@ _LEVELS: tuple[_Level, ...] = get_args(_Level)
 """By the degree of the polynomial that is taken away, from −1."""
 # Bytes for each missing point: above what was measured with 10 and 30 % of 2000² missing.
 _PER_FILLED = 900
+# Sides [m] and rms slopes above which a unit is more likely wrong than the surface is so.
+_LARGE, _STEEP = 0.1, 1.0
 
 
 class Topography(Measured):
@@ -92,11 +94,36 @@ class Topography(Measured):
         scan = read_scan(self.path, self.channel, self.unit, self.size)
         if min(scan.heights.shape) < 2:
             raise ConfigError(
-                f"{self.path} has {scan.heights.shape} points; give 2 or more each way", "path"
+                f"{self.path} has {scan.heights.shape} points; give 2 or more each way, or, for "
+                "line contact, the heights alone as type = 'heights' with grid.points = […, 1]",
+                "path",
             )
+        self._remark(scan)
         self._keep(scan.heights, scan.digest)
         self._size = scan.size
         return self
+
+    def _remark(self, scan: Scan) -> None:
+        """Warn of a size and of slopes that a wrong unit makes."""
+        doubts = []
+        if max(scan.size) > _LARGE:
+            doubts.append(f"is of {scan.size[0]:g} × {scan.size[1]:g} m")
+        slope = max(
+            _rms(np.diff(scan.heights, axis=axis)) / (edge / n)
+            for axis, (edge, n) in enumerate(zip(scan.size, scan.heights.shape, strict=True))
+        )
+        if slope > _STEEP:
+            doubts.append(f"has an rms slope of {slope:.3g}")
+        if doubts:
+            remedy = (
+                "export it again with the units of its sides and of its heights"
+                if self.unit is None and self.size is None
+                else "correct unit or size"
+            )
+            warnings.warn(
+                f"{self.path} {' and '.join(doubts)}: a unit may be wrong; if so, {remedy}",
+                stacklevel=2,
+            )
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return the heights at the cells minus the highest measured one under the domain [m].
@@ -183,6 +210,13 @@ class Topography(Measured):
             heights = _filled(heights, missing)
         heights = _levelled(heights, _LEVELS.index(self.level) - 1)
         return -heights if self.invert else heights
+
+
+def _rms(values: Array) -> float:
+    """Return the root mean square of what is finite; 0 if nothing is."""
+    finite = np.abs(values[np.isfinite(values)])
+    largest = float(finite.max(initial=0.0))
+    return largest * float(np.sqrt(np.mean((finite / largest) ** 2))) if largest else 0.0
 
 
 def _filled(heights: Array, missing: NDArray[np.bool_]) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import pickle
+import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from pellicle import memory
 
 ROUGH = np.random.default_rng(5).normal(size=(8, 6))
 
@@ -106,7 +108,8 @@ def test_pickle_and_hash() -> None:
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        (ROUGH[0], r"shape \(6,\); give a 2-D array"),
+        (ROUGH[0], r"shape \(6,\); give a 2-D array .*; a profile along a line is of .*\[6, 1\]"),
+        (np.ma.masked_greater(ROUGH, 1.0), r"holds \d+ masked, NaN or infinite heights"),
         (np.zeros((0, 3)), r"shape \(0, 3\)"),
         (ROUGH[None], r"shape \(1, 8, 6\)"),
         (ROUGH * 1j, "complex values; give real numbers"),
@@ -133,6 +136,78 @@ def test_other_shape() -> None:
     """Heights that do not fit the grid are refused with both shapes."""
     with pytest.raises(pl.ConfigError, match=r"\(8, 6\).*\(6, 8\); set grid\.points = \[8, 6\]"):
         _profile(pl.indenter("heights", values=ROUGH, unit=1), (6, 8))
+
+
+def _huge_npy(path: Path) -> None:
+    """Write a header of 25000² cells, and next to nothing behind it."""
+    shape = {"descr": "<f8", "fortran_order": False, "shape": (25_000, 25_000)}
+    with path.open("wb") as file:
+        np.lib.format.write_array_header_1_0(file, shape)
+        file.write(bytes(1200))
+
+
+def _huge_hdf5(path: Path) -> None:
+    """Write a dataset of 25000² cells, none of which is there."""
+    with h5py.File(path, "w") as file:
+        file.create_dataset("z", (25_000, 25_000), "f8", chunks=(1000, 1000), compression="gzip")
+
+
+def _wide_npy(path: Path) -> None:
+    """Write 2000² cells that are there."""
+    np.save(path, np.zeros((2000, 2000)))
+
+
+@pytest.mark.parametrize(
+    ("write", "name", "message"),
+    [
+        (_huge_hdf5, "a.h5", r"shape \(25000, 25000\), and the grid of shape \(8, 6\)"),
+        (_huge_npy, "a.npy", r"mmap length is greater than file size"),
+        (_wide_npy, "a.npy", r"shape \(2000, 2000\), and the grid of shape \(8, 6\)"),
+    ],
+)
+def test_shapes_are_compared_before_memory_is_taken(
+    write: Callable[[Path], None], name: str, message: str, tmp_path: Path
+) -> None:
+    """A file of another shape than the grid is refused by its header: its cells are not read."""
+    write(tmp_path / name)
+    part = {"type": "heights", "path": tmp_path / name, "unit": "1 um"}
+    tracemalloc.start()
+    try:
+        with pytest.raises(pl.ConfigError, match=rf"^indenter\.parts\.0\.path: .*{message}"):
+            pl.Run(
+                grid={"points": [8, 6], "size": "1 mm"},
+                kernel={"type": "half_space", "reduced_modulus": "10 kPa"},
+                indenter={"type": "sum", "parts": [part]},
+                loading={"depth": "1 nm"},
+            )
+        assert tracemalloc.get_traced_memory()[1] < 10e6
+    finally:
+        tracemalloc.stop()
+
+
+def test_header_that_claims_more_than_the_file_holds(tmp_path: Path) -> None:
+    """Outside of a run, where no grid is known, a file is judged by its length."""
+    _huge_hdf5(tmp_path / "a.h5")
+    with pytest.raises(pl.ConfigError, match=r"^path: .*claims 625000000 points, more than its"):
+        pl.indenter("heights", path=tmp_path / "a.h5", unit=1)
+
+
+def test_array_that_does_not_fit_the_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An array that is there, but larger than the memory, is refused before it is read."""
+    _wide_npy(tmp_path / "a.npy")
+    monkeypatch.setattr(memory, "available", lambda: 50e6)
+    with pytest.raises(pl.ConfigError, match=r"2000 × 2000 values needs about 0\.072 GB, and"):
+        pl.indenter("heights", path=tmp_path / "a.npy", unit=1)
+
+
+def test_hdf5_without_values(tmp_path: Path) -> None:
+    """A dataset without a shape is refused like one of another."""
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["z"] = h5py.Empty("f8")
+    with pytest.raises(pl.ConfigError, match=r"^path: .* is of shape \(\); give a 2-D array"):
+        pl.indenter("heights", path=tmp_path / "a.h5", unit=1)
 
 
 def test_ends_with_the_domain() -> None:

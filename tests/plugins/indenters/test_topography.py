@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.io
 from typer.testing import CliRunner
 
 import pellicle as pl
@@ -367,14 +368,107 @@ def test_irregular_points_are_refused(tmp_path: Path, header: str) -> None:
     """Columns x, y, z are read where they make a regular grid; no others are taken for heights."""
     x, y = (each.ravel() for each in np.meshgrid([0.0, 1, 2, 3], [0.0, 1, 2], indexing="ij"))
     regular, irregular = tmp_path / "regular.xyz", tmp_path / "irregular.xyz"
-    np.savetxt(regular, np.stack([x, y, x * y], axis=1), header=header)
+    np.savetxt(regular, np.stack([x, y, x * y / 10], axis=1), header=header)
     np.savetxt(irregular, np.stack([x**2, y, x * y], axis=1), header=header)
     unit = {} if header else {"unit": "1 um"}
     grid = pl.Grid(points=[4, 3], size=["4 um", "3 um"])
     found = _profile(grid, regular, level="none", **unit)
-    assert found == pytest.approx((x * y - 6).reshape(4, 3) * 1e-6, abs=1e-18)
+    assert found == pytest.approx((x * y - 6).reshape(4, 3) * 1e-7, abs=1e-18)
     with pytest.raises(pl.ConfigError, match=r"^path: .* irregular distances; resample"):
         pl.indenter("topography", path=irregular, **unit)
+
+
+SIZED = "Channel: Main\nWidth: 4 um\nHeight: 3 um\nValue units: um"
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-6])
+def test_coordinates_under_a_header_with_sizes(unit: float, tmp_path: Path) -> None:
+    """Three columns on a regular grid, in any order and length unit, are its heights."""
+    x, y = (each.ravel() for each in np.meshgrid([0.0, 1, 2, 3], [0.0, 1, 2], indexing="ij"))
+    columns = np.stack([unit * x, unit * y, x * y / 10], axis=1)
+    path = tmp_path / "a.txt"
+    np.savetxt(path, np.random.default_rng(0).permutation(columns), header=SIZED)
+    found = _profile(pl.Grid(points=[4, 3], size=["4 um", "3 um"]), path, level="none")
+    assert found == pytest.approx((x * y - 6).reshape(4, 3) * 1e-7, abs=1e-18)
+
+
+@pytest.mark.parametrize(
+    ("change", "header", "message"),
+    [
+        (lambda c: c[:-1], SIZED, "irregular distances"),
+        (lambda c: c[[0, *range(11)]], SIZED, "irregular distances"),
+        (lambda c: c * [0, 1, 1], SIZED, "irregular distances"),
+        (lambda c: c + [[0, 0.2, 0]] * (c[:, :1] > 2), SIZED, "irregular distances"),
+        (
+            lambda c: c,
+            SIZED.replace("3 um", "30 um"),
+            r"states a size of 4e-06 × 3e-05 m, and its coordinates are as 4 to 3",
+        ),
+    ],
+)
+def test_coordinates_that_are_no_grid_of_that_size(
+    change: Callable[[np.ndarray], np.ndarray], header: str, message: str, tmp_path: Path
+) -> None:
+    """A point that is missing, twice or off its place, and another size, are refused."""
+    x, y = (each.ravel() for each in np.meshgrid([0.0, 1, 2, 3], [0.0, 1, 2], indexing="ij"))
+    np.savetxt(tmp_path / "a.txt", change(np.stack([x, y, x * y], axis=1)), header=header)
+    with pytest.raises(pl.ConfigError, match=rf"^path: .*{message}"):
+        pl.indenter("topography", path=tmp_path / "a.txt")
+
+
+@pytest.mark.parametrize(
+    ("header", "fields", "message"),
+    [
+        (
+            "Width: 160 m\nHeight: 160 m\nValue units: um",
+            {},
+            r"is of 160 × 160 m: a unit may be wrong; if so, export it again",
+        ),
+        (
+            "Width: 160 um\nHeight: 160 um\nValue units: mm",
+            {},
+            r"has an rms slope of \d+\.?\d*: a unit may be wrong; if so, export it again",
+        ),
+        ("", {"unit": "1 mm", "size": "80 um"}, r"rms slope .*; if so, correct unit or size"),
+        (
+            "",
+            {"unit": "1 m", "size": "2 m"},
+            r"is of 2 × 2 m and has an rms slope of .*; if so, correct unit or size",
+        ),
+    ],
+)
+def test_size_and_slope_of_a_wrong_unit_are_remarked_on(
+    header: str, fields: dict[str, Any], message: str, tmp_path: Path
+) -> None:
+    """A scan of 160 m, or steeper than 1, is read with a warning that says what to correct."""
+    path = tmp_path / "a.txt"
+    np.savetxt(path, np.random.default_rng(0).standard_normal((8, 8)), header=header)
+    with pytest.warns(UserWarning, match=message):
+        pl.indenter("topography", path=path, **fields)
+
+
+def test_any_file_of_the_right_length_is_no_terrain(tmp_path: Path) -> None:
+    """Bare whole numbers, a format without a mark, are read from files named so only."""
+    path = tmp_path / "a.bin"
+    path.write_bytes(np.random.default_rng(1).integers(0, 500, 24**2).astype(">i2").tobytes())
+    with pytest.raises(pl.ConfigError, match=r"^path: .*no format that can be read"):
+        pl.indenter("topography", path=path, unit="1 nm", size="1 um")
+    assert pl.indenter("topography", path=path.rename(tmp_path / "a.hgt"), unit=1e-9, size="1 mm")
+
+
+def test_complex_heights_are_refused(tmp_path: Path) -> None:
+    """A part that is imaginary is not dropped."""
+    path = tmp_path / "a.mat"
+    scipy.io.savemat(path, {"z": _heights() * (1 + 1j)})
+    with pytest.raises(pl.ConfigError, match=r"^path: .* holds complex values"):
+        pl.indenter("topography", path=path, unit=1, size=["1.3 mm", "1.1 mm"])
+
+
+def test_column_says_how_line_contact_is_run(tmp_path: Path) -> None:
+    """A scan one point wide is answered with what to do instead."""
+    np.save(tmp_path / "a.npy", np.zeros((8, 1)))
+    with pytest.raises(pl.ConfigError, match=r"\(8, 1\) points; .*grid\.points = \[…, 1\]"):
+        pl.indenter("topography", path=tmp_path / "a.npy", unit=1, size="1 mm")
 
 
 @pytest.mark.parametrize("power", [1, 2])
@@ -437,7 +531,7 @@ def test_no_such_file() -> None:
 def test_one_size_is_that_of_both_edges(tmp_path: Path) -> None:
     """As that of a grid."""
     path = tmp_path / "scan.txt"
-    np.savetxt(path, np.random.default_rng(0).standard_normal((6, 6)))
+    np.savetxt(path, np.random.default_rng(0).standard_normal((6, 6)) / 10)
     given = {"path": path, "unit": "1 um"}
     one, two = (pl.indenter("topography", size=s, **given) for s in ("6 um", ["6 um", "6 um"]))
     assert one == two

@@ -1,0 +1,49 @@
+"""What a terminal or a file cannot encode is written in letters that it can."""
+
+from __future__ import annotations
+
+import codecs
+import io
+import unicodedata
+from typing import TextIO
+
+_HANDLER = "pellicle.readable"
+_SIGNS = (
+    {"µ": "u", "×": "x", "·": "*", "⋅": "*", "−": "-", "–": "-", "—": "-", "…": "..."}
+    | {"≤": "<=", "≥": ">=", "≠": "!=", "≈": "~", "∞": "inf", "√": "sqrt", "∂": "d", "⁄": "/"}
+    | {"‘": "'", "’": "'", "“": '"', "”": '"', "°": " deg", "─": "-", "━": "-", "│": "|"}
+)
+
+
+def encode_readably(stream: TextIO) -> None:
+    """Have a stream replace what its encoding lacks: µ by u, τ by tau, ≤ by <=.
+
+    Windows encodes what is redirected to a file in a code page of 256 characters.
+    """
+    if isinstance(stream, io.TextIOWrapper):
+        stream.reconfigure(errors=_HANDLER)
+
+
+def _replace(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(map(_ascii, error.object[error.start : error.end])), error.end
+
+
+def _ascii(character: str) -> str:
+    """Return ASCII that reads like a character; a question mark for letters of other scripts."""
+    if character in _SIGNS:
+        return _SIGNS[character]
+    name = unicodedata.name(character, "")
+    if name.startswith("GREEK "):
+        # "GREEK SMALL LETTER TAU", "GREEK CAPITAL LETTER DELTA WITH TONOS"
+        letter = name.partition(" LETTER ")[2].partition(" ")[0]
+        return letter.capitalize() if "CAPITAL" in name else letter.lower()
+    plain = unicodedata.normalize("NFKD", character)
+    power = "^" if name.startswith("SUPERSCRIPT ") else ""
+    letters = [_SIGNS.get(part, part) for part in plain if not unicodedata.combining(part)]
+    text = f"{power}{''.join(letters)}"
+    return text if text.isascii() else "?"
+
+
+codecs.register_error(_HANDLER, _replace)
