@@ -393,10 +393,10 @@ def _solve(
     areas = _areas(run)
     if areas and areas[index] > 0:
         return reach_area(problem, areas[index], run.solver, start, monitor)
-    solution = Solution(np.zeros(run.grid.shape), 0)
-    if problem.touches:
-        with blamed(run.solver):
-            solution = run.solver.solve(problem, start, monitor)
+    if not problem.touches:
+        return Reached(problem, Solution(np.zeros(run.grid.shape), 0), 0.0, "met")
+    with blamed(run.solver):
+        solution = run.solver.solve(problem, start, monitor)
     return Reached(problem, solution, 0.0, "met")
 
 
