@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from . import memory, storage
+from . import memory
 from .area_search import Reached, reach_area
 from .components import Component, Monitor, Output, Place
 from .config import Run, refuse_study
-from .dataset import DESCRIPTIONS, step_dataset
+from .dataset import DESCRIPTIONS, Steps, step_dataset
 from .errors import ConfigError, ConvergenceWarning, PellicleError
 from .operators import Array, Operator, make_operator
 from .plugins import registry
@@ -114,7 +114,7 @@ def execute(
     import scipy.fft
 
     memory.require(run.grid, len(run.loading.values))
-    steps: list[xr.Dataset] = []
+    steps = Steps(len(run.loading.values))
     files: list[Path] = []
     with scipy.fft.set_workers(threads or _cores()), bar:
         try:
@@ -122,12 +122,11 @@ def execute(
             for output in outputs:
                 with blamed(output):
                     output.open(place)
-            steps = _resume(outputs, place)
+            steps.extend(_resume(outputs, place))
             taken = len(steps)
             # closing: the generator's arrays go before the outputs draw.
-            with closing(_solve_steps(run, problems, steps[-1:], bar)) as solved:
+            with closing(_solve_steps(run, problems, steps, bar)) as solved:
                 for step in solved:
-                    steps.append(step)
                     for output in outputs:
                         with blamed(output):
                             output.step(place, step)
@@ -139,7 +138,7 @@ def execute(
             if steps:
                 # What has been solved with makes room.
                 problems.clear()
-                result = Result(storage.joined(steps))
+                result = Result(steps.joined())
                 files = left_by(outputs, lambda output: output.close(place, result), run.outputs)
     return Executed(result, tuple(files), taken)
 
@@ -358,33 +357,38 @@ def _check_areas(run: Run, profile: Array) -> None:
 
 
 def _solve_steps(
-    run: Run, problems: Sequence[Problem], last: Sequence[xr.Dataset], bar: Bar
+    run: Run, problems: Sequence[Problem], steps: Steps, bar: Bar
 ) -> Generator[xr.Dataset, None, None]:
-    """Yield each load step after the ``last`` as soon as it is solved, started from that before."""
+    """Add each load step that ``steps`` lack as soon as it is solved, and yield it."""
     origin = provenance(run)
-    first, pressure = 0, None
-    for before in last:
-        first = before["step"].item() + 1
-        pressure = before["pressure"].values[0]
+    first = len(steps)
     for index, problem in enumerate(problems[first:], first):
-        started = time.perf_counter()
-        monitor = bar.step(index)
-        applied = problem.operator.applications
-        step = _solve(run, index, problem, pressure, monitor)
-        used = problem.operator.applications - applied
-        pressure = step.solution.pressure
-        found = measure(step.problem, pressure)
-        stiffness = _stiffness(run, problem, found, monitor)
-        status, message = _judge(run, index, found, step, stiffness)
-        scalars = {
-            **_asked(run, problem, found, step, stiffness),
-            "iterations": step.solution.iterations,
-            "operator_applications": used,
-            "converged": status in (Status.CONVERGED, Status.NEAREST_AREA, Status.COARSE),
-            "status": message,
-            "wall_time": time.perf_counter() - started,
-        }
-        yield step_dataset(run.grid, index, found, scalars).assign_attrs(origin)
+        # Only the copy in ``steps`` outlives a solve; the next one starts from its pressure.
+        yield steps.append(
+            _solve_step(run, index, problem, steps.pressure, bar.step(index)).assign_attrs(origin)
+        )
+
+
+def _solve_step(
+    run: Run, index: int, problem: Problem, start: Array | None, monitor: Monitor
+) -> xr.Dataset:
+    """Return a load step, solved and judged."""
+    started = time.perf_counter()
+    applied = problem.operator.applications
+    step = _solve(run, index, problem, start, monitor)
+    used = problem.operator.applications - applied
+    found = measure(step.problem, step.solution.pressure)
+    stiffness = _stiffness(run, problem, found, monitor)
+    status, message = _judge(run, index, found, step, stiffness)
+    scalars = {
+        **_asked(run, problem, found, step, stiffness),
+        "iterations": step.solution.iterations,
+        "operator_applications": used,
+        "converged": status in (Status.CONVERGED, Status.NEAREST_AREA, Status.COARSE),
+        "status": message,
+        "wall_time": time.perf_counter() - started,
+    }
+    return step_dataset(run.grid, index, found, scalars)
 
 
 def _solve(
@@ -409,10 +413,9 @@ def _stiffness(
     contact = found.contact
     if problem.is_rigid(contact):
         return Stiffness(np.inf, 0.0)
-    punch = np.zeros(run.grid.shape)
-    if contact.any():
-        punch = run.solver.punch_pressure(problem, contact, monitor)
-    return measure_stiffness(problem, contact, punch)
+    if not contact.any():
+        return Stiffness(0.0, 0.0)
+    return measure_stiffness(problem, contact, run.solver.punch_pressure(problem, contact, monitor))
 
 
 def _asked(

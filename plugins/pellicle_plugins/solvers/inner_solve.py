@@ -58,7 +58,7 @@ def inner_solve(
     The operator is applied in single precision, in less than half of the time: to solve again for
     what is left recovers all digits (iterative refinement; Wilkinson 1963). Under a skin that bends
     it is applied in double: a gap that single precision does not see is a pressure above those
-    whose sign is sought. ``displacement`` is updated in place.
+    whose sign is sought.
     """
     cells = preconditioner.cells
     signs = _Signs(problem, cells, doubt)
@@ -67,6 +67,7 @@ def inner_solve(
         return Inner(nothing, nothing, 0.0, signs.all(np.zeros(0), nothing, goal))
     search = _Search(preconditioner, keeps_force=problem.prescribed == "force")
     whole = np.zeros(problem.grid.shape, dtype=np.float64 if preconditioner.bends else np.float32)
+    displacement = displacement.copy()
     pressed = pressure.ravel()[cells]
     aloft = displacement.ravel()[cells] - problem.profile.ravel()[cells]
     residual = problem.depth(aloft) - aloft
@@ -107,6 +108,8 @@ def inner_solve(
         # The direction was multiplied by its step length.
         direction *= curvature / before * (descent / before)
         direction += ascent
+    # The gap is computed next, and the result.
+    del residual, direction, whole
     if wrong is None:
         wrong = signs.all(pressed, displacement, max(error, goal))
     pressure = np.zeros(problem.grid.shape)

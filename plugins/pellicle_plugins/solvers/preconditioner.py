@@ -144,13 +144,14 @@ class OnContact:
         that forces which make a displacement that touches on the contact are moved to nearly those
         that close it.
         """
-        off = np.nonzero((forces != 0) & ~self.contact)
+        off = (forces != 0) & ~self.contact
         moved = forces.copy()
         moved[off] = 0
-        if off[0].size and self.cells.size:
-            size = float(np.abs(forces[off]).max())
+        if off.any() and self.cells.size:
+            nx, ny = forces.shape
+            size = max(forces.max(where=off, initial=0.0), -forces.min(where=off, initial=0.0))
             field = np.zeros(self._extension.shape, dtype=np.float32)
-            field[off] = forces[off] / size
+            np.divide(forces, size, out=field[:nx, :ny], where=off, casting="same_kind")
             moved.ravel()[self.cells] += self._gathered(field) * size
         return moved
 
