@@ -1,14 +1,16 @@
-"""One measured load step as an xarray dataset: the form in which results are kept everywhere."""
+"""Measured load steps as xarray datasets: the form in which results are kept everywhere."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from . import storage
 from .analysis import ellipse, patches, perimeter
 from .grid import Grid
+from .operators import Array
 from .problem import Equilibrium
 
 if TYPE_CHECKING:
@@ -113,6 +115,58 @@ def step_dataset(
         for name, value in values.items()
     }
     return xr.Dataset(variables, coordinates)
+
+
+class Steps:
+    """The finished load steps of a run, whose fields lie in arrays with room for all steps.
+
+    The arrays become the result as they are, so that no field is in memory twice. The system
+    provides their pages as steps are added.
+    """
+
+    def __init__(self, number: int) -> None:
+        self._number = number
+        self._fields: dict[str, xr.Variable] = {}
+        self._scalars: list[xr.Dataset] = []
+
+    def __len__(self) -> int:
+        return len(self._scalars)
+
+    @property
+    def pressure(self) -> Array | None:
+        """The pressure of the last step [Pa], or None before the first step."""
+        return self._fields["pressure"].values[len(self) - 1] if self._scalars else None
+
+    def append(self, step: xr.Dataset) -> xr.Dataset:
+        """Copy a step of `step_dataset` into the arrays, and return it as a view of them."""
+        import xarray as xr
+
+        here = slice(len(self), len(self) + 1)
+        fields = {}
+        for name, variable in step.variables.items():
+            if variable.ndim > 1:
+                if name not in self._fields:
+                    shape = (self._number, *variable.shape[1:])
+                    room = np.empty(shape, variable.dtype)
+                    self._fields[str(name)] = xr.Variable(variable.dims, room, variable.attrs)
+                fields[str(name)] = self._fields[str(name)].isel(step=here)
+                fields[str(name)].values[:] = variable.values
+        self._scalars.append(step.drop_vars(fields))
+        return step.assign(fields)
+
+    def extend(self, steps: Iterable[xr.Dataset]) -> None:
+        """Append several steps."""
+        for step in steps:
+            self.append(step)
+
+    def joined(self) -> xr.Dataset:
+        """Return all steps as one dataset; no step can be appended any more."""
+        import xarray as xr
+
+        done = slice(len(self))
+        fields = {name: field.isel(step=done) for name, field in self._fields.items()}
+        scalars = storage.joined(self._scalars)
+        return xr.Dataset({**fields, **scalars.data_vars}, scalars.coords, scalars.attrs)
 
 
 def header(name: str, variable: xr.DataArray) -> str:

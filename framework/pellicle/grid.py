@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 Boundary = Literal["free", "periodic"]
 
 LARGEST: Final = 1e100
+"""Length [m] whose square, over that of a cell, is still a number."""
 _of_run: ContextVar[Grid | None] = ContextVar("grid of the run", default=None)
 
 

@@ -10,16 +10,15 @@ from pathlib import Path, PurePosixPath
 from .errors import ConfigError, shown
 from .grid import Grid
 
-# Peak of a run with the standard outputs, in float64 arrays of N²: what is solved with beside the
-# steps that are kept, or what is joined and written. Above all that was measured with active_set at
-# N = 256 … 2048 with one to ten steps (Linux, glibc), contact over most of the domain included.
-_SOLVING, _SOLVING_PADDED, _SOLVING_STEP = 13.2, 2.75, 3.5
-_WRITING, _WRITING_STEP = 9.0, 5.3
-# Smaller arrays stay with the process when freed, and what is larger does not fit in their place.
-_GIVEN_BACK = 32 * 2**20
-_KEPT_STEP = 3.4
-# Figures, buffers [bytes].
-_FIXED = 4e6
+# In float64 arrays of the grid's shape, as measured on Linux with glibc.
+# Operator, indenter and solver at the peak of a solve, by the boundary.
+_SOLVING = {"free": 21.1, "periodic": 14.7}
+# Pressure, displacement, gap and contact of a load step: three numbers and a byte for each cell.
+_STEP = 3 + 1 / 8
+# The same in the image of the result file, in which steps are joined; it is compressed.
+_IMAGE = 2.4
+# What else there is while steps are joined.
+_JOINING = 6.0
 
 # Files of a control group: its limit, its usage, and the line of memory.stat with its file cache.
 _VERSION_2 = "memory.max", "memory.current", "inactive_file"
@@ -27,16 +26,18 @@ _VERSION_1 = "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_f
 
 
 def estimate(grid: Grid, steps: int) -> float:
-    """Return the memory [bytes] that a run on ``grid`` needs at its peak, beside the libraries."""
+    """Return the memory [bytes] that a run on ``grid`` needs at its peak, beside the libraries.
+
+    The peak is either that of the last solve, beside the steps before it, or that of joining all
+    steps in the result file.
+    """
     try:
         cells = float(grid.points[0] * grid.points[1])
     except OverflowError:
         return math.inf
-    padded = 4 if grid.boundary == "free" else 1
-    kept = _KEPT_STEP if 8 * cells < _GIVEN_BACK else 0.0
-    solving = _SOLVING + _SOLVING_PADDED * padded + _SOLVING_STEP * steps
-    writing = _WRITING + (_WRITING_STEP + kept) * steps
-    return _FIXED + 8 * cells * max(solving, writing)
+    solving = _SOLVING[grid.boundary] + _STEP * (steps - 1)
+    joining = _JOINING + (_STEP + _IMAGE) * steps
+    return 8 * cells * max(solving, joining)
 
 
 def available(root: Path = Path("/")) -> float | None:

@@ -25,6 +25,9 @@ from .resolution import warn_of_cells
 Array = NDArray[np.float64]
 Float = TypeVar("Float", np.float32, np.float64)
 
+# Padded cells whose rows are transformed at a time: a block of them stays in the cache.
+_BLOCK = 2**17
+
 # A cell's displacement under its own pressure over that of the finest wave, at least.
 _LEAST_OWN = 0.25
 # Waves up to this many times shorter than the grid's shortest tell whether G(q) grows for good.
@@ -220,15 +223,20 @@ class FreeOperator(Operator):
 
     def _apply(self, pressure: NDArray[Any]) -> object:
         (nx, ny), py = self.grid.shape, self._padded[1]
+        rows = max(1, _BLOCK // py)
+        blocks = [slice(start, start + rows) for start in range(0, nx, rows)]
+        transform = self._room(np.result_type(pressure, np.complex64))
         # Row by row, so that the rows of zeros are never transformed along y.
-        rows = scipy.fft.rfft(pressure, n=py, axis=1)
-        transform = self._room(rows.dtype)
-        transform[:nx] = rows
+        for block in blocks:
+            transform[:nx][block] = scipy.fft.rfft(pressure[block], n=py, axis=1)
         transform[nx:] = 0
         transform = scipy.fft.fft(transform, axis=0, overwrite_x=True)
         transform *= self._symbol[transform.dtype.char]
         columns = scipy.fft.ifft(transform, axis=0, overwrite_x=True)[:nx]
-        return scipy.fft.irfft(columns, n=py, axis=1)[:, :ny].copy()
+        displacement = np.empty(self.grid.shape, columns.real.dtype)
+        for block in blocks:
+            displacement[block] = scipy.fft.irfft(columns[block], n=py, axis=1)[:, :ny]
+        return displacement
 
     def _room(self, kind: np.dtype[Any]) -> NDArray[Any]:
         """Return the work space, or half of it for single precision."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from . import memory, storage
+from . import memory
 from .area_search import Reached, reach_area
 from .checks import blamed, checked_threads, read_only_dataset
 from .components import Monitor, Output, Place
@@ -27,7 +27,7 @@ from .contracts import (
     punch_pressure_of,
     solution_of,
 )
-from .dataset import DESCRIPTIONS, step_dataset
+from .dataset import DESCRIPTIONS, Steps, step_dataset
 from .errors import ConfigError, ConvergenceWarning
 from .lock import locked
 from .operators import Array, Operator, make_operator
@@ -49,7 +49,6 @@ _AREA_TOLERANCE = 0.05
 # Of a paraboloid nine or twelve cells have the force to 8 %, five to 14 %, fewer do not have it.
 _RESOLVED = 13
 _RESOLVED_ACROSS = 4
-# Heights [m] whose squares, over those of cells, are still numbers.
 
 
 def run(
@@ -134,7 +133,7 @@ def execute(
     import scipy.fft
 
     memory.require(run.grid, len(run.loading.values))
-    steps: list[xr.Dataset] = []
+    steps = Steps(len(run.loading.values))
     files: list[Path] = []
     with scipy.fft.set_workers(threads or _cores()), bar, ExitStack() as stack:
         try:
@@ -144,12 +143,11 @@ def execute(
             for output in outputs:
                 with blamed(output):
                     output.open(place)
-            steps = _resume(outputs, place, len(problems))
+            steps.extend(_resume(outputs, place, len(problems)))
             taken = len(steps)
             # closing: the generator's arrays go before the outputs draw.
-            with closing(_solve_steps(run, problems, steps[-1:], bar)) as solved:
+            with closing(_solve_steps(run, problems, steps, bar)) as solved:
                 for step in solved:
-                    steps.append(step)
                     hand_over(outputs, place, step)
         except MemoryError:
             raise ConfigError(
@@ -159,7 +157,7 @@ def execute(
             if steps:
                 # What has been solved with makes room.
                 problems.clear()
-                result = Result(storage.joined(steps))
+                result = Result(steps.joined())
                 protected = Result(read_only_dataset(result.dataset))
                 files = left_by(
                     outputs, "close()", lambda output: output.close(place, protected), run.outputs
@@ -344,34 +342,39 @@ def _check_areas(run: Run, profile: Array) -> None:
 
 
 def _solve_steps(
-    run: Run, problems: Sequence[Problem], last: Sequence[xr.Dataset], bar: Bar
+    run: Run, problems: Sequence[Problem], steps: Steps, bar: Bar
 ) -> Generator[xr.Dataset, None, None]:
-    """Yield each load step after the ``last`` as soon as it is solved, started from that before."""
+    """Add each load step that ``steps`` lack as soon as it is solved, and yield it."""
     origin = provenance(run)
-    first, pressure = 0, None
-    for before in last:
-        first = before["step"].item()
-        pressure = before["pressure"].values[0]
+    first = len(steps)
     for index, problem in enumerate(problems[first:], first):
-        started = time.perf_counter()
-        monitor = bar.step(index)
-        applied = problem.operator.applications
-        step = _solve(run, index, problem, pressure, monitor)
-        used = problem.operator.applications - applied
-        pressure = step.solution.pressure
-        found = measure(step.problem, pressure)
-        stiffness = _stiffness(run, problem, found, monitor)
-        status, message = _judge(run, index, found, step, stiffness)
-        scalars = {
-            **_asked(run, problem, found, step, stiffness),
-            "iterations": step.solution.iterations,
-            "operator_applications": used,
-            "converged": status.converged,
-            "status_code": status.name,
-            "status": message,
-            "wall_time": time.perf_counter() - started,
-        }
-        yield step_dataset(run.grid, index + 1, found, scalars).assign_attrs(origin)
+        # Only the copy in ``steps`` outlives a solve; the next one starts from its pressure.
+        yield steps.append(
+            _solve_step(run, index, problem, steps.pressure, bar.step(index)).assign_attrs(origin)
+        )
+
+
+def _solve_step(
+    run: Run, index: int, problem: Problem, start: Array | None, monitor: Monitor
+) -> xr.Dataset:
+    """Return a load step, solved and judged."""
+    started = time.perf_counter()
+    applied = problem.operator.applications
+    step = _solve(run, index, problem, start, monitor)
+    used = problem.operator.applications - applied
+    found = measure(step.problem, step.solution.pressure)
+    stiffness = _stiffness(run, problem, found, monitor)
+    status, message = _judge(run, index, found, step, stiffness)
+    scalars = {
+        **_asked(run, problem, found, step, stiffness),
+        "iterations": step.solution.iterations,
+        "operator_applications": used,
+        "converged": status.converged,
+        "status_code": status.name,
+        "status": message,
+        "wall_time": time.perf_counter() - started,
+    }
+    return step_dataset(run.grid, index + 1, found, scalars)
 
 
 def _solve(
@@ -380,9 +383,9 @@ def _solve(
     areas = _areas(run)
     if areas and areas[index] > 0:
         return reach_area(problem, areas[index], run.solver, start, monitor)
-    solution = Solution(np.zeros(run.grid.shape), 0)
-    if problem.touches:
-        solution = solution_of(run.solver, problem, start, monitor)
+    if not problem.touches:
+        return Reached(problem, Solution(np.zeros(run.grid.shape), 0), 0.0, "met")
+    solution = solution_of(run.solver, problem, start, monitor)
     return Reached(problem, solution, 0.0, "met")
 
 
@@ -395,9 +398,9 @@ def _stiffness(
     contact = found.contact
     if problem.is_rigid(contact):
         return Stiffness(np.inf, 0.0)
-    punch = np.zeros(run.grid.shape)
-    if contact.any():
-        punch = punch_pressure_of(run.solver, problem, contact, monitor)
+    if not contact.any():
+        return Stiffness(0.0, 0.0)
+    punch = punch_pressure_of(run.solver, problem, contact, monitor)
     return measure_stiffness(problem, contact, punch)
 
 

@@ -383,7 +383,7 @@ def _join(path: Path, tails: Sequence[Path], *more: xr.Dataset) -> None:
         with h5py.File(image, "r+") as file:
             for tail in tails:
                 with _readable(tail), _parsed(tail) as source:
-                    _extend(file, {name: source[name][:] for name in file if _grows(file[name])})
+                    _extend(file, {name: source[name] for name in file if _grows(file[name])})
             for dataset in more:
                 values = {str(name): each.values for name, each in dataset.variables.items()}
                 _extend(file, {name: values[name] for name in file if _grows(file[name])})

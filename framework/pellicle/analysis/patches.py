@@ -74,23 +74,24 @@ def coordination(labels: Labels, grid: Grid) -> NDArray[np.int64]:
     nx, ny = grid.shape
     periodic = grid.boundary == "periodic"
     # Within half a period each way lies the nearest image of every patch.
-    margin = ((nx // 2,) * 2, (ny // 2,) * 2) if periodic else ((0, 0), (0, 0))
-    around = np.pad(labels, margin, mode="wrap" if periodic else "constant")
-    nearest = ndimage.distance_transform_edt(
-        around == 0, sampling=grid.spacing, return_distances=False, return_indices=True
-    )
-    shares = around[tuple(nearest)][margin[0][0] :, margin[1][0] :][:nx, :ny]
+    mx, my = (nx // 2, ny // 2) if periodic else (0, 0)
+    empty = np.pad(labels == 0, ((mx, mx), (my, my)), mode="wrap" if periodic else "constant")
+    i, j = ndimage.distance_transform_edt(
+        empty, sampling=grid.spacing, return_distances=False, return_indices=True
+    )[:, mx : mx + nx, my : my + ny]
+    shares = labels[(i - mx) % nx, (j - my) % ny]
     pairs = np.concatenate([_pairs(shares, axis, periodic) for axis in (0, 1)], axis=1)
-    pairs = np.unique(np.sort(pairs[:, pairs[0] != pairs[1]], axis=0), axis=1)
+    pairs = np.unique(np.sort(pairs, axis=0), axis=1)
     return np.bincount(pairs.ravel(), minlength=count + 1)[1:]
 
 
 def _pairs(labels: Labels, axis: int, periodic: bool) -> Labels:
-    """Return the labels on both sides of every cell edge across an axis, shape (2, edges)."""
+    """Return the two labels at cell edges across an axis where they differ, shape (2, edges)."""
     here, there = labels, np.roll(labels, -1, axis)
     if not periodic:
         here, there = (np.delete(each, -1, axis) for each in (here, there))
-    return np.stack([here.ravel(), there.ravel()])
+    differ = here != there
+    return np.stack([here[differ], there[differ]])
 
 
 def _label(
@@ -100,7 +101,6 @@ def _label(
 
     structure = ndimage.generate_binary_structure(2, 1 if connectivity == 4 else 2)
     labels, count = ndimage.label(contact, structure)
-    labels = labels.astype(np.int64)
     return _joined(labels, count, connectivity) if boundary == "periodic" else (labels, count)
 
 

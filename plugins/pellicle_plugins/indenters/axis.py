@@ -34,6 +34,6 @@ class Axis(NamedTuple):
         """Distance from one point to the next [m]."""
         return self.period / self.number
 
-    def finer(self, factor: int) -> Axis:
-        """Return the axis with ``factor`` as many points on the same period."""
-        return self._replace(number=self.number * factor)
+    def shifted(self, cells: float) -> Axis:
+        """Return the axis with all points moved by a number of cells."""
+        return self._replace(first=self.first + cells * self.spacing)

@@ -135,14 +135,25 @@ def _maximum(series: _Series, x: Axis, y: Axis) -> float:
     A maximum of the samples would put first touch at a different depth on each grid.
     """
     shortest = max(int(np.abs(series.m).max()), int(series.n.max()), 1)
-    x, y = (axis.finer(max(1, ceil(8 * shortest / axis.number))) for axis in (x, y))
+    # At least eight samples to the shortest wave. One shifted copy of the grid after the other
+    # takes no more memory than the grid itself, where all samples at once would take 16 times it.
+    copies = [max(1, ceil(8 * shortest / axis.number)) for axis in (x, y)]
+    tops: list[tuple[float, float, float]] = []
+    for i, j in np.ndindex(*copies):
+        shifted = x.shifted(i / copies[0]), y.shifted(j / copies[1])
+        tops = sorted(tops + _highest(series, *shifted))[-4:]
+    summits = [_climb(series, x, y, np.array(point)) for _, *point in tops]
+    return max(tops[-1][0], *summits)
+
+
+def _highest(series: _Series, x: Axis, y: Axis) -> list[tuple[float, float, float]]:
+    """Return the height and the coordinates [m] of the four highest points of a grid."""
     heights = _sample(series, x, y)
-    tops = np.argsort(heights, axis=None)[-4:]
-    i, j = np.unravel_index(tops, heights.shape)
-    points = np.stack(
-        [x.first + i * (x.period / x.number), y.first + j * (y.period / y.number)], axis=1
-    )
-    return max(float(heights.max()), *(_climb(series, x, y, point) for point in points))
+    cells = np.unravel_index(np.argpartition(heights, -4, axis=None)[-4:], heights.shape)
+    return [
+        (float(heights[i, j]), float(x.first + i * x.spacing), float(y.first + j * y.spacing))
+        for i, j in zip(*cells, strict=True)
+    ]
 
 
 def _climb(series: _Series, x: Axis, y: Axis, point: Array) -> float:

@@ -84,6 +84,8 @@ class Maps(Drawing):
                 vmin=low,
                 vmax=high,
                 interpolation="nearest" if yes_or_no else None,
+                # The other stage makes four colour values of each cell first.
+                interpolation_stage="data",
             )
             axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
             axes.set_title(title, fontsize="medium")

@@ -82,6 +82,7 @@ def _map(axes: Axes, name: str, step: xr.Dataset, found: Patches) -> None:
         extent=extent(step["x"].values * length, step["y"].values * length),
         cmap="tab20",
         interpolation="nearest",
+        interpolation_stage="data",
     )
     axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
     axes.set_title(f"{name}\n{found.count} patches".lstrip(), fontsize="medium")

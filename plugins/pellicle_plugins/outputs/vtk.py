@@ -6,10 +6,12 @@ import base64
 import struct
 import sys
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
-from xml.etree import ElementTree as Xml
+from xml.sax.saxutils import XMLGenerator
+from xml.sax.xmlreader import AttributesImpl
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,16 +43,14 @@ class Vtk(Output):
 
     def step(self, place: Place, step: xr.Dataset) -> None:
         """Write the file of the step."""
-        _write(_of_step(step), _file(place, step["step"].item()))
+        _write_step(step, _file(place, step["step"].item()))
 
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Write the list of the steps and name all files."""
         steps = result.dataset["step"].values.tolist()
         files = [_file(place, number) for number in steps]
-        root, collection = _root("Collection")
-        for number, path in zip(steps, files, strict=True):
-            Xml.SubElement(collection, "DataSet", timestep=str(number), file=path.name)
-        _write(root, place.file(".pvd"))
+        names = {number: path.name for number, path in zip(steps, files, strict=True)}
+        _write_list(names, place.file(".pvd"))
         return (*files, place.file(".pvd"))
 
 
@@ -58,71 +58,123 @@ def _file(place: Place, number: int) -> Path:
     return place.file(f"-{number:04d}.vts")
 
 
-def _of_step(step: xr.Dataset) -> Xml.Element:
-    """Return the structured grid of one step."""
+def _write_step(step: xr.Dataset, path: Path) -> None:
+    """Write the structured grid of one step, a block of rows at a time."""
     data = step.isel(step=0)
-    surface = data[list(FIELDS)].transpose("y", "x")
-    y, x = np.meshgrid(data["y"].values, data["x"].values, indexing="ij")
-    points = np.stack([x, y, -surface["displacement"].values], axis=-1)
-    ny, nx = x.shape
-    extent = f"0 {nx - 1} 0 {ny - 1} 0 0"
-    root, grid = _root("StructuredGrid", WholeExtent=extent)
+    x, y = data["x"].values, data["y"].values
+    fields = {name: data[name].transpose("y", "x").values for name in FIELDS}
     numbers = {
         str(name): np.atleast_1d(variable.values)
         for name, variable in data.data_vars.items()
         if variable.ndim == 0 and variable.dtype.kind in "fib"
     }
-    _arrays(Xml.SubElement(grid, "FieldData"), numbers, NumberOfTuples="1")
-    piece = Xml.SubElement(grid, "Piece", Extent=extent)
-    fields = {str(name): variable.values.ravel() for name, variable in surface.items()}
-    _arrays(Xml.SubElement(piece, "PointData", Scalars="pressure"), fields)
-    _arrays(Xml.SubElement(piece, "Points"), {"Points": points.ravel()}, NumberOfComponents="3")
-    return root
+
+    def points(rows: slice) -> NDArray[np.float64]:
+        return np.stack(
+            np.broadcast_arrays(x, y[rows, None], -fields["displacement"][rows]), axis=-1
+        )
+
+    extent = f"0 {x.size - 1} 0 {y.size - 1} 0 0"
+    with _written(path) as xml, _file_of(xml, "StructuredGrid", WholeExtent=extent):
+        with _element(xml, "FieldData"):
+            for name, number in numbers.items():
+                _array(xml, name, number.dtype, [_encoded(number.tobytes())], NumberOfTuples="1")
+        with _element(xml, "Piece", Extent=extent):
+            with _element(xml, "PointData", Scalars="pressure"):
+                for name, field in fields.items():
+                    blocks = (field[rows].tobytes() for rows in _rows(y.size, 8 * x.size))
+                    _array(xml, name, field.dtype, _base64(blocks))
+            with _element(xml, "Points"):
+                blocks = (points(rows).tobytes() for rows in _rows(y.size, 24 * x.size))
+                _array(xml, "Points", np.dtype(float), _base64(blocks), NumberOfComponents="3")
 
 
-def _root(kind: str, **attributes: str) -> tuple[Xml.Element, Xml.Element]:
-    """Return a VTK file and the element of its kind in it."""
-    root = Xml.Element(
-        "VTKFile",
-        type=kind,
-        version="1.0",
-        byte_order="LittleEndian" if sys.byteorder == "little" else "BigEndian",
-        header_type="UInt64",
-        compressor="vtkZLibDataCompressor",
-    )
-    return root, Xml.SubElement(root, kind, attributes)
+def _write_list(steps: Mapping[int, str], path: Path) -> None:
+    """Write the list of the files of the steps."""
+    with _written(path) as xml, _file_of(xml, "Collection"):
+        for index, name in steps.items():
+            with _element(xml, "DataSet", timestep=str(index), file=name):
+                pass
 
 
-def _arrays(parent: Xml.Element, arrays: Mapping[str, NDArray[Any]], **said: str) -> None:
-    for name, values in arrays.items():
-        kind = _TYPES[values.dtype.str[1:]]
-        array = Xml.SubElement(parent, "DataArray", said, type=kind, Name=name, format="binary")
-        array.text = _encoded(values.tobytes())
+@contextmanager
+def _written(path: Path) -> Iterator[XMLGenerator]:
+    """Yield what writes the elements of a file."""
+    with storage.aside(path) as part, part.open("wb") as file:
+        xml = XMLGenerator(file, "utf-8", short_empty_elements=True)
+        xml.startDocument()
+        yield xml
+        xml.endDocument()
+
+
+@contextmanager
+def _element(xml: XMLGenerator, name: str, **attributes: str) -> Iterator[None]:
+    xml.startElement(name, AttributesImpl(attributes))
+    yield
+    xml.endElement(name)
+
+
+@contextmanager
+def _file_of(xml: XMLGenerator, kind: str, **attributes: str) -> Iterator[None]:
+    """Write a VTK file of one kind around what is written inside."""
+    with (
+        _element(
+            xml,
+            "VTKFile",
+            type=kind,
+            version="1.0",
+            byte_order="LittleEndian" if sys.byteorder == "little" else "BigEndian",
+            header_type="UInt64",
+            compressor="vtkZLibDataCompressor",
+        ),
+        _element(xml, kind, **attributes),
+    ):
+        yield
+
+
+def _array(
+    xml: XMLGenerator, name: str, dtype: np.dtype[Any], text: Iterable[str], **attributes: str
+) -> None:
+    kind = _TYPES[dtype.str[1:]]
+    with _element(xml, "DataArray", **attributes, type=kind, Name=name, format="binary"):
+        for part in text:
+            xml.characters(part)
 
 
 _BLOCK = 1 << 22
 
 
+def _rows(number: int, size: int) -> list[slice]:
+    """Return slices of rows of ``size`` bytes that make blocks of about 4 MB."""
+    many = max(1, _BLOCK // size)
+    return [slice(start, start + many) for start in range(0, number, many)]
+
+
 def _encoded(data: bytes) -> str:
-    """Return bytes in base64, compressed by blocks.
+    blocks = (data[start : start + _BLOCK] for start in range(0, len(data), _BLOCK))
+    return "".join(_base64(blocks))
+
+
+def _base64(blocks: Iterable[bytes]) -> Iterator[str]:
+    """Yield blocks of bytes, all of one size but the last, in base64, each compressed.
 
     Ahead stand the number of blocks, their size, that of the last if it is less, and the compressed
     size of each.
     """
-    packed = [zlib.compress(block, 1) for block in _blocks(data)]
-    sizes = [len(packed), _BLOCK, len(data) % _BLOCK, *map(len, packed)]
-    head = struct.pack(f"={len(sizes)}Q", *sizes)
-    return (base64.b64encode(head) + base64.b64encode(b"".join(packed))).decode("ascii")
-
-
-def _blocks(data: bytes) -> Iterator[bytes]:
-    for start in range(0, len(data), _BLOCK):
-        yield data[start : start + _BLOCK]
-
-
-def _write(root: Xml.Element, path: Path) -> None:
-    with storage.aside(path) as part:
-        Xml.ElementTree(root).write(part, encoding="utf-8", xml_declaration=True)
+    packed, sizes = [], []
+    for block in blocks:
+        packed.append(zlib.compress(block, 1))
+        sizes.append(len(block))
+    head = [len(packed), sizes[0], sizes[-1] % sizes[0], *map(len, packed)]
+    yield base64.b64encode(struct.pack(f"={len(head)}Q", *head)).decode("ascii")
+    rest = b""
+    for block in packed:
+        # Three bytes make four letters.
+        data = rest + block
+        whole = len(data) - len(data) % 3
+        yield base64.b64encode(data[:whole]).decode("ascii")
+        rest = data[whole:]
+    yield base64.b64encode(rest).decode("ascii")
 
 
 @hookimpl

@@ -132,6 +132,8 @@ class ActiveSet(IterativeSolver):
         )
         history = state.history.after(state.on_contact.contact, found.wrong.size)
         on_contact, start = _next(problem, state, found, history, goal)
+        # Two arrays less while the next displacement is computed.
+        del found
         return _measured(problem, start, on_contact, state.preconditioner, history)
 
     def residual(self, problem: Problem, state: _State) -> float:

@@ -71,6 +71,7 @@ def inner_solve(
     pressed = pressure.ravel()[cells]
     aloft = displacement.ravel()[cells] - problem.profile.ravel()[cells]
     residual = problem.depth(aloft) - aloft
+    del aloft
     error = search.error(residual)
     goal = max(goal, max(_SINGLE, reduction) * error)
     best, since_best, iteration = np.inf, 0, 0
@@ -107,6 +108,8 @@ def inner_solve(
         # The direction was multiplied by its step length.
         direction *= curvature / before * (descent / before)
         direction += ascent
+    # The gap is computed next, and the result.
+    del residual, direction, whole
     if wrong is None:
         wrong = signs.all(pressed, displacement, max(error, goal))
     pressure = np.zeros(problem.grid.shape)

@@ -59,27 +59,38 @@ class Preconditioner:
 
     def on(self, contact: NDArray[np.bool_]) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""
+        cells = np.flatnonzero(contact)
+        places, copied = cells, np.empty(0, dtype=np.int64)
+        if self._padded != self._shape:
+            places, copied = self._on_the_plane(cells)
+        known = np.zeros(self._padded, dtype=bool)
+        known.ravel()[places] = True
+        return OnContact(
+            contact=contact,
+            cells=cells,
+            places=places,
+            copied=copied,
+            extension=Extension(known, self._orders, self._stretch),
+            stiffen=self._stiffen,
+            bends=self.bends,
+        )
+
+    def _on_the_plane(self, cells: Cells) -> tuple[Cells, Cells]:
+        """Return the flat indices of ``cells`` and of their copies on the extension's plane.
+
+        The second array says of which cell each copy is.
+        """
         (nx, ny), (px, py) = self._shape, self._padded
-        i, j = np.nonzero(contact)
+        i, j = np.divmod(cells, ny)
         places = i * py + j
-        copies, copied = [], []
+        copies, copied = [places], [np.empty(0, dtype=np.int64)]
         if self._plane == self._shape:
             # Beyond its period a periodic field goes on with its first cells.
             for down, right in ((nx, 0), (0, ny), (nx, ny)):
                 here = np.flatnonzero((i + down < px) & (j + right < py))
                 copied.append(here)
                 copies.append(places[here] + down * py + right)
-        whole = np.concatenate([places, *copies])
-        known = np.zeros(self._padded, dtype=bool)
-        known.ravel()[whole] = True
-        return OnContact(
-            contact=contact,
-            places=whole,
-            copied=np.concatenate([np.empty(0, dtype=np.int64), *copied]),
-            extension=Extension(known, self._orders, self._stretch),
-            stiffen=self._stiffen,
-            bends=self.bends,
-        )
+        return np.concatenate(copies), np.concatenate(copied)
 
     def _stiffen(self, field: Field) -> Field:
         """Return K applied to a field on the extension's plane; what is beyond the period is 0."""
@@ -98,6 +109,7 @@ class OnContact:
     def __init__(
         self,
         contact: NDArray[np.bool_],
+        cells: Cells,
         places: Cells,
         copied: Cells,
         extension: Extension,
@@ -106,7 +118,7 @@ class OnContact:
     ) -> None:
         self.contact = contact
         """Bool of the grid's shape."""
-        self.cells = np.flatnonzero(contact)
+        self.cells = cells
         """Flat index of each cell of the contact on the grid."""
         self.bends = bends
         """Whether bending decides at the size of a cell."""
@@ -132,13 +144,14 @@ class OnContact:
         that forces which make a displacement that touches on the contact are moved to nearly those
         that close it.
         """
-        off = np.nonzero((forces != 0) & ~self.contact)
+        off = (forces != 0) & ~self.contact
         moved = forces.copy()
         moved[off] = 0
-        if off[0].size and self.cells.size:
-            size = float(np.abs(forces[off]).max())
+        if off.any() and self.cells.size:
+            nx, ny = forces.shape
+            size = max(forces.max(where=off, initial=0.0), -forces.min(where=off, initial=0.0))
             field = np.zeros(self._extension.shape, dtype=np.float32)
-            field[off] = forces[off] / size
+            np.divide(forces, size, out=field[:nx, :ny], where=off, casting="same_kind")
             moved.ravel()[self.cells] += self._gathered(field) * size
         return moved
 
@@ -151,7 +164,8 @@ class OnContact:
     def _gathered(self, force: Field) -> Array:
         """Return Eᵀ applied to a field, for each cell of `cells`."""
         number, copied = self.cells.size, self._copied
-        there = self._extension.gather(force).ravel()[self._places].astype(np.float64)
+        gathered = self._extension.gather(force).ravel()[self._places]
+        there = gathered.astype(np.float64)
         np.add.at(there[:number], copied, there[number:])
         return there[:number]
 
