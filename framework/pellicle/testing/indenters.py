@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
 
-from pellicle.components import Indenter
+from pellicle.components import Footprint, Indenter
 from pellicle.grid import Grid
 from pellicle.operators import Array
 
@@ -69,6 +71,11 @@ def profile_is_nowhere_positive(indenter: Indenter, grid: Grid) -> None:
     require(np.isfinite(found).any(), "no height is finite")
 
 
+def footprint_is_known(indenter: Indenter, grid: Grid) -> None:
+    """The footprint is "unbounded" or "domain", by which contact at the edge is judged."""
+    require(indenter.footprint in get_args(Footprint), repr(indenter.footprint))
+
+
 def lowest_point_is_at_zero(indenter: Indenter, grid: Grid) -> None:
     """The highest value is 0; where the indenter ends with the domain, up to what a cell hides."""
     found = indenter.profile(*grid.coordinates())
@@ -109,6 +116,7 @@ def _range(heights: Array) -> float:
 
 
 RULES: list[Rule] = [
+    footprint_is_known,
     profile_has_the_shape_of_the_grid,
     profile_is_nowhere_positive,
     profile_is_pure,
