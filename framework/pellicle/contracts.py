@@ -29,6 +29,8 @@ from .components import (
     AreaCorrection,
     Executor,
     Footprint,
+    ForceCurve,
+    HasForceCurve,
     Indenter,
     Monitor,
     Outcome,
@@ -110,6 +112,36 @@ def _hidden_height(profile: Array, footprint: Footprint) -> float:
         return np.inf
     lowest_around = np.min([profile[i + a, j + b] for a in range(3) for b in range(3)], axis=0)
     return top - float(lowest_around.max())
+
+
+def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> ForceCurve:
+    """Return force over reduced modulus and its sensitivities at depths of shape (n,) [m].
+
+    Raises
+    ------
+    PluginError
+        They are not three arrays of that shape, finite at every finite depth.
+    """
+    with blamed(indenter):
+        returned = indenter.force_curve(read_only(depth), length)
+    if not isinstance(returned, ForceCurve):
+        raise PluginError(
+            f"{component_name(indenter)}: force_curve(depth, length) returned {shown(returned)}; "
+            "it has to return a pellicle.ForceCurve"
+        )
+    curve = ForceCurve(
+        *(
+            real_array(indenter, f"force_curve(depth, length).{name}", values, depth.shape)
+            for name, values in returned._asdict().items()
+        )
+    )
+    for name, values in curve._asdict().items():
+        if not np.isfinite(values[np.isfinite(depth)]).all():
+            raise PluginError(
+                f"{component_name(indenter)}: force_curve(depth, length).{name} has values that "
+                f"are NaN or infinite, for length = {length:.3g} m; it has to be finite"
+            )
+    return curve
 
 
 def solution_of(

@@ -436,7 +436,25 @@ class NotANumber(Indenter):
         return np.where(x > 5e-4, np.nan, super().profile(x, y))
 
 
+class Insensitive(Indenter):
+    """Force curve that does not know what the tension does."""
+
+    def force_curve(self, depth: Any, length: Any) -> Any:
+        found = super().force_curve(depth, length)
+        return found._replace(by_length=0 * found.by_length)
+
+
+class Shallow(Indenter):
+    """Force curve that changes the depths that it is given."""
+
+    def force_curve(self, depth: Any, length: Any) -> Any:
+        depth[...] = np.maximum(depth, 0)
+        return super().force_curve(depth, length)
+
+
 INDENTERS = {
+    Insensitive: "force_curve_rises",
+    Shallow: "force_curve_rises",
     Misspelt: "footprint_is_known",
     ComplexHeights: "profile_has_the_shape_of_the_grid",
     NotANumber: "profile_is_nowhere_positive",
