@@ -239,6 +239,24 @@ def corrected_area(correction: AreaCorrection, contact: NDArray[np.bool_], grid:
     return area
 
 
+def endings_of(output: Output) -> tuple[str, ...]:
+    """Return the endings of the files that an output leaves.
+
+    Raises
+    ------
+    PluginError
+        They are not a tuple of text: the letters of one text would stand for endings of their own.
+    """
+    with blamed(output):
+        returned = output.endings()
+    if not isinstance(returned, (tuple, list)) or not all(isinstance(e, str) for e in returned):
+        raise PluginError(
+            f"{component_name(output)}: endings() returned {shown(returned)}; it has to return a "
+            'tuple of text, such as (".txt",)'
+        )
+    return tuple(returned)
+
+
 def earlier_steps(output: Output, place: Place, steps: int) -> xr.Dataset | None:
     """Return the steps that an output has from an earlier process, if any.
 

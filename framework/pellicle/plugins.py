@@ -242,7 +242,13 @@ def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[
             components.append(Registered(component, checked_type(component, family), origin))
 
         getattr(manager.hook, hook)(register=register)
-    manager.hook.register_validations(register=suites.append)
+
+    def register_suite(suite: Suite) -> None:
+        if not callable(suite):
+            raise PluginError(f"{suite!r} is not a function that yields cases")
+        suites.append(suite)
+
+    manager.hook.register_validations(register=register_suite)
     return components, suites
 
 

@@ -832,6 +832,21 @@ def test_files_that_are_none_are_refused(returned: Any) -> None:
         run(outputs=[Untrue()])
 
 
+@pytest.mark.parametrize("returned", [".txt", None, (1,)])
+def test_endings_that_are_none_are_refused(returned: Any) -> None:
+    """One text is not a tuple of texts: two outputs could replace each other's files unnoticed."""
+
+    class Untrue(Output):
+        """Forgets a comma."""
+
+        def endings(self) -> Any:
+            """Return anything but a tuple of text."""
+            return returned
+
+    with pytest.raises(pl.PluginError, match=r"output 'liar': endings\(\) returned"):
+        run(outputs=[Untrue(), {"type": "hdf5"}])
+
+
 @pytest.mark.parametrize("change", CHANGES[:1])
 def test_an_output_cannot_change_the_table_of_a_study(change: Any, tmp_path: Path) -> None:
     """The table that run_study returns is that of the runs, whatever an output does to its own."""

@@ -40,6 +40,7 @@ TYPE = 'type: Literal["soft"] = "soft"'
 DOCSTRING = '"""Kernel of a stranger."""'
 FIELD = 'Annotated[float, Field(description="scale of G [m/Pa]")] = 1.0'
 REGISTER = "    register(Soft)\n"
+_NO_SUITE = "@hookimpl\ndef register_validations(register):\n    register(())\n"
 _REPLACED = "import os; os.dup2(os.open(os.devnull, os.O_WRONLY), 1)"
 BROKEN = {
     "raises at import": ("", "raise OSError('no library')", "OSError: no library"),
@@ -55,6 +56,7 @@ BROKEN = {
     "wrong argument": ("(register):", "(add):", "'add'"),
     "fails half-way": (REGISTER, REGISTER + "    1 / 0\n", "ZeroDivisionError"),
     "wrong hook": ("register_kernels", "register_indenters", "no subclass of pellicle.Indenter"),
+    "no suite": (REGISTER, REGISTER + _NO_SUITE, "() is not a function that yields cases"),
     "no class": ("register(Soft)", "register(Soft())", "no subclass of pellicle.Kernel"),
     "no type": (TYPE, "", "Soft needs a field: type: Literal"),
     "any text as type": (TYPE, 'type: str = "soft"', "Soft needs a field: type: Literal"),
