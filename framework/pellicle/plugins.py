@@ -163,11 +163,11 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
         if _is_disabled(origin, disable):
             disabled.append(origin)
             continue
-        loaded = _load_one(entry, origin)
-        if isinstance(loaded, Broken):
-            broken.append(loaded)
+        registration = _load_one(entry, origin)
+        if isinstance(registration, Broken):
+            broken.append(registration)
             continue
-        components, its_suites = loaded
+        components, its_suites = registration
         suites.extend(its_suites)
         for registered in components:
             claims.setdefault((registered.component.family, registered.type), []).append(registered)
@@ -194,17 +194,17 @@ def _load_one(entry: EntryPoint, origin: Origin) -> tuple[list[Registered], list
     A plugin may fail in any way, even by sys.exit() or by what looks like Ctrl-C; only the user's
     own Ctrl-C ends the command.
     """
-    loaded: tuple[list[Registered], list[Suite]] | Broken
-    with noted_interrupts() as pressed:
+    registration: tuple[list[Registered], list[Suite]] | Broken
+    with noted_interrupts() as interrupt:
         try:
             with diverted_output():
-                loaded = _call_hooks(entry.load(), origin)
+                registration = _call_hooks(entry.load(), origin)
         except BaseException as error:
             kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
-            loaded = Broken(origin, f"{kind}{error}".removesuffix(": "))
-    if pressed.is_set():
+            registration = Broken(origin, f"{kind}{error}".removesuffix(": "))
+    if interrupt.is_set():
         raise KeyboardInterrupt
-    return loaded
+    return registration
 
 
 def _is_disabled(origin: Origin, disable: str) -> bool:
