@@ -115,9 +115,9 @@ def _is_closed(stream: TextIO | None) -> bool:
 
 def _flush(*streams: TextIO | None) -> None:
     for stream in streams:
-        with suppress(OSError, ValueError, AttributeError):
-            assert stream is not None
-            stream.flush()
+        with suppress(OSError, ValueError):
+            if stream is not None:
+                stream.flush()
     # What C libraries have printed waits in a buffer of their own.
     with suppress(OSError, AttributeError, TypeError):
         ctypes.CDLL(None).fflush(None)
