@@ -20,7 +20,7 @@ import pluggy
 
 from . import hookspecs
 from .components import FAMILIES, Component, Suite
-from .errors import ConfigError, PluginError
+from .errors import ConfigError, PellicleError, PluginError
 from .foreign_code import diverted_output, noted_interrupts
 from .model import nearest
 from .units import quantity_of
@@ -133,8 +133,14 @@ class Registry:
             known = ", ".join(sorted(self.components[base.family]))
             what = "has no type" if isinstance(given, Mapping) else f"{given!r} is not a table"
             raise ConfigError(f"{what}; give a table with type = one of: {known}")
-        found = self.find(base.family, given["type"])
-        return cast("type[AnyComponent]", found)(**given)
+        component_class = cast("type[AnyComponent]", self.find(base.family, given["type"]))
+        try:
+            return component_class(**given)
+        except (PellicleError, MemoryError):
+            raise
+        except Exception as error:
+            error.add_note(f"{base.family} {given['type']!r} failed")
+            raise
 
 
 @cache

@@ -275,6 +275,16 @@ def test_a_broken_plugin_is_an_error_when_asked_for(plugin: Plugin) -> None:
     )
 
 
+def test_a_component_that_cannot_be_made_is_named(plugin: Plugin) -> None:
+    """What a validator of a plugin raises of its own comes with the component's name."""
+    failing = SOFT.replace(
+        "    def compliance", "    def model_post_init(self, _): {}[0]\n\n    def compliance"
+    )
+    with pytest.raises(KeyError) as raised:
+        load([plugin(failing)]).make(Kernel, {"type": "soft"})
+    assert raised.value.__notes__ == ["kernel 'soft' failed"]
+
+
 def test_two_owners_of_one_name_are_both_named(plugin: Plugin) -> None:
     """Neither of two claimants is used; asking for the name raises, other names work."""
     found = load([plugin(SOFT), plugin(SOFT, distribution="rival", version="7"), *BUILT_INS])
