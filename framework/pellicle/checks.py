@@ -84,7 +84,7 @@ def read_only_dataset(dataset: xr.Dataset) -> xr.Dataset:
     return copy
 
 
-def real_array(component: object, call: str, returned: object, shape: tuple[int, ...]) -> Array:
+def real_array(component: object, call: str, value: object, shape: tuple[int, ...]) -> Array:
     """Return what ``call`` of a component returned, as an array of float64.
 
     Whole numbers are refused: in SI units they are values that lost their digits.
@@ -95,19 +95,19 @@ def real_array(component: object, call: str, returned: object, shape: tuple[int,
         It is not an array of real floating-point numbers of this shape.
     """
     try:
-        values = np.asarray(returned)
+        array = np.asarray(value)
     except ValueError:
-        values = np.empty(0, dtype=object)
-    masked = isinstance(returned, np.ma.MaskedArray)
-    if masked or values.dtype.kind != "f" or values.shape != shape:
+        array = np.empty(0, dtype=object)
+    is_masked = isinstance(value, np.ma.MaskedArray)
+    if is_masked or array.dtype.kind != "f" or array.shape != shape:
         raise PluginError(
-            f"{component_name(component)}: {call} returned {_description(returned)}; it has to "
+            f"{component_name(component)}: {call} returned {_description(value)}; it has to "
             f"return an array of float64 of shape {shape}"
         )
-    return values.astype(np.float64, copy=False)
+    return array.astype(np.float64, copy=False)
 
 
-def real_number(component: object, call: str, returned: object) -> float:
+def real_number(component: object, call: str, value: object) -> float:
     """Return the number that ``call`` of a component returned; it may be infinite.
 
     Raises
@@ -115,22 +115,20 @@ def real_number(component: object, call: str, returned: object) -> float:
     PluginError
         It is not a real number, or it is NaN.
     """
-    number = (
-        returned.item() if isinstance(returned, np.ndarray) and returned.ndim == 0 else returned
-    )
+    number = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
     if not isinstance(number, Real) or isinstance(number, bool) or number != number:
         raise PluginError(
-            f"{component_name(component)}: {call} returned {_description(returned)}; it has to "
+            f"{component_name(component)}: {call} returned {_description(value)}; it has to "
             "return a real number"
         )
     return float(number)
 
 
-def _description(returned: object) -> str:
-    if isinstance(returned, np.ndarray):
-        kind = "a masked array" if isinstance(returned, np.ma.MaskedArray) else "an array"
-        return f"{kind} of {returned.dtype} of shape {returned.shape}"
-    return shown(returned)
+def _description(value: object) -> str:
+    if isinstance(value, np.ndarray):
+        kind = "a masked array" if isinstance(value, np.ma.MaskedArray) else "an array"
+        return f"{kind} of {value.dtype} of shape {value.shape}"
+    return shown(value)
 
 
 def whole_number(value: object, unit: str) -> int:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from fnmatch import fnmatchcase
 
 from .components import Output
+from .contracts import endings_of
 from .errors import ConfigError
 
 # What a study writes itself, and in each run.
@@ -23,7 +24,7 @@ def refuse_clashes(outputs: Sequence[Output]) -> None:
     """
     for later, output in enumerate(outputs):
         for earlier, other in enumerate(outputs[:later]):
-            if ending := _common(output.endings(), other.endings()):
+            if ending := _common(endings_of(output), endings_of(other)):
                 raise _refusal(ending, (later, output), (earlier, other))
 
 
@@ -43,7 +44,7 @@ def refuse_clashes_with_study(outputs: Sequence[Output]) -> None:
             if output.draws_studies
             else (_RUN, "NAME", "the result that each run of a study leaves")
         )
-        if ending := _common(taken, output.endings()):
+        if ending := _common(taken, endings_of(output)):
             raise ConfigError(
                 f"{_type(output)!r} would write {name}{ending}, {whose}; leave it out",
                 f"outputs.{index}.type",

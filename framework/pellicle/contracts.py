@@ -29,6 +29,8 @@ from .components import (
     AreaCorrection,
     Executor,
     Footprint,
+    ForceCurve,
+    HasForceCurve,
     Indenter,
     Monitor,
     Outcome,
@@ -64,13 +66,13 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
     x, y = (read_only(points) for points in grid.coordinates())
     try:
         with blamed(indenter), np.errstate(over="raise"):
-            returned = indenter.profile(x, y)
+            value = indenter.profile(x, y)
             footprint = indenter.footprint
     except ConfigError as error:
         raise error.within("indenter") from None
     except (OverflowError, FloatingPointError):
         raise _beyond_numbers("overflow") from None
-    profile = real_array(indenter, "profile(x, y)", returned, grid.shape)
+    profile = real_array(indenter, "profile(x, y)", value, grid.shape)
     name = component_name(indenter)
     if footprint not in get_args(Footprint):
         raise PluginError(
@@ -125,6 +127,36 @@ def _hidden_height(profile: Array, footprint: Footprint) -> float:
     return top - float(lowest_around.max())
 
 
+def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> ForceCurve:
+    """Return force over reduced modulus and its sensitivities at depths of shape (n,) [m].
+
+    Raises
+    ------
+    PluginError
+        They are not three arrays of that shape, finite at every finite depth.
+    """
+    with blamed(indenter):
+        value = indenter.force_curve(read_only(depth), length)
+    if not isinstance(value, ForceCurve):
+        raise PluginError(
+            f"{component_name(indenter)}: force_curve(depth, length) returned {shown(value)}; "
+            "it has to return a pellicle.ForceCurve"
+        )
+    curve = ForceCurve(
+        *(
+            real_array(indenter, f"force_curve(depth, length).{name}", values, depth.shape)
+            for name, values in value._asdict().items()
+        )
+    )
+    for name, values in curve._asdict().items():
+        if not np.isfinite(values[np.isfinite(depth)]).all():
+            raise PluginError(
+                f"{component_name(indenter)}: force_curve(depth, length).{name} has values that "
+                f"are NaN or infinite, for length = {length:.3g} m; it has to be finite"
+            )
+    return curve
+
+
 def solution_of(
     solver: Solver, problem: Problem, start: Array | None, monitor: Monitor
 ) -> Solution:
@@ -137,25 +169,25 @@ def solution_of(
     PluginError
         It is not a `Solution` of the grid's shape, or the solver changed the problem.
     """
-    given = _protected(problem)
-    before, parts = dict(vars(given)), problem.operator.parts()
+    view = _read_only_problem(problem)
+    fields, parts = dict(vars(view)), problem.operator.parts()
     with blamed(solver):
-        returned = solver.solve(given, None if start is None else read_only(start), monitor)
-    _require_unchanged(solver, "solve()", before, dict(vars(given)), "problem")
+        value = solver.solve(view, None if start is None else read_only(start), monitor)
+    _require_unchanged(solver, "solve()", fields, dict(vars(view)), "problem")
     _require_unchanged(solver, "solve()", parts, problem.operator.parts(), "problem.operator")
     name = component_name(solver)
-    if not isinstance(returned, Solution):
+    if not isinstance(value, Solution):
         raise PluginError(
-            f"{name}: solve() returned {shown(returned)}; it has to return a pellicle.Solution"
+            f"{name}: solve() returned {shown(value)}; it has to return a pellicle.Solution"
         )
-    pressure = real_array(solver, "solve().pressure", returned.pressure, problem.grid.shape)
-    if not isinstance(returned.iterations, Integral) or not isinstance(returned.stop, Stop):
+    pressure = real_array(solver, "solve().pressure", value.pressure, problem.grid.shape)
+    if not isinstance(value.iterations, Integral) or not isinstance(value.stop, Stop):
         raise PluginError(
-            f"{name}: solve() returned iterations {shown(returned.iterations)} and stop "
-            f"{shown(returned.stop)}; they have to be a whole number and a pellicle.Stop"
+            f"{name}: solve() returned iterations {shown(value.iterations)} and stop "
+            f"{shown(value.stop)}; they have to be a whole number and a pellicle.Stop"
         )
     # The solver may use the memory of what it returned again.
-    return replace(returned, pressure=pressure.copy(), iterations=int(returned.iterations))
+    return replace(value, pressure=pressure.copy(), iterations=int(value.iterations))
 
 
 def punch_pressure_of(
@@ -168,13 +200,13 @@ def punch_pressure_of(
     PluginError
         It is not an array of the grid's shape, or not 0 off the contact.
     """
-    given, parts = _protected(problem), problem.operator.parts()
+    view, parts = _read_only_problem(problem), problem.operator.parts()
     with blamed(solver):
-        returned = solver.punch_pressure(given, read_only(contact), monitor)
+        value = solver.punch_pressure(view, read_only(contact), monitor)
     _require_unchanged(
         solver, "punch_pressure()", parts, problem.operator.parts(), "problem.operator"
     )
-    pressure = real_array(solver, "punch_pressure()", returned, problem.grid.shape)
+    pressure = real_array(solver, "punch_pressure()", value, problem.grid.shape)
     if pressure[~contact].any():
         raise PluginError(
             f"{component_name(solver)}: punch_pressure() returned a pressure off the contact; it "
@@ -183,18 +215,18 @@ def punch_pressure_of(
     return pressure
 
 
-def _protected(problem: Problem) -> Problem:
+def _read_only_problem(problem: Problem) -> Problem:
     return replace(problem, profile=read_only(problem.profile))
 
 
 def _require_unchanged(
     solver: Solver, call: str, before: dict[str, object], after: dict[str, object], what: str
 ) -> None:
-    changed = [key for key in before | after if before.get(key) is not after.get(key)]
-    if changed:
+    differences = [key for key in before | after if before.get(key) is not after.get(key)]
+    if differences:
         raise PluginError(
-            f"{component_name(solver)}: {call} changes {what}.{changed[0]}; a solver has to leave "
-            "its problem as it is"
+            f"{component_name(solver)}: {call} changes {what}.{differences[0]}; a solver has to "
+            "leave its problem as it is"
         )
 
 
@@ -209,8 +241,8 @@ def corrected_area(correction: AreaCorrection, contact: NDArray[np.bool_], grid:
     method = correction.periodic_area if grid.boundary == "periodic" else correction.area
     call = f"{method.__name__}(contact, spacing)"
     with blamed(correction):
-        returned = method(read_only(contact), grid.spacing)
-    area = real_number(correction, call, returned)
+        value = method(read_only(contact), grid.spacing)
+    area = real_number(correction, call, value)
     largest = grid.area if contact.any() else 0.0
     if not 0 <= area <= largest * (1 + _ROUNDING):
         raise PluginError(
@@ -218,6 +250,24 @@ def corrected_area(correction: AreaCorrection, contact: NDArray[np.bool_], grid:
             f"and {largest:g} m², {'the area of the domain' if largest else 'without contact'}"
         )
     return area
+
+
+def endings_of(output: Output) -> tuple[str, ...]:
+    """Return the endings of the files that an output leaves.
+
+    Raises
+    ------
+    PluginError
+        They are not a tuple of text: the letters of one text would stand for endings of their own.
+    """
+    with blamed(output):
+        value = output.endings()
+    if not isinstance(value, (tuple, list)) or not all(isinstance(e, str) for e in value):
+        raise PluginError(
+            f"{component_name(output)}: endings() returned {shown(value)}; it has to return a "
+            'tuple of text, such as (".txt",)'
+        )
+    return tuple(value)
 
 
 def earlier_steps(output: Output, place: Place, steps: int) -> xr.Dataset | None:
@@ -231,16 +281,16 @@ def earlier_steps(output: Output, place: Place, steps: int) -> xr.Dataset | None
     import xarray as xr
 
     with blamed(output):
-        returned = output.resume(place)
-    if returned is None:
+        value = output.resume(place)
+    if value is None:
         return None
-    held = returned.sizes.get("step", 0) if isinstance(returned, xr.Dataset) else 0
-    if not 0 < held <= steps:
+    number = value.sizes.get("step", 0) if isinstance(value, xr.Dataset) else 0
+    if not 0 < number <= steps:
         raise PluginError(
-            f"{component_name(output)}: resume() returned {type(returned).__name__} of {held} "
+            f"{component_name(output)}: resume() returned {type(value).__name__} of {number} "
             f"steps; it has to return None, or an xarray.Dataset of 1 to {steps} steps"
         )
-    return returned
+    return value
 
 
 def hand_over(outputs: Sequence[Output], place: Place, step: xr.Dataset) -> None:
@@ -271,15 +321,13 @@ def files_of(output: Output, call: str, leave: Callable[[Output], object]) -> tu
         They are not a tuple of paths.
     """
     with blamed(output):
-        returned = leave(output)
-    if not isinstance(returned, (tuple, list)) or not all(
-        isinstance(path, Path) for path in returned
-    ):
+        value = leave(output)
+    if not isinstance(value, (tuple, list)) or not all(isinstance(path, Path) for path in value):
         raise PluginError(
-            f"{component_name(output)}: {call} returned {shown(returned)}; it has to return a "
+            f"{component_name(output)}: {call} returned {shown(value)}; it has to return a "
             "tuple of pathlib.Path, empty if there is none"
         )
-    return tuple(returned)
+    return tuple(value)
 
 
 def outcomes_of(
@@ -298,21 +346,21 @@ def outcomes_of(
         the work of a task cannot have.
     """
     name = component_name(executor)
-    given = {id(task): task for task in tasks}
-    left = dict(given)
+    known = {id(task) for task in tasks}
+    remaining = {id(task): task for task in tasks}
     with blamed(executor):
         pairs: Any = executor.map(work, tasks, report)
     if not isinstance(pairs, Iterator) or not hasattr(pairs, "close"):
         raise PluginError(f"{name}: map() returned {shown(pairs)}; it has to be written with yield")
     with closing(cast("Generator[Any]", pairs)):
         for pair in _items(executor, pairs):
-            if not isinstance(pair, tuple) or len(pair) != 2 or id(pair[0]) not in given:
+            if not isinstance(pair, tuple) or len(pair) != 2 or id(pair[0]) not in known:
                 raise PluginError(
                     f"{name}: map() yields {shown(pair)}; it has to yield each of the tasks that "
                     "it was given, the object itself, with its outcome"
                 )
             task, outcome = pair
-            if left.pop(id(task), None) is None:
+            if remaining.pop(id(task), None) is None:
                 raise PluginError(
                     f"{name}: map() yields {task.name} twice; it has to yield each task once"
                 )
@@ -322,11 +370,11 @@ def outcomes_of(
                     "with what its work returned or raised"
                 )
             yield task, outcome
-    if left:
-        first = next(iter(left.values()))
+    if remaining:
+        first = next(iter(remaining.values()))
         raise PluginError(
-            f"{name}: map() ended without {len(left)} of {len(tasks)} tasks, such as {first.name}; "
-            "it has to yield each task once"
+            f"{name}: map() ended without {len(remaining)} of {len(tasks)} tasks, such as "
+            f"{first.name}; it has to yield each task once"
         )
 
 

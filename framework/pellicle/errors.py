@@ -57,7 +57,7 @@ class ConfigError(PellicleError, ValueError):
 
 
 class PluginError(PellicleError):
-    """A plugin that a configuration asks for is broken, or two claim its name."""
+    """A plugin is broken, two claim one name, or a component breaks its contract at work."""
 
 
 class ConvergenceError(PellicleError):

@@ -40,17 +40,17 @@ def diverted_output() -> Iterator[None]:
         yield
     finally:
         _flush(sys.stdout, stand_in, stream, sys.__stdout__)
-        closed = stand_in.closed or (descriptor is not None and not _same_file(_OUT, _ERR))
+        is_closed = stand_in.closed or (descriptor is not None and not _same_file(_OUT, _ERR))
         if descriptor is not None:
             os.dup2(descriptor, _OUT)
             os.close(descriptor)
         sys.stdout = stream
         if _is_closed(stream) and not was_closed:
-            closed = True
+            is_closed = True
             sys.stdout = open(  # noqa: SIM115 - for the rest of the process
                 _OUT, "w", encoding=stream.encoding, errors=stream.errors, closefd=False
             )
-    if closed:
+    if is_closed:
         raise PluginError("closes standard output; leave it open")
 
 
@@ -60,19 +60,19 @@ def noted_interrupts() -> Iterator[threading.Event]:
 
     Handlers are as before afterwards. In threads other than the main one there is no Ctrl-C.
     """
-    pressed = threading.Event()
+    interrupt = threading.Event()
     before = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or not callable(before):
-        yield pressed
+        yield interrupt
         return
 
     def handle(number: int, frame: FrameType | None) -> None:
-        pressed.set()
+        interrupt.set()
         before(number, frame)
 
     signal.signal(signal.SIGINT, handle)
     try:
-        yield pressed
+        yield interrupt
     finally:
         signal.signal(signal.SIGINT, before)
 
@@ -115,9 +115,9 @@ def _is_closed(stream: TextIO | None) -> bool:
 
 def _flush(*streams: TextIO | None) -> None:
     for stream in streams:
-        with suppress(OSError, ValueError, AttributeError):
-            assert stream is not None
-            stream.flush()
+        with suppress(OSError, ValueError):
+            if stream is not None:
+                stream.flush()
     # What C libraries have printed waits in a buffer of their own.
     with suppress(OSError, AttributeError, TypeError):
         ctypes.CDLL(None).fflush(None)

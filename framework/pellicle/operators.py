@@ -74,8 +74,8 @@ def mean_compliance(kernel: HasCompliance) -> float:
     if not isinstance(kernel, HasMeanCompliance):
         return math.inf
     with blamed(kernel):
-        returned = kernel.mean_compliance()
-    return real_number(kernel, "mean_compliance()", returned)
+        value = kernel.mean_compliance()
+    return real_number(kernel, "mean_compliance()", value)
 
 
 def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
@@ -85,13 +85,12 @@ def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
     shape of its argument.
     """
     method = getattr(kernel, name)
+    text = f"{name}({'q' if name == 'compliance' else 'r'})"
 
     def call(argument: Array) -> Array:
         with blamed(kernel):
-            returned = method(read_only(argument))
-        return real_array(
-            kernel, f"{name}({'q' if name == 'compliance' else 'r'})", returned, argument.shape
-        )
+            values = method(read_only(argument))
+        return real_array(kernel, text, values, argument.shape)
 
     return call
 

@@ -158,9 +158,9 @@ def execute(
                 # What has been solved with makes room.
                 problems.clear()
                 result = Result(steps.joined())
-                protected = Result(read_only_dataset(result.dataset))
+                view = Result(read_only_dataset(result.dataset))
                 files = left_by(
-                    outputs, "close()", lambda output: output.close(place, protected), run.outputs
+                    outputs, "close()", lambda output: output.close(place, view), run.outputs
                 )
     return Executed(result, tuple(files), taken)
 

@@ -20,7 +20,7 @@ import pluggy
 
 from . import hookspecs
 from .components import FAMILIES, Component, Suite
-from .errors import ConfigError, PluginError
+from .errors import ConfigError, PellicleError, PluginError
 from .foreign_code import diverted_output, noted_interrupts
 from .model import nearest
 from .units import quantity_of
@@ -133,8 +133,14 @@ class Registry:
             known = ", ".join(sorted(self.components[base.family]))
             what = "has no type" if isinstance(given, Mapping) else f"{given!r} is not a table"
             raise ConfigError(f"{what}; give a table with type = one of: {known}")
-        found = self.find(base.family, given["type"])
-        return cast("type[AnyComponent]", found)(**given)
+        component_class = cast("type[AnyComponent]", self.find(base.family, given["type"]))
+        try:
+            return component_class(**given)
+        except (PellicleError, MemoryError):
+            raise
+        except Exception as error:
+            error.add_note(f"{base.family} {given['type']!r} failed")
+            raise
 
 
 @cache
@@ -163,11 +169,11 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
         if _is_disabled(origin, disable):
             disabled.append(origin)
             continue
-        loaded = _load_one(entry, origin)
-        if isinstance(loaded, Broken):
-            broken.append(loaded)
+        registration = _load_one(entry, origin)
+        if isinstance(registration, Broken):
+            broken.append(registration)
             continue
-        components, its_suites = loaded
+        components, its_suites = registration
         suites.extend(its_suites)
         for registered in components:
             claims.setdefault((registered.component.family, registered.type), []).append(registered)
@@ -194,17 +200,17 @@ def _load_one(entry: EntryPoint, origin: Origin) -> tuple[list[Registered], list
     A plugin may fail in any way, even by sys.exit() or by what looks like Ctrl-C; only the user's
     own Ctrl-C ends the command.
     """
-    loaded: tuple[list[Registered], list[Suite]] | Broken
-    with noted_interrupts() as pressed:
+    registration: tuple[list[Registered], list[Suite]] | Broken
+    with noted_interrupts() as interrupt:
         try:
             with diverted_output():
-                loaded = _call_hooks(entry.load(), origin)
+                registration = _call_hooks(entry.load(), origin)
         except BaseException as error:
             kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
-            loaded = Broken(origin, f"{kind}{error}".removesuffix(": "))
-    if pressed.is_set():
+            registration = Broken(origin, f"{kind}{error}".removesuffix(": "))
+    if interrupt.is_set():
         raise KeyboardInterrupt
-    return loaded
+    return registration
 
 
 def _is_disabled(origin: Origin, disable: str) -> bool:
@@ -242,7 +248,13 @@ def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[
             components.append(Registered(component, checked_type(component, family), origin))
 
         getattr(manager.hook, hook)(register=register)
-    manager.hook.register_validations(register=suites.append)
+
+    def register_suite(suite: Suite) -> None:
+        if not callable(suite):
+            raise PluginError(f"{suite!r} is not a function that yields cases")
+        suites.append(suite)
+
+    manager.hook.register_validations(register=register_suite)
     return components, suites
 
 

@@ -244,11 +244,11 @@ def _carry_out(
             _collect(task, rows)
         files.write(rows, at_once=True)
         made = rows.dataset()
-        protected = read_only_dataset(made)
+        view = read_only_dataset(made)
         drawn = left_by(
             outputs,
             "study()",
-            lambda output: output.study(place, protected),
+            lambda output: output.study(place, view),
             study.points[0].run.outputs,
         )
     for message in (*doubts, *(f"{message}; see status" for message in coarse(made))):

@@ -381,6 +381,61 @@ def test_summits_as_wide_as_a_cell_are_no_lie(indenter: dict[str, Any]) -> None:
     assert run(indenter=indenter, grid=grid, loading={"force": 0}).dataset["force"].item() == 0
 
 
+def curve_in_a_row(curve: pl.ForceCurve, depth: Any) -> Any:
+    """Return the force alone."""
+    return curve.force
+
+
+def too_short(curve: pl.ForceCurve, depth: Any) -> Any:
+    """Return a force too few."""
+    return curve._replace(force=curve.force[:-1])
+
+
+def complex_force(curve: pl.ForceCurve, depth: Any) -> Any:
+    """Return a complex force."""
+    return curve._replace(force=curve.force + 0j)
+
+
+def unknown_sensitivity(curve: pl.ForceCurve, depth: Any) -> Any:
+    """Return NaN for a sensitivity."""
+    return curve._replace(by_length=np.full_like(depth, np.nan))
+
+
+def moves_depth(curve: pl.ForceCurve, depth: Any) -> Any:
+    """Write to the depths."""
+    depth += 1e-6
+    return curve
+
+
+FORCE_CURVES = {
+    curve_in_a_row: "force_curve(depth, length) returned array(",
+    too_short: "force_curve(depth, length).force returned an array of float64 of shape (",
+    complex_force: "force_curve(depth, length).force returned an array of complex128",
+    unknown_sensitivity: "force_curve(depth, length).by_length has values that are NaN",
+    moves_depth: "changes what it is given",
+}
+
+
+@pytest.mark.parametrize("change", FORCE_CURVES)
+def test_a_force_curve_that_lies_is_refused(change: Any) -> None:
+    """No modulus is fitted by a force that is none."""
+
+    class Bead(base("indenter", "sphere")):  # type: ignore[misc]
+        """Sphere with another force curve."""
+
+        type: Literal["liar"] = "liar"
+
+        def force_curve(self, depth: Any, length: float) -> Any:
+            """Return the force curve, changed."""
+            return change(super().force_curve(depth, length), depth)
+
+    depth = np.linspace(-1e-6, 2e-6, 60)
+    force = 1e4 * base("indenter", "sphere")(radius=1e-5).force_curve(depth, 1e-7).force
+    with pytest.raises(pl.PluginError, match="indenter 'liar'") as error:
+        pl.fit(depth, force, indenter=Bead(radius=1e-5))
+    assert FORCE_CURVES[change] in str(error.value)
+
+
 # ---- solvers ----
 
 
@@ -775,6 +830,21 @@ def test_files_that_are_none_are_refused(returned: Any) -> None:
 
     with pytest.raises(pl.PluginError, match=r"output 'liar': close\(\) returned .* pathlib.Path"):
         run(outputs=[Untrue()])
+
+
+@pytest.mark.parametrize("returned", [".txt", None, (1,)])
+def test_endings_that_are_none_are_refused(returned: Any) -> None:
+    """One text is not a tuple of texts: two outputs could replace each other's files unnoticed."""
+
+    class Untrue(Output):
+        """Forgets a comma."""
+
+        def endings(self) -> Any:
+            """Return anything but a tuple of text."""
+            return returned
+
+    with pytest.raises(pl.PluginError, match=r"output 'liar': endings\(\) returned"):
+        run(outputs=[Untrue(), {"type": "hdf5"}])
 
 
 @pytest.mark.parametrize("change", CHANGES[:1])

@@ -40,6 +40,7 @@ TYPE = 'type: Literal["soft"] = "soft"'
 DOCSTRING = '"""Kernel of a stranger."""'
 FIELD = 'Annotated[float, Field(description="scale of G [m/Pa]")] = 1.0'
 REGISTER = "    register(Soft)\n"
+_NO_SUITE = "@hookimpl\ndef register_validations(register):\n    register(())\n"
 _REPLACED = "import os; os.dup2(os.open(os.devnull, os.O_WRONLY), 1)"
 BROKEN = {
     "raises at import": ("", "raise OSError('no library')", "OSError: no library"),
@@ -55,6 +56,7 @@ BROKEN = {
     "wrong argument": ("(register):", "(add):", "'add'"),
     "fails half-way": (REGISTER, REGISTER + "    1 / 0\n", "ZeroDivisionError"),
     "wrong hook": ("register_kernels", "register_indenters", "no subclass of pellicle.Indenter"),
+    "no suite": (REGISTER, REGISTER + _NO_SUITE, "() is not a function that yields cases"),
     "no class": ("register(Soft)", "register(Soft())", "no subclass of pellicle.Kernel"),
     "no type": (TYPE, "", "Soft needs a field: type: Literal"),
     "any text as type": (TYPE, 'type: str = "soft"', "Soft needs a field: type: Literal"),
@@ -218,35 +220,41 @@ def test_what_a_plugin_prints_at_import_is_no_output(
     assert errors.strip() == "hello"
 
 
-@pytest.mark.parametrize("close", ["sys.stdout.close()", "sys.__stdout__.close()", "os.close(1)"])
-@pytest.mark.parametrize("fail", ["", "; raise KeyboardInterrupt"])
-def test_commands_outlive_a_plugin_that_closes_standard_output(
-    close: str, fail: str, tmp_path: Path
+CLOSING = {
+    "sys.stdout.close()": "closes standard output; leave it open",
+    "sys.__stdout__.close()": "closes standard output; leave it open",
+    "os.close(1)": "closes standard output; leave it open",
+    "sys.stdout.close(); raise KeyboardInterrupt": "KeyboardInterrupt",
+}
+
+
+@pytest.mark.parametrize("command", [["plugins", "--json"], ["schema"]], ids=" ".join)
+def test_commands_outlive_plugins_that_close_standard_output(
+    command: list[str], tmp_path: Path
 ) -> None:
-    """``pellicle plugins --json`` prints JSON that names the plugin as broken, as any other."""
-    site = tmp_path / "site"
-    metadata = site / "stranger-1.2.dist-info"
-    metadata.mkdir(parents=True)
+    """JSON on standard output is whole, and each plugin is named as broken, as any other."""
+    metadata = tmp_path / "stranger-1.2.dist-info"
+    metadata.mkdir()
     (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: stranger\nVersion: 1.2\n")
-    (metadata / "entry_points.txt").write_text("[pellicle]\nkernel.soft = stranger\n")
-    (site / "stranger.py").write_text(f"import os, sys\nprint('hello'); {close}{fail}\n{SOFT}")
-    path = os.pathsep.join([str(site), *filter(None, sys.path)])
-    for command in (["plugins", "--json"], ["schema"]):
-        done = subprocess.run(
-            [sys.executable, "-m", "pellicle", *command],
-            env=os.environ | {"PYTHONPATH": path, "PYTHONUTF8": "1"},
-            capture_output=True,
-            encoding="utf-8",
-            check=False,
-        )
-        assert done.returncode == 0, done.stderr
-        printed = json.loads(done.stdout)
-        assert done.stderr.strip() == "hello"
-        if command[0] == "plugins":
-            (broken,) = printed["broken"]
-            assert (broken["entry_point"], broken["origin"]) == ("kernel.soft", "stranger")
-            expected = "KeyboardInterrupt" if fail else "closes standard output; leave it open"
-            assert broken["error"] == expected
+    entries = [f"kernel.soft{number} = stranger{number}\n" for number in range(len(CLOSING))]
+    (metadata / "entry_points.txt").write_text(f"[pellicle]\n{''.join(entries)}")
+    for number, close in enumerate(CLOSING):
+        source = f"import os, sys\nprint('hello'); {close}\n{SOFT}"
+        (tmp_path / f"stranger{number}.py").write_text(source)
+    path = os.pathsep.join([str(tmp_path), *filter(None, sys.path)])
+    done = subprocess.run(
+        [sys.executable, "-m", "pellicle", *command],
+        env=os.environ | {"PYTHONPATH": path, "PYTHONUTF8": "1"},
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.split() == ["hello"] * len(CLOSING)
+    printed = json.loads(done.stdout)
+    if command[0] == "plugins":
+        assert [broken["error"] for broken in printed["broken"]] == list(CLOSING.values())
+        assert {broken["origin"] for broken in printed["broken"]} == {"stranger"}
 
 
 def test_a_suite_is_registered_only_with_the_rest_of_its_plugin(plugin: Plugin) -> None:
@@ -265,6 +273,16 @@ def test_a_broken_plugin_is_an_error_when_asked_for(plugin: Plugin) -> None:
     assert str(raised.value) == (
         "kernel 'soft' is broken: stranger 1.2 (entry point 'kernel.soft'): OSError: no library"
     )
+
+
+def test_a_component_that_cannot_be_made_is_named(plugin: Plugin) -> None:
+    """What a validator of a plugin raises of its own comes with the component's name."""
+    failing = SOFT.replace(
+        "    def compliance", "    def model_post_init(self, _): {}[0]\n\n    def compliance"
+    )
+    with pytest.raises(KeyError) as raised:
+        load([plugin(failing)]).make(Kernel, {"type": "soft"})
+    assert raised.value.__notes__ == ["kernel 'soft' failed"]
 
 
 def test_two_owners_of_one_name_are_both_named(plugin: Plugin) -> None:

@@ -299,7 +299,33 @@ class Hasty(Kernel):
         return super().radial_primitive(r) * (1 + 1e-4 * (r.size > 1000))
 
 
+class Complex(Kernel):
+    """Yields out of phase."""
+
+    def compliance(self, q: Any) -> Any:
+        return super().compliance(q) * (1 + 0.1j)
+
+
+class Whole(Kernel):
+    """Counts in metres per pascal."""
+
+    def compliance(self, q: Any) -> Any:
+        return np.ceil(super().compliance(q)).astype(int)
+
+
+class OverwritingRadii(Kernel):
+    """Has a closed form that saves memory at its caller's cost."""
+
+    def greens_function(self, r: Any) -> Any:
+        found = super().greens_function(r)
+        r *= 2
+        return found
+
+
 KERNELS = {
+    Complex: "compliance_is_vectorised",
+    Whole: "compliance_is_vectorised",
+    OverwritingRadii: "closed_form_leaves_its_argument",
     Scalar: "compliance_is_vectorised",
     Coupled: "compliance_is_vectorised",
     Single: "compliance_is_vectorised",
@@ -390,7 +416,48 @@ class Aloof(Indenter):
         return found - 0.05 * np.ptp(found)
 
 
+class Misspelt(Indenter):
+    """Ends where nobody looks."""
+
+    footprint: ClassVar[Any] = "Domain"
+
+
+class ComplexHeights(Indenter):
+    """Heights with an imaginary part."""
+
+    def profile(self, x: Any, y: Any) -> Any:
+        return super().profile(x, y) + 0j
+
+
+class NotANumber(Indenter):
+    """Heights that are not known everywhere."""
+
+    def profile(self, x: Any, y: Any) -> Any:
+        return np.where(x > 5e-4, np.nan, super().profile(x, y))
+
+
+class Insensitive(Indenter):
+    """Force curve that does not know what the tension does."""
+
+    def force_curve(self, depth: Any, length: Any) -> Any:
+        found = super().force_curve(depth, length)
+        return found._replace(by_length=0 * found.by_length)
+
+
+class Shallow(Indenter):
+    """Force curve that changes the depths that it is given."""
+
+    def force_curve(self, depth: Any, length: Any) -> Any:
+        depth[...] = np.maximum(depth, 0)
+        return super().force_curve(depth, length)
+
+
 INDENTERS = {
+    Insensitive: "force_curve_rises",
+    Shallow: "force_curve_rises",
+    Misspelt: "footprint_is_known",
+    ComplexHeights: "profile_has_the_shape_of_the_grid",
+    NotANumber: "profile_is_nowhere_positive",
     Flattened: "profile_has_the_shape_of_the_grid",
     Raised: "profile_is_nowhere_positive",
     Gone: "profile_is_nowhere_positive",
@@ -511,7 +578,43 @@ class Wide(Solver):
         return super().punch_pressure(problem, contact, monitor) + 1e-3
 
 
+class Mute(Solver):
+    """Returns nothing."""
+
+    def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
+        super().solve(problem, start, monitor)
+
+
+class Rowwise(Solver):
+    """Returns the pressure in a row."""
+
+    def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
+        found = super().solve(problem, start, monitor)
+        return replace(found, pressure=found.pressure.ravel())
+
+
+class OutOfPhase(Solver):
+    """Returns a complex pressure."""
+
+    def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
+        found = super().solve(problem, start, monitor)
+        return replace(found, pressure=found.pressure + 0j)
+
+
+class Meddling(Solver):
+    """Puts an operator of its own into the problem."""
+
+    def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
+        found = super().solve(problem, start, monitor)
+        object.__setattr__(problem, "operator", None)
+        return found
+
+
 SOLVERS = {
+    Mute: "solution_is_one",
+    Rowwise: "solution_is_one",
+    OutOfPhase: "solution_is_one",
+    Meddling: "solution_is_one",
     Sucking: "pressure_is_nowhere_negative",
     Lying: "done_means_solved",
     GivingUp: "what_is_prescribed_is_solved",
@@ -603,7 +706,31 @@ class Microscopic(Correction):
         return super().area(contact, spacing) if spacing[0] < 3e-5 else 0.0
 
 
+class Wordy(Correction):
+    """Says the area in words."""
+
+    def area(self, contact: Any, spacing: Any) -> Any:
+        return f"{super().area(contact, spacing)} m²"
+
+
+class Lost(Correction):
+    """Does not know the area."""
+
+    def area(self, contact: Any, spacing: Any) -> Any:
+        return np.nan
+
+
+class Failing(Correction):
+    """Says −1 for no contact, as C programs do."""
+
+    def area(self, contact: Any, spacing: Any) -> Any:
+        return super().area(contact, spacing) if contact.any() else -1
+
+
 CORRECTIONS = {
+    Wordy: "area_is_pure",
+    Lost: "area_is_pure",
+    Failing: "no_contact_has_no_area",
     Several: "area_is_pure",
     Filling: "area_is_pure",
     Floor: "no_contact_has_no_area",
@@ -717,7 +844,33 @@ class Resuming(Output):
         json.loads(place.file(".json").read_text())
 
 
+class Normalising(Output):
+    """Divides the pressure by its maximum, in place."""
+
+    def step(self, place: Any, step: Any) -> None:
+        step["pressure"].values[...] /= step["pressure"].values.max()
+
+
+class Renaming(Output):
+    """Takes the data for its own."""
+
+    def close(self, place: Any, result: Any) -> Any:
+        result.dataset.attrs["title"] = "mine"
+        return super().close(place, result)
+
+
+class Spoken(Output):
+    """Says the name of its file."""
+
+    def close(self, place: Any, result: Any) -> Any:
+        (path,) = super().close(place, result)
+        return str(path)
+
+
 OUTPUTS = {
+    Normalising: "leaves_its_data_as_they_are",
+    Renaming: "leaves_its_data_as_they_are",
+    Spoken: "leaves_the_files_it_names",
     LosesFirst: "loses_no_step",
     LosesLast: "loses_no_step",
     Nameless: "leaves_the_files_it_names",

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from pellicle.components import HasForceCurve
+from pellicle.contracts import force_curve_of
 from pellicle.operators import Array
 
 from .simulated import SimulatedCurve
@@ -183,7 +184,7 @@ class Likelihood(ChiSquared):
         point, log_modulus, tension, offset, slope = parameters
         modulus = np.exp(log_modulus)
         length = 2 * tension / modulus
-        curve = self.indenter.force_curve(position - point, length)
+        curve = force_curve_of(self.indenter, position - point, length)
         moved = self.position - self.position[0]
         force = modulus * curve.force + offset + slope * moved
         jacobian = np.column_stack(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pellicle.components import HasForceCurve
+from pellicle.contracts import force_curve_of
 from pellicle.operators import Array
 
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood
@@ -78,4 +79,4 @@ def _solved(
 
 
 def _force(indenter: HasForceCurve, depth: Array, length: float) -> Array:
-    return indenter.force_curve(depth, length).force
+    return force_curve_of(indenter, depth, length).force

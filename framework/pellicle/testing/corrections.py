@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pellicle.checks import real_number
 from pellicle.components import AreaCorrection
 
 from .component import check
@@ -44,7 +45,7 @@ def area_is_pure(correction: AreaCorrection) -> None:
     """area(contact, spacing) is a number, the same if asked twice, and contact is as it was."""
     contact = _islands()
     area = correction.area(contact, _SPACING)
-    require(np.ndim(area) == 0 and np.isrealobj(area), f"{area!r}")
+    real_number(correction, "area(contact, spacing)", area)
     require(np.array_equal(contact, _islands()), "area(contact, spacing) changes contact")
     require(correction.area(contact, _SPACING) == area, "the second area differs")
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
 
-from pellicle.components import Indenter
+from pellicle.components import Footprint, HasForceCurve, Indenter
+from pellicle.contracts import force_curve_of
 from pellicle.grid import Grid
 from pellicle.operators import Array
 
 from .component import check
-from .rules import Rule, require
+from .rules import Rule, require, require_close
 from .runs import solved
 
 
@@ -18,7 +21,8 @@ def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
 
     Beside what all components keep: ``profile`` makes float heights ≤ 0 of the grid's shape, 0 at
     the lowest point; it is pure; each height depends on its own point only, unless the indenter
-    ends with the domain; and a small indentation converges.
+    ends with the domain; a force curve, if there is one, rises as its sensitivities say; and a
+    small indentation converges.
 
     Parameters
     ----------
@@ -69,6 +73,11 @@ def profile_is_nowhere_positive(indenter: Indenter, grid: Grid) -> None:
     require(np.isfinite(found).any(), "no height is finite")
 
 
+def footprint_is_known(indenter: Indenter, grid: Grid) -> None:
+    """The footprint is "unbounded" or "domain", by which contact at the edge is judged."""
+    require(indenter.footprint in get_args(Footprint), repr(indenter.footprint))
+
+
 def lowest_point_is_at_zero(indenter: Indenter, grid: Grid) -> None:
     """The highest value is 0; where the indenter ends with the domain, up to what a cell hides."""
     found = indenter.profile(*grid.coordinates())
@@ -90,6 +99,25 @@ def heights_depend_on_their_own_point(indenter: Indenter, grid: Grid) -> None:
     )
 
 
+def force_curve_rises(indenter: Indenter, grid: Grid) -> None:
+    """A force curve is 0 without contact, and rises in depth and length as it says itself."""
+    if not isinstance(indenter, HasForceCurve):
+        return
+    scale = 0.01 * (_range(indenter.profile(*grid.coordinates())) or min(grid.size))
+    unit = min(scale, 0.1 * indenter.depth_limit)
+    depth, length, step = unit * np.array([-1.0, 0.0, 0.5, 1.0, 2.0]), unit, 1e-4 * unit
+    curve = force_curve_of(indenter, depth, length)
+    require(not curve.force[:2].any(), f"forces {curve.force[:2]} m² at depths ≤ 0")
+    require((np.diff(curve.force[1:]) > 0).all(), f"forces {curve.force} m² at rising depths")
+    for name, low, high in (
+        ("by_depth", (depth - step, length), (depth + step, length)),
+        ("by_length", (depth, length - step), (depth, length + step)),
+    ):
+        below, above = (force_curve_of(indenter, *at).force[2:] for at in (low, high))
+        found = getattr(curve, name)[2:]
+        require_close(found, (above - below) / (2 * step), f"force_curve().{name}", relative=1e-3)
+
+
 def run_converges(indenter: Indenter, grid: Grid) -> None:
     """Pressed into a half-space, the indenter makes contact and the run converges."""
     depth = 0.01 * _range(indenter.profile(*grid.coordinates())) or 0.01 * min(grid.size)
@@ -109,10 +137,12 @@ def _range(heights: Array) -> float:
 
 
 RULES: list[Rule] = [
+    footprint_is_known,
     profile_has_the_shape_of_the_grid,
     profile_is_nowhere_positive,
     profile_is_pure,
     lowest_point_is_at_zero,
     heights_depend_on_their_own_point,
+    force_curve_rises,
     run_converges,
 ]

@@ -135,6 +135,15 @@ def closed_form_is_whole(kernel: Kernel) -> None:
     require(len(there) != 1, f"only {' '.join(there)}")
 
 
+def closed_form_leaves_its_argument(kernel: Kernel) -> None:
+    """Distances r are as they were after greens_function(r) and radial_primitive(r)."""
+    for name in _FORMS:
+        if method := getattr(kernel, name, None):
+            r = np.geomspace(1e-6, 1.0, 9)
+            method(r)
+            require_close(r, np.geomspace(1e-6, 1.0, 9), f"after {name}(r), r")
+
+
 def primitive_is_the_integral_of_the_closed_form(kernel: Kernel) -> None:
     """radial_primitive starts at 0 and grows by ∫ greens_function r dr."""
     if not isinstance(kernel, HasClosedForm):
@@ -226,6 +235,7 @@ RULES: list[Rule] = [
     periodic_run_converges,
     uniform_pressure_sinks_by_the_mean_compliance,
     closed_form_is_whole,
+    closed_form_leaves_its_argument,
     primitive_is_the_integral_of_the_closed_form,
     closed_form_is_the_transform_of_the_compliance,
     free_operator_is_the_transform_of_the_compliance,

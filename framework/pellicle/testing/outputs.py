@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from pellicle.clashes import matches
 from pellicle.components import Output, Place
 from pellicle.config import Run
+from pellicle.contracts import files_of
 from pellicle.errors import StorageError
 from pellicle.orchestrator import execute, solve
 from pellicle.progress import Progress
@@ -71,7 +72,7 @@ def _leave(output: Output, place: Place, steps: xr.Dataset) -> tuple[Path, ...]:
     """Hand steps to the output as a run does; return the files that it names."""
     output.open(place)
     for index in range(steps.sizes["step"]):
-        output.step(place, steps.isel(step=[index]))
+        output.step(place, steps.isel(step=slice(index, index + 1)))
     return output.close(place, Result(steps))
 
 
@@ -85,11 +86,20 @@ def _left(place: Place) -> dict[str, bytes]:
     }
 
 
+def leaves_its_data_as_they_are(output: Output) -> None:
+    """step() and close() change nothing of what they are given: others get it too."""
+    data = _dataset().copy(deep=True)
+    with _place() as place:
+        _leave(output, place, data)
+    require(data.identical(_dataset()), "the data of the run differ afterwards")
+
+
 def leaves_the_files_it_names(output: Output) -> None:
     """Cut short, and repeated with all steps, a run leaves what is named and endings() tells."""
     with _place() as place:
         for steps in range(1, _STEPS + 1):
-            named = _leave(output, place, _dataset().isel(step=slice(steps)))
+            done = _dataset().isel(step=slice(steps))
+            named = files_of(output, "close()", partial(_leave, place=place, steps=done))
             names = {path.relative_to(place.directory).as_posix() for path in named}
             left = _left(place)
             require(
@@ -158,6 +168,7 @@ def works_in_a_run(output: Output) -> None:
 
 
 RULES: list[Rule] = [
+    leaves_its_data_as_they_are,
     leaves_the_files_it_names,
     loses_no_step,
     hopeless_folder_is_known_before_computing,

@@ -10,6 +10,7 @@ import numpy as np
 
 from pellicle.components import Solver
 from pellicle.config import Run
+from pellicle.contracts import solution_of
 from pellicle.operators import make_operator
 from pellicle.problem import Problem, measure, measure_stiffness
 from pellicle.result import Stop
@@ -94,6 +95,12 @@ def _problems() -> Iterator[Problem]:
 
 def _ignore(iteration: int, residual: float) -> None:
     pass
+
+
+def solution_is_one(solver: Solver) -> None:
+    """solve() returns a Solution of real numbers and leaves its problem as it is."""
+    for problem in _problems():
+        solution_of(solver, problem, None, _ignore)
 
 
 def pressure_is_nowhere_negative(solver: Solver) -> None:
@@ -211,6 +218,7 @@ def punch_is_flat(solver: Solver) -> None:
 
 
 RULES: list[Rule] = [
+    solution_is_one,
     pressure_is_nowhere_negative,
     done_means_solved,
     start_belongs_to_the_caller,
