@@ -27,7 +27,7 @@ from .errors import ConfigError
 from .fields import FromRegistry
 from .grid import Grid, grid_of_run
 from .loading import Loading
-from .model import Model, paths_relative_to, replaced
+from .model import Line, Model, paths_relative_to, replaced
 from .plugins import registry
 from .storage import SCHEMA_VERSION
 from .toml import parse_override, read_toml, toml_lines
@@ -39,7 +39,7 @@ DEFAULT_SOLVER = "active_set"
 class Run(Model):
     """One contact problem with its load steps."""
 
-    title: Annotated[str, Field(description="a line for figures and listings")] = ""
+    title: Annotated[Line, Field(description="a line for figures and listings")] = ""
     grid: Annotated[Grid, Field(description="the domain and its cells")]
     kernel: Annotated[Kernel, FromRegistry(), Field(description="how the surface yields")]
     indenter: Annotated[Indenter, FromRegistry(), Field(description="what is pressed in")]

@@ -14,6 +14,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
 from .errors import ConfigError, Problem, shown
+from .text_files import has_control_characters
 
 _folder: ContextVar[Path | None] = ContextVar("folder", default=None)
 
@@ -38,6 +39,16 @@ def _from_folder(path: Path) -> Path:
 
 InputPath = Annotated[Path, AfterValidator(_from_folder)]
 """A file to read; in a TOML file, relative to that file."""
+
+
+def _without_control_characters(text: str) -> str:
+    if has_control_characters(text):
+        raise ValueError(f"{shown(text)} has control characters; leave them out")
+    return text
+
+
+Line = Annotated[str, AfterValidator(_without_control_characters)]
+"""A text for figures, listings and attributes of files."""
 
 
 class Model(BaseModel):

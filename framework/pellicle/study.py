@@ -291,7 +291,10 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
         There is none, or it cannot be read.
     """
     whole = path / "study.h5" if path.is_dir() else path
-    return storage.table(whole), whole.parent
+    made = storage.table(whole)
+    if problem := table.damage(made):
+        raise StorageError(f"{whole}: {problem}, so it is damaged; run the study again")
+    return made, whole.parent
 
 
 def is_table(path: Path) -> bool:

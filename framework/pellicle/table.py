@@ -94,6 +94,25 @@ def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any,
     return values.astype(int) if name in _COUNTS and np.isfinite(values).all() else values.copy()
 
 
+def damage(table: xr.Dataset) -> str:
+    """Return what keeps a dataset from being the table of a study."""
+    numbers = any(variable.dtype.kind in "fiu" for variable in table.data_vars.values())
+    expected = {"status", "run", "converged"} if numbers else {"status", "run"}
+    if missing := expected - {*map(str, table.data_vars)}:
+        return f"lacks {', '.join(sorted(missing))}"
+    for name, variable in table.data_vars.items():
+        kinds = "UO" if name in ("status", "run") else "b" if name == "converged" else "fiub"
+        if variable.dtype.kind not in kinds:
+            return f"has {name} of type {variable.dtype}"
+    try:
+        texts = [json.loads(table.attrs[name]) for name in ("configuration", "axes", FIRST_RUN)]
+    except (LookupError, TypeError, ValueError):
+        texts = []
+    if not texts or not all(isinstance(each, dict) for each in (*texts, texts[0].get("study"))):
+        return "does not say which study it is of"
+    return ""
+
+
 def verdict(status: str) -> str:
     """Return one word for the status of a step in a table."""
     if status in ("", NOT_RUN):
