@@ -27,7 +27,7 @@ from .errors import ConfigError
 from .fields import FromRegistry
 from .grid import Grid, grid_of_run
 from .loading import Loading
-from .model import Line, Model, paths_relative_to, replaced
+from .model import AS_GIVEN, Model, paths_relative_to, replaced
 from .plugins import registry
 from .storage import SCHEMA_VERSION
 from .toml import parse_override, read_toml, toml_lines
@@ -39,7 +39,7 @@ DEFAULT_SOLVER = "active_set"
 class Run(Model):
     """One contact problem with its load steps."""
 
-    title: Annotated[Line, Field(description="a line for figures and listings")] = ""
+    title: Annotated[str, Field(description="a line for figures and listings")] = ""
     grid: Annotated[Grid, Field(description="the domain and its cells")]
     kernel: Annotated[Kernel, FromRegistry(), Field(description="how the surface yields")]
     indenter: Annotated[Indenter, FromRegistry(), Field(description="what is pressed in")]
@@ -147,9 +147,13 @@ class Run(Model):
         text = json.dumps(said, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
 
-    def to_json(self) -> str:
-        """Return the whole configuration as JSON, defaults included, SI floats."""
-        return self.model_dump_json(exclude_none=True)
+    def to_json(self, *, as_given: bool = False) -> str:
+        """Return the whole configuration as JSON, defaults included, SI floats.
+
+        Paths of files to read are absolute, or as the run's own file has them: such a text can be
+        given away with the files, and does not say where they lay.
+        """
+        return self.model_dump_json(exclude_none=True, context=AS_GIVEN if as_given else None)
 
     def to_toml(self) -> str:
         """Return the whole configuration as TOML, defaults included, SI floats."""

@@ -80,7 +80,9 @@ def run(
     """
     made, name = _as_run(configuration)
     outputs = standard_outputs(made.outputs) if directory is not None else made.outputs or ()
-    place = Place(Path(directory or "."), name, made.to_json(), made.identity, overwrite)
+    place = Place(
+        Path(directory or "."), name, made.to_json(as_given=True), made.identity, overwrite
+    )
     bar = Progress(len(made.loading.values), progress)
     result = execute(made, place, outputs, bar, threads=threads).result
     for index, message in result.failures():
@@ -92,7 +94,7 @@ def run(
 
 def solve(run: Run) -> Result:
     """Return the result of ``run``, of which nothing is written or shown."""
-    nowhere = Place(Path(), "run", run.to_json())
+    nowhere = Place(Path(), "run", run.to_json(as_given=True))
     return execute(run, nowhere, (), Progress(len(run.loading.values), enabled=False)).result
 
 

@@ -177,7 +177,8 @@ def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[Run
     made = []
     for point in study.points:
         identity = point.run.identity
-        place = Place(directory / "runs", identity[:16], point.run.to_json(), identity, overwrite)
+        said = point.run.to_json(as_given=True)
+        place = Place(directory / "runs", identity[:16], said, identity, overwrite)
         made.append(RunTask(point.name, point.run, place, point.place, _by_run(named)))
     return made
 
@@ -201,7 +202,7 @@ def carry_out(
 def _carry_out(
     study: Study, directory: Path, progress: bool, overwrite: bool, threads: int | None
 ) -> Carried:
-    place = Place(directory, "study", study.to_json(), overwrite=overwrite)
+    place = Place(directory, "study", study.to_json(as_given=True), overwrite=overwrite)
     outputs = [o for o in standard_outputs(study.points[0].run.outputs) if o.draws_studies]
     for output in outputs:
         output.open(place)

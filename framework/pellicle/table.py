@@ -15,6 +15,7 @@ from .dataset import header
 from .provenance import now_with
 from .result import Status
 from .study_config import Study
+from .text_files import for_document
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,9 +29,9 @@ class Table:
     def __init__(self, study: Study) -> None:
         self._study = study
         self._attributes = {
-            "title": study.points[0].run.title,
+            "title": for_document(study.points[0].run.title),
             "configuration": study.to_json(),
-            FIRST_RUN: study.points[0].run.to_json(),
+            FIRST_RUN: study.points[0].run.to_json(as_given=True),
             "axes": json.dumps({name: list(axes) for name, axes in study.dimensions.items()}),
             **now_with(point.run for point in study.points),
         }

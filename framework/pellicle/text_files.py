@@ -20,11 +20,6 @@ _MARKS = {
 _NOT_IN_DOCUMENTS = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
-def has_control_characters(text: str) -> bool:
-    """Whether a text holds characters that no document may hold, such as NUL and escape."""
-    return _NOT_IN_DOCUMENTS.search(text) is not None
-
-
 def for_document(text: str) -> str:
     """Return a text with a replacement character for each that no document may hold."""
     return _NOT_IN_DOCUMENTS.sub("\ufffd", text)

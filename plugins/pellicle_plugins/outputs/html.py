@@ -97,7 +97,7 @@ class Html(Output):
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Write the page of a run."""
         data = result.dataset
-        said = result.configuration
+        said = json.loads(place.configuration)
         sections = [
             Section("Status", [_status(result)]),
             Section("Results", _steps(data)),
@@ -395,7 +395,8 @@ def _reproduce(place: Place) -> Iterator[Code]:
     )
     yield Code(
         f"pellicle run {shlex.quote(name)} -o {shlex.quote(folder)}",
-        "With that file in the current folder:",
+        "With that file in the current folder, and files that it names where their paths say; what "
+        "they hold is compared with its hash where there is one:",
     )
 
 

@@ -12,8 +12,10 @@ from typing import Any
 import matplotlib.image
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import pellicle as pl
+from pellicle.cli import app
 from pellicle.page import Section, Text, page
 from pellicle.plotting import save_figure, svg, without_round_off
 
@@ -139,9 +141,19 @@ def test_control_characters_stay_out_of_figures_and_pages(tmp_path: Path) -> Non
     assert "--&gt; d" in text
 
 
-@pytest.mark.parametrize("title", ["a\0b", "a\x1b[2Jb", "a\x85b"])
-def test_control_characters_in_a_title_are_refused(title: str) -> None:
-    """Files of results cannot hold all of them, and terminals obey some."""
-    with pytest.raises(pl.ConfigError, match=r"^title: .* has control characters; leave them out"):
-        pl.Run(**RUN, title=title)
-    assert pl.Run(**RUN, title="two\nlines\tand a tab").title
+def test_control_characters_in_a_title_do_no_harm(tmp_path: Path) -> None:
+    """A result is kept, which no file could be with NUL in it, and a terminal is told nothing."""
+    outputs = [{"type": "hdf5"}, {"type": "figures", "formats": ["svg"]}]
+    run = pl.Run(**RUN, title=CONTROL, outputs=outputs)
+    pl.run(run, directory=tmp_path, progress=False)
+    for path in tmp_path.glob("*.svg"):
+        ET.parse(path)
+    (path,) = tmp_path.glob("*.h5")
+    assert json.loads(pl.load(path).dataset.attrs["configuration"])["title"] == CONTROL
+    shown = CliRunner().invoke(app, ["show", str(path)])
+    assert shown.exit_code == 0
+    assert shown.stdout.startswith("title:    a\ufffdb\ufffd[1mc\ufffd")
+    (tmp_path / "a.toml").write_text(run.to_toml(), encoding="utf-8")
+    planned = CliRunner().invoke(app, ["run", str(tmp_path / "a.toml"), "--dry-run"])
+    assert planned.exit_code == 0
+    assert "\x1b" not in planned.stdout
