@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import storage
-from .errors import StorageError
+from .errors import ConfigError, StorageError, shown
 from .expression import evaluate, names_in
 
 if TYPE_CHECKING:
@@ -85,6 +85,31 @@ def constants(configuration: object, path: str = "") -> dict[str, float]:
     }
 
 
+def as_array(text: str, data: xr.Dataset) -> xr.DataArray:
+    """Return an expression over a result or a table as an array, a bare number too.
+
+    Raises
+    ------
+    ConfigError
+        It is not arithmetic, or names what is not there.
+    """
+    import xarray as xr
+
+    value = evaluate(text, names(data))
+    return value if isinstance(value, xr.DataArray) else xr.DataArray(value)
+
+
+def _by_step(text: str, run: xr.Dataset) -> Any:
+    """Return an expression over a run whose fields are reduced to a number for each step."""
+    value = evaluate(text, names(run), REDUCTIONS)
+    if set(getattr(value, "dims", ())) & set(_CELLS):
+        raise ConfigError(
+            f"{shown(text)} has a value for each cell, and one for each step is drawn; put fields, "
+            f"x and y inside {', '.join(REDUCTIONS)}, such as mean(pressure)"
+        )
+    return value
+
+
 @dataclass(frozen=True)
 class Runs:
     """A table of runs and a way to the fields of each."""
@@ -121,12 +146,9 @@ class Runs:
         ConfigError
             It is not arithmetic, or names what is not there.
         """
-        import xarray as xr
-
         if names_in(text) & {*FIELDS, *_CELLS}:
-            return self.from_each(lambda run: evaluate(text, names(run), REDUCTIONS))
-        found = evaluate(text, names(self.table))
-        return found if isinstance(found, xr.DataArray) else xr.DataArray(found)
+            return self.from_each(lambda run: _by_step(text, run))
+        return as_array(text, self.table)
 
     def from_each(self, what: Callable[[xr.Dataset], Any]) -> xr.DataArray:
         """Return ``what`` makes of each run: a number for each step; NaN where there is no run."""

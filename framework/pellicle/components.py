@@ -286,7 +286,7 @@ class Place:
     name: str
     """Stem of the file names."""
     configuration: str
-    """The run or the study, as its `to_json` says it."""
+    """The run or the study, as its `to_json` says it, with paths as they were given."""
     identity: str = ""
     """The run's `Run.identity`: what is there of another run is not to be touched."""
     overwrite: bool = False

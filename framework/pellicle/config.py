@@ -28,7 +28,7 @@ from .errors import ConfigError
 from .fields import FromRegistry
 from .grid import Grid, grid_of_run
 from .loading import Loading
-from .model import Model, paths_relative_to, replaced
+from .model import AS_GIVEN, Model, paths_relative_to, replaced
 from .plugins import registry
 from .toml import parse_override, read_toml
 
@@ -148,9 +148,13 @@ class Run(Model):
         text = json.dumps(said, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
 
-    def to_json(self) -> str:
-        """Return the whole configuration as JSON, defaults included, SI floats."""
-        return self.model_dump_json(exclude_none=True)
+    def to_json(self, *, as_given: bool = False) -> str:
+        """Return the whole configuration as JSON, defaults included, SI floats.
+
+        Paths of files to read are absolute, or as the run's own file has them: such a text can be
+        given away with the files, and does not say where they lay.
+        """
+        return self.model_dump_json(exclude_none=True, context=AS_GIVEN if as_given else None)
 
     def to_toml(self) -> str:
         """Return the whole configuration as TOML, defaults included, SI floats."""

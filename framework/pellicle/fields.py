@@ -29,7 +29,7 @@ class FromRegistry:
             lambda given: registry().make(source, given),
             serialization=core_schema.plain_serializer_function_ser_schema(
                 lambda component, info: component.model_dump(
-                    mode=info.mode, exclude_none=info.exclude_none
+                    mode=info.mode, exclude_none=info.exclude_none, context=info.context
                 ),
                 info_arg=True,
             ),
@@ -41,7 +41,11 @@ class FromRegistry:
     ) -> JsonSchemaValue:
         # `json_schema` fills it in: while plugins load nobody knows what there will be, and a
         # component may hold one of its own family.
-        return {_FAMILY: schema["metadata"]["family"]}
+        inner: Any = schema
+        # A validator of the model that has the field is wrapped around it.
+        while "family" not in inner.get("metadata", {}):
+            inner = inner["schema"]
+        return {_FAMILY: inner["metadata"]["family"]}
 
 
 def json_schema(model: type[BaseModel]) -> dict[str, Any]:

@@ -8,9 +8,17 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Final
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    PlainSerializer,
+    SerializationInfo,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 from pydantic_core import ErrorDetails
 
 from .errors import ConfigError, Problem, shown
@@ -31,12 +39,45 @@ def paths_relative_to(folder: Path | None) -> Iterator[None]:
         _folder.reset(token)
 
 
-def _from_folder(path: Path) -> Path:
-    folder = _folder.get()
-    return path if folder is None else (folder / path).absolute()
+AS_GIVEN: Final = "as_given"
+"""Context of ``model_dump`` in which paths are written as their file has them, not absolute."""
 
 
-InputPath = Annotated[Path, AfterValidator(_from_folder)]
+# Before Python 3.12 only the class of this system's paths can be derived from.
+class _GivenPath(type(Path())):  # type: ignore[misc]
+    """A path that knows how the user wrote it."""
+
+    given = ""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _given_path, (str(self), self.given)
+
+
+def _given_path(path: str | Path, given: str) -> Path:
+    made = _GivenPath(path)
+    made.given = given
+    return made
+
+
+def as_given(path: Path) -> str:
+    """Return a path as the user wrote it, who may have moved its folder since."""
+    return getattr(path, "given", "") or str(path)
+
+
+def _from_folder(value: Any, read: ValidatorFunctionWrapHandler) -> Path:
+    if isinstance(value, _GivenPath):
+        return value
+    path, folder = read(value), _folder.get()
+    return _given_path(path if folder is None else (folder / path).absolute(), str(path))
+
+
+def _written(path: Path, info: SerializationInfo) -> Path | str:
+    if info.context == AS_GIVEN:
+        return as_given(path)
+    return str(path) if info.mode_is_json() else path
+
+
+InputPath = Annotated[Path, WrapValidator(_from_folder), PlainSerializer(_written)]
 """A file to read; in a TOML file, relative to that file."""
 
 

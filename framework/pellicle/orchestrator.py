@@ -90,7 +90,9 @@ def run(
     threads = checked_threads(threads)
     made, name = _as_run(configuration)
     outputs = standard_outputs(made.outputs) if directory is not None else made.outputs or ()
-    place = Place(Path(directory or "."), name, made.to_json(), made.identity, overwrite)
+    place = Place(
+        Path(directory or "."), name, made.to_json(as_given=True), made.identity, overwrite
+    )
     bar = Progress(len(made.loading.values), progress)
     result = execute(made, place, outputs, bar, threads=threads).result
     for step, message in result.failures():
@@ -102,7 +104,7 @@ def run(
 
 def solve(run: Run) -> Result:
     """Return the result of ``run``, of which nothing is written or shown."""
-    nowhere = Place(Path(), "run", run.to_json())
+    nowhere = Place(Path(), "run", run.to_json(as_given=True))
     return execute(run, nowhere, (), Progress(len(run.loading.values), enabled=False)).result
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -12,9 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .components import Solver
 from .operators import Array
+from .problem import height_scale
 from .result import Result
 from .storage import reported
+from .text_files import for_document
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,6 +50,22 @@ def axis_unit(values: Array, unit: str) -> tuple[float, str]:
     return 10.0**-exponent, f"{_PREFIXES[exponent]}{unit}"
 
 
+def without_round_off(step: xr.Dataset) -> xr.Dataset:
+    """Return the fields of a load step for drawing: gaps that its tolerance allows are 0.
+
+    A gap counts as 0 up to ``solver.tolerance`` times the length by which the residuals of the step
+    are judged, so that full contact is not drawn as a landscape of femtometres.
+    """
+    solver = json.loads(step.attrs["configuration"]).get("solver", {})
+    tolerance = float(solver.get("tolerance", Solver.model_fields["tolerance"].default))
+    gap, depth = step["gap"].values, float(step["depth"])
+    # A step that failed may hold infinite numbers of both signs.
+    with np.errstate(invalid="ignore"):
+        profile = step["displacement"].values - depth - gap
+    closed = np.abs(gap) <= tolerance * height_scale(profile, step["contact"].values, depth)
+    return step.assign(gap=(step["gap"].dims, np.where(closed, 0.0, gap), step["gap"].attrs))
+
+
 def pressure_map(result: Result, axes: Axes, step: int = -1) -> None:
     """Draw the pressure of a load step over the domain."""
     data = result.dataset.isel(step=step)
@@ -72,14 +92,16 @@ def pressure_map(result: Result, axes: Axes, step: int = -1) -> None:
 
 def profile(result: Result, axes: Axes, step: int = -1) -> None:
     """Draw pressure and gap along x through the centre of the domain."""
-    data = result.dataset.isel(step=step)
+    data = without_round_off(result.dataset.isel(step=step))
     centre = data.sizes["y"] // 2
     line = data.isel(y=centre)
     gap = line["gap"].values
     near = gap <= max(float(data["depth"]), 0.0) * 2
     length, length_name = axis_unit(line["x"].values, "m")
     scale, name = axis_unit(line["pressure"].values, "Pa")
-    gap_scale, gap_name = axis_unit(gap[near], "m")
+    opens = bool(gap[near].any())
+    # A gap of 0 everywhere has no unit of its own; beside the depth it is seen to be nothing.
+    gap_scale, gap_name = axis_unit(gap[near] if opens else data["depth"].values, "m")
     x = line["x"].values * length
     axes.plot(x, line["pressure"].values * scale, color="C0")
     axes.set(xlabel=f"x [{length_name}] at y = {line['y'].item() * length:.3g} {length_name}")
@@ -90,6 +112,8 @@ def profile(result: Result, axes: Axes, step: int = -1) -> None:
     beside.set_ylabel(f"gap [{gap_name}]", color="C1")
     for side in (axes, beside):
         side.set_ylim(bottom=0.0)
+    if not opens and float(data["depth"]) > 0:
+        beside.set_ylim(top=float(data["depth"]) * gap_scale)
 
 
 def force_depth(result: Result, axes: Axes) -> None:
@@ -246,10 +270,14 @@ def svg(draw: Callable[[Figure], None], size: tuple[float, float] = (5.4, 4.2)) 
 def _figure(draw: Callable[[Figure], None], size: tuple[float, float]) -> Iterator[Figure]:
     import matplotlib.style
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
     with matplotlib.style.context("default"):
         figure = Figure(figsize=size, dpi=150, layout="constrained")
         draw(figure)
+        # SVG writes every text into its XML as well, as a comment.
+        for text in figure.findobj(Text):
+            text.set_text(for_document(text.get_text()))
         yield figure
 
 

@@ -11,12 +11,13 @@ from .components import Component
 from .config import Run
 from .model import Model
 from .plugins import registry
+from .text_files import for_document
 
 
 def provenance(run: Run) -> dict[str, str]:
     """Return the attributes that say where a result comes from."""
     return {
-        "title": run.title,
+        "title": for_document(run.title),
         "configuration": run.to_json(),
         "identity": run.identity,
         **now_with([run]),

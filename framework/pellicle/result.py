@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import storage
-from .errors import StorageError
+from .errors import ConfigError, StorageError
 from .grid import Grid
 from .status import Status as Status
 from .status import Stop as Stop
@@ -98,14 +98,38 @@ def load(path: str | Path) -> Result:
         No such file, not a result, damaged, or of another schema version.
     """
     dataset = storage.read(Path(path))
-    if missing := _ALWAYS - {*map(str, dataset.variables)}:
-        raise StorageError(
-            f"{path}: lacks {', '.join(sorted(missing))}, so it is damaged; run it again"
-        )
+    if problem := _damage(dataset):
+        raise StorageError(f"{path}: {problem}, so it is damaged; run it again")
     return Result(dataset)
 
 
-_ALWAYS = {"step", "x", "y", "pressure", "displacement", "gap", "contact"} | {
-    *("depth", "force", "contact_area", "iterations", "converged", "status")
-}
-"""Variables without which there is no result, whatever the version that wrote it."""
+_FIELDS = "pressure", "displacement", "gap", "contact"
+_SCALARS = "depth", "force", "contact_area", "iterations", "converged", "status_code", "status"
+_KINDS = {"contact": "b", "converged": "b", "status_code": "UO", "status": "UO"}
+_NUMBERS = "fiu"
+
+
+def _damage(dataset: xr.Dataset) -> str:
+    """Return what keeps a dataset from being a result, whatever the version that wrote it."""
+    always = {"step", "x", "y", *_FIELDS, *_SCALARS}
+    if missing := always - {*map(str, dataset.variables)}:
+        return f"lacks {', '.join(sorted(missing))}"
+    for name in always:
+        variable = dataset[name]
+        expected = ("step", "x", "y") if name in _FIELDS else (name,)
+        dims = ("step",) if name in _SCALARS else expected
+        if variable.dims != dims:
+            return f"has {name} over {', '.join(map(str, variable.dims)) or 'nothing'}"
+        if variable.dtype.kind not in _KINDS.get(name, _NUMBERS):
+            return f"has {name} of type {variable.dtype}"
+    configuration = json.loads(dataset.attrs["configuration"])
+    try:
+        grid = Grid(**configuration["grid"])
+        known = isinstance(configuration["loading"], dict)
+    except (ConfigError, LookupError, TypeError):
+        known = False
+    if not known:
+        return "has a configuration without a grid or a loading"
+    if grid.shape != (dataset.sizes["x"], dataset.sizes["y"]):
+        return f"has fields of other shapes than its grid of {grid.shape}"
+    return ""

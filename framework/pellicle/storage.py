@@ -265,7 +265,8 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
                 f"{path}: schema version {version}, and this pellicle reads 1 to {SCHEMA_VERSION}; "
                 f"read it with what wrote it ({known['versions']}), or run it again"
             )
-        json.loads(known["configuration"])
+        if not isinstance(json.loads(known["configuration"]), dict):
+            raise ValueError("its configuration is not a table")
         if kind == "result" and "axes" in known:
             raise StorageError(
                 f"{path}: the table of a study, not a result; open it with xarray, or give one "

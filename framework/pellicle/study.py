@@ -182,7 +182,8 @@ def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[Run
     made = []
     for point in study.points:
         identity = point.run.identity
-        place = Place(directory / "runs", identity[:16], point.run.to_json(), identity, overwrite)
+        said = point.run.to_json(as_given=True)
+        place = Place(directory / "runs", identity[:16], said, identity, overwrite)
         made.append(RunTask(point.name, point.run, place, point.place, _by_run(named)))
     return made
 
@@ -208,7 +209,7 @@ def _carry_out(
 ) -> Carried:
     import xarray as xr
 
-    place = Place(directory, "study", study.to_json(), overwrite=overwrite)
+    place = Place(directory, "study", study.to_json(as_given=True), overwrite=overwrite)
     outputs = [o for o in standard_outputs(study.points[0].run.outputs) if o.draws_studies]
     for output in outputs:
         output.open(place)
@@ -301,7 +302,10 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
         There is none, or it cannot be read.
     """
     whole = path / "study.h5" if path.is_dir() else path
-    return storage.table(whole), whole.parent
+    made = storage.table(whole)
+    if problem := table.damage(made):
+        raise StorageError(f"{whole}: {problem}, so it is damaged; run the study again")
+    return made, whole.parent
 
 
 def is_table(path: Path) -> bool:

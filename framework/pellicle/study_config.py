@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Self
 
@@ -23,7 +23,8 @@ from .errors import ConfigError, Problem, shown
 from .expression import CONSTANTS, FUNCTIONS, evaluate
 from .fields import FromRegistry, json_schema
 from .loading import ON_DEMAND
-from .model import Model, paths_relative_to, replaced
+from .model import AS_GIVEN, Model, paths_relative_to, replaced
+from .model import as_given as path_as_given
 from .plugins import registry
 from .units import quantity_of, split
 
@@ -285,15 +286,19 @@ class Study(Model):
             raise ConfigError("a study is a JSON object with the keys grid, kernel, …, study")
         return cls.from_mapping(data)
 
-    def to_json(self) -> str:
-        """Return the study as JSON of the form of a study file; ranges are lists, paths absolute.
+    def to_json(self, *, as_given: bool = False) -> str:
+        """Return the study as JSON of the form of a study file; ranges are lists.
 
-        Values are as they were given.
+        Values are as they were given; paths of files to read are absolute, or as they were given.
         """
+        path_text = path_as_given if as_given else str
         run = self.points[0].run
         vary, *zipped = (
             {
-                key: [_said(value, _reach(of, key)) for value, of in self._along(key, values)]
+                key: [
+                    _said(value, _reach(of, key), path_text)
+                    for value, of in self._along(key, values)
+                ]
                 for key, values in table.items()
             }
             for table in (self.vary, *self.zip)
@@ -301,7 +306,9 @@ class Study(Model):
         study = {"vary": vary, "zip": zipped, "derived": self.derived}
         kept = {name: value for name, value in study.items() if value}
         executor = self.executor.model_dump(mode="json", exclude_none=True)
-        said = {key: _said(value, getattr(run, key, None)) for key, value in self.run.items()}
+        said = {
+            key: _said(value, getattr(run, key, None), path_text) for key, value in self.run.items()
+        }
         return json.dumps({**said, "study": {"executor": executor, **kept}}, ensure_ascii=False)
 
     def to_toml(self) -> str:
@@ -453,16 +460,19 @@ def _reach(at: Any, key: str) -> Any:
     return at
 
 
-def _said(value: Any, made: Any) -> Any:
+def _said(value: Any, made: Any, path_text: Callable[[Path], str] = str) -> Any:
     """Return a value as JSON has it; ``made`` is what became of it."""
     if isinstance(value, Model):
-        return value.model_dump(mode="json", exclude_none=True)
+        context = AS_GIVEN if path_text is path_as_given else None
+        return value.model_dump(mode="json", exclude_none=True, context=context)
     if isinstance(made, Path):
-        return str(made)
+        return path_text(made)
     if isinstance(value, Mapping):
-        return {name: _said(inner, _reach(made, name)) for name, inner in value.items()}
+        return {name: _said(inner, _reach(made, name), path_text) for name, inner in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_said(inner, _reach(made, str(index))) for index, inner in enumerate(value)]
+        return [
+            _said(inner, _reach(made, str(index)), path_text) for index, inner in enumerate(value)
+        ]
     if hasattr(value, "tolist"):
         return value.tolist()
     return value if isinstance(value, (str, int, float, bool)) else str(value)
@@ -487,7 +497,7 @@ def _one(held: Any, given: Any) -> Any:
     several = isinstance(held, tuple) and held and len(set(map(str, held))) == 1
     if several and not isinstance(given, (list, tuple, Mapping)):
         return held[0]
-    return str(held) if isinstance(held, Path) else held
+    return path_as_given(held) if isinstance(held, Path) else held
 
 
 def _unit_of(run: Run, key: str) -> str | None:

@@ -15,6 +15,7 @@ from .dataset import header
 from .provenance import now_with
 from .status import Status
 from .study_config import Study
+from .text_files import for_document
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,9 +27,9 @@ class Table:
     def __init__(self, study: Study) -> None:
         self._study = study
         self._attributes = {
-            "title": study.points[0].run.title,
+            "title": for_document(study.points[0].run.title),
             "configuration": study.to_json(),
-            FIRST_RUN: study.points[0].run.to_json(),
+            FIRST_RUN: study.points[0].run.to_json(as_given=True),
             "axes": json.dumps({name: list(axes) for name, axes in study.dimensions.items()}),
             **now_with(point.run for point in study.points),
         }
@@ -98,6 +99,28 @@ _COUNTS = ("iterations", "operator_applications", "patches")
 def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any, np.dtype[Any]]:
     """Return a copy, in whole numbers where they count something and none is missing."""
     return values.astype(int) if name in _COUNTS and np.isfinite(values).all() else values.copy()
+
+
+def damage(table: xr.Dataset) -> str:
+    """Return what keeps a dataset from being the table of a study."""
+    texts = {*_TEXTS, "run"}
+    numbers = any(variable.dtype.kind in "fiu" for variable in table.data_vars.values())
+    expected = {*texts, "converged"} if numbers else texts
+    if missing := expected - {*map(str, table.data_vars)}:
+        return f"lacks {', '.join(sorted(missing))}"
+    for name, variable in table.data_vars.items():
+        kinds = "UO" if name in texts else "b" if name == "converged" else "fiub"
+        if variable.dtype.kind not in kinds:
+            return f"has {name} of type {variable.dtype}"
+    if unknown := {*table["status_code"].values.ravel()} - {"", *Status.__members__}:
+        return f"has the status_code {min(map(str, unknown))!r}"
+    try:
+        inputs = [json.loads(table.attrs[name]) for name in ("configuration", "axes", FIRST_RUN)]
+    except (LookupError, TypeError, ValueError):
+        inputs = []
+    if not inputs or not all(isinstance(it, dict) for it in (*inputs, inputs[0].get("study"))):
+        return "does not say which study it is of"
+    return ""
 
 
 def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:

@@ -1,8 +1,9 @@
-"""Text files of strangers, in whatever encoding an editor or an instrument wrote them."""
+"""Texts of strangers: files in any encoding, and characters that no document may hold."""
 
 from __future__ import annotations
 
 import codecs
+import re
 from pathlib import Path
 
 # The longer marks first: that of UTF-32 begins with that of UTF-16.
@@ -13,6 +14,15 @@ _MARKS = {
     codecs.BOM_UTF16_LE: "utf-16",
     codecs.BOM_UTF16_BE: "utf-16",
 }
+
+
+# Neither XML nor HTML allows them; line feeds and tabs it does.
+_NOT_IN_DOCUMENTS = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+
+
+def for_document(text: str) -> str:
+    """Return a text with a replacement character for each that no document may hold."""
+    return _NOT_IN_DOCUMENTS.sub("\ufffd", text)
 
 
 def read_text(path: Path) -> str:

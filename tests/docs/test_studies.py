@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +13,10 @@ from blocks import ROOT
 from typer.testing import CliRunner
 
 from pellicle.cli import app
-from pellicle.study_config import from_toml
+from pellicle.study_config import Study, from_toml
 from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.analytic.axisymmetric_indenters import Paraboloid
+from pellicle_plugins.outputs.compliance import of_cells_along_x
 
 STUDIES = ROOT / "docs/studies"
 RADIUS, MODULUS, DEPTH = 1e-3, 10e3, 50e-6
@@ -66,6 +68,19 @@ def test_fig2_cells_have_the_symbol(tmp_path: Path) -> None:
         s = float(name.split()[2]) * 1e-6
         np.testing.assert_allclose(symbol, 2 / (MODULUS * (q + s * q**2)), rtol=1e-12)
         np.testing.assert_allclose(cells, symbol, rtol=0.05 + s / 5e-3)
+
+
+def test_fig2_agreement_is_what_the_page_says() -> None:
+    """On the grid of the file the largest difference, over the range named, is the figure given."""
+    text = (ROOT / "docs/paper.md").read_text(encoding="utf-8")
+    (said,) = re.findall(r"a twelfth of the highest they agree within ([\d.]+) %", text)
+    largest = 0.0
+    for point in Study.from_toml(STUDIES / "fig2.toml").points:
+        q, cells = of_cells_along_x(point.run)
+        used = slice(9, int(np.searchsorted(q, q[-1] / 12, "right")))
+        symbol = point.run.kernel.compliance(q[used])
+        largest = max(largest, float(np.abs(cells[used] / symbol - 1).max()))
+    assert f"{100 * largest:.2f}" == said
 
 
 def test_fig3_the_correction_helps_on_every_grid(tmp_path: Path) -> None:

@@ -9,6 +9,8 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from pellicle.text_files import for_document
+
 
 def print_table(
     names: list[str], rows: list[dict[str, str]], heads: dict[str, str] | None = None
@@ -18,7 +20,8 @@ def print_table(
     for name in names:
         table.add_column((heads or {}).get(name, name), overflow="fold")
     for row in rows:
-        table.add_row(*(row[name] for name in names))
+        # A terminal obeys some control characters.
+        table.add_row(*(for_document(row[name]) for name in names))
     # Into a pipe nothing is cut or folded.
     console = Console(markup=False, highlight=False)
     if not console.is_terminal:

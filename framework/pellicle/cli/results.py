@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from pellicle.text_files import for_document
+
 from .exits import NOT_CONVERGED
 from .printing import print_table, print_warning
 
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 def print_origin(data: xr.Dataset) -> None:
     """Print where a result comes from."""
     for name in ("title", "date", "versions"):
-        typer.echo(f"{name + ':':10}{data.attrs.get(name, '')}")
+        typer.echo(f"{name + ':':10}{for_document(str(data.attrs.get(name, '')))}")
 
 
 def print_steps(result: Result) -> None:

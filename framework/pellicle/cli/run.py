@@ -63,7 +63,7 @@ def _print_plan(made: Run | Study, folder: Path, name: str, overwrite: bool) -> 
     if isinstance(made, Study):
         planned = list(plan(tasks(made, folder, overwrite=overwrite)))
     else:
-        place = Place(folder, name, made.to_json(), made.identity, overwrite)
+        place = Place(folder, name, made.to_json(as_given=True), made.identity, overwrite)
         planned = list(plan([RunTask(made.title or name, made, place)]))
     rows = []
     for task, done, problem in planned:
@@ -95,7 +95,7 @@ def _run_one(
     from pellicle.orchestrator import execute, standard_outputs
     from pellicle.progress import Progress
 
-    place = Place(folder, name, made.to_json(), made.identity, overwrite)
+    place = Place(folder, name, made.to_json(as_given=True), made.identity, overwrite)
     bar = Progress(len(made.loading.values), not quiet)
     try:
         done = execute(made, place, standard_outputs(made.outputs), bar, threads=threads)

@@ -13,6 +13,8 @@ from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, ClassVar
 
+from pellicle.text_files import for_document
+
 from .maps import Field, Frame, Maps, frame, side
 
 if TYPE_CHECKING:
@@ -165,6 +167,10 @@ def _template() -> Template:
     from jinja2 import Environment, StrictUndefined
 
     environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=lambda value: for_document(value) if type(value) is str else value,
     )
     return environment.from_string(_part("page.html"))

@@ -22,7 +22,8 @@ class Paraboloid(Indenter):
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return −(x² + y²)/2R [m]."""
-        return -(x**2 + y**2) / (2 * self.radius)
+        # Twice the largest radii would be infinite, and the paraboloid flat.
+        return -(x**2 + y**2) / 2 / self.radius
 
     @property
     def depth_limit(self) -> float:

@@ -22,7 +22,7 @@ class Quadric(Indenter):
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return −(x²/2R_x + y²/2R_y) [m]."""
-        return -(x**2 / (2 * self.radius_x) + y**2 / (2 * self.radius_y))
+        return -(x**2 / 2 / self.radius_x + y**2 / 2 / self.radius_y)
 
 
 @hookimpl

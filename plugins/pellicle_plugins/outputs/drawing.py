@@ -19,7 +19,7 @@ from pellicle.components import Output, Place
 from pellicle.errors import ConfigError, StorageError
 from pellicle.expression import evaluate
 from pellicle.model import nearest
-from pellicle.plotting import axis_unit, save_figure
+from pellicle.plotting import axis_unit, save_figure, without_round_off
 from pellicle.result import Result
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ def _step_of(runs: Runs, picked: xr.Dataset) -> xr.Dataset | None:
     except StorageError:
         return None
     number = int(picked["step"].item())
-    return run.sel(step=number) if number in run["step"] else None
+    return without_round_off(run.sel(step=number)) if number in run["step"] else None
 
 
 def label(template: str | None, data: xr.Dataset, dim: str | None) -> str:

@@ -33,7 +33,14 @@ from pellicle.page import (
     side,
 )
 from pellicle.page import Field as Shown
-from pellicle.plotting import FIGURES, STUDY_FIGURES, axis_unit, study_curves, svg
+from pellicle.plotting import (
+    FIGURES,
+    STUDY_FIGURES,
+    axis_unit,
+    study_curves,
+    svg,
+    without_round_off,
+)
 from pellicle.result import Result
 from pellicle.status import Status
 from pellicle.study import coarse, each_run, failures, reasons, standing
@@ -47,6 +54,7 @@ FIELDS = {
     "gap": Shown("gap", "m", "Blues", power=0.5),
 }
 """What is mapped, by the name of its variable."""
+_MEASURED = "pressure", "displacement", "gap", "contact"
 _EFFORT = ("iterations", "operator_applications", "wall_time")
 _WORDS = ("status", "converged", "run")
 _CURVES = {
@@ -89,7 +97,7 @@ class Html(Output):
     def close(self, place: Place, result: Result) -> tuple[Path, ...]:
         """Write the page of a run."""
         data = result.dataset
-        said = result.configuration
+        said = json.loads(place.configuration)
         sections = [
             Section("Status", [_status(result)]),
             Section("Results", _steps(data)),
@@ -135,7 +143,7 @@ class Html(Output):
         points = side(self.points, len(chosen) * len(FIELDS))
         made = []
         for index in chosen:
-            step = data.isel(step=index)
+            step = without_round_off(data.isel(step=index))
             label = f"{index + 1}: depth {step['depth'].item() * factor:.4g} {unit}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
             made.append(frame(label, grid, [step[name].values for name in FIELDS], points))
@@ -144,6 +152,8 @@ class Html(Output):
 
     def _frames_of_runs(self, runs: list[xr.Dataset], folder: Path) -> Iterator[tuple[int, Frame]]:
         """Yield the maps of the last step of runs, by their place among all."""
+        import xarray as xr
+
         there = [index for index, row in enumerate(runs) if standing(row)[0]]
         chosen = self._chosen(len(there))
         points = side(self.points, len(chosen) * len(FIELDS))
@@ -152,11 +162,16 @@ class Html(Output):
             path = folder / f"{row['run'].item()}.h5"
             last = standing(row)[0] - 1
             try:
-                attributes, fields = storage.fields(path, tuple(FIELDS), last)
+                attributes, fields = storage.fields(path, _MEASURED, last)
             except StorageError:
                 continue
             grid = Grid(**json.loads(attributes["configuration"])["grid"])
-            yield index, frame(_named(row), grid, fields, points)
+            step = xr.Dataset(
+                {name: (("x", "y"), field) for name, field in zip(_MEASURED, fields, strict=True)},
+                attrs=attributes,
+            ).assign(depth=row["depth"][last])
+            drawn = without_round_off(step)
+            yield index, frame(_named(row), grid, [drawn[name].values for name in FIELDS], points)
 
     def _chosen(self, count: int) -> list[int]:
         """Return which of so many are mapped: all, or evenly spaced ones up to the last."""
@@ -378,7 +393,8 @@ def _reproduce(place: Place) -> Iterator[Code]:
     yield Code(tomli_w.dumps(json.loads(place.configuration)), "All that was asked, in SI.", name)
     yield Code(
         f"pellicle run {shlex.quote(name)} -o {shlex.quote(folder)}",
-        "With that file in the current folder:",
+        "With that file in the current folder, and files that it names where their paths say; what "
+        "they hold is compared with its hash where there is one:",
     )
 
 

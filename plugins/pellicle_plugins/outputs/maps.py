@@ -11,9 +11,8 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.columns import Runs, names
+from pellicle.columns import Runs, as_array
 from pellicle.components import Output
-from pellicle.expression import evaluate
 from pellicle.plotting import axis_unit, extent, save_figure
 
 from .drawing import Drawing, scaled
@@ -46,7 +45,11 @@ class Maps(Drawing):
 
         panels = []
         for name, run in self.steps(runs):
-            values, _ = xr.broadcast(evaluate(self.field, names(run)), run["contact"])
+            # In arithmetic truth values are numbers; alone they stay what they are.
+            field = run.get(self.field.strip())
+            if field is None or field.dtype != bool:
+                field = as_array(self.field, run)
+            values, _ = xr.broadcast(field, run["contact"])
             panels.append((name, run, values))
         across = min(max(len(panels), 1), _COLUMNS)
         down = ceil(max(len(panels), 1) / across)

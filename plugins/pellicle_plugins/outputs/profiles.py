@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.columns import Runs, names
+from pellicle.columns import Runs, as_array
 from pellicle.components import Output
-from pellicle.expression import evaluate
 from pellicle_plugins.analytic.twin import exact_line
 
 from .drawing import Graph, Reference, scaled, set_scales
@@ -84,8 +83,7 @@ class Profiles(Graph):
         """Return x and y along a line, each with a value for every point."""
         import xarray as xr
 
-        known = names(line)
-        x, y = (evaluate(text, known) for text in (self.x or self.along, self.y))
+        x, y = (as_array(text, line) for text in (self.x or self.along, self.y))
         x, y = (xr.DataArray(0.0 * line[self.along] + each, attrs=each.attrs) for each in (x, y))
         return x, y
 

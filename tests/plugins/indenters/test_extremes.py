@@ -29,7 +29,8 @@ def _run(indenter: pl.Indenter | dict[str, Any]) -> pl.Result:
     [
         {"type": "sphere", "radius": 1e308},
         {"type": "flat_punch", "radius": 1e308},
-        {"type": "paraboloid", "radius": 1e307},
+        {"type": "paraboloid", "radius": 1e308},
+        {"type": "quadric", "radius_x": 1e308, "radius_y": 1e308},
         {"type": "paraboloid", "radius": 5e-324},
         {"type": "paraboloid", "radius": 1e-308},
         {"type": "quadric", "radius_x": 1e-308, "radius_y": 1.0},

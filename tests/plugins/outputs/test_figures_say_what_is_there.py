@@ -1,0 +1,159 @@
+"""Figures and pages draw what is there: contact in black and white, full contact without a gap."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Any
+
+import matplotlib.image
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle.cli import app
+from pellicle.page import Section, Text, page
+from pellicle.plotting import save_figure, svg, without_round_off
+
+RUN: dict[str, Any] = {
+    "grid": {"points": 16, "size": "1 mm", "boundary": "periodic"},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "10 mN/m"},
+    "indenter": {
+        "type": "self_affine",
+        "rms_height": "1 um",
+        "hurst": 0.8,
+        "cutoff_wavelength": "0.2 mm",
+        "roll_off_wavelength": "0.5 mm",
+        "seed": 3,
+    },
+    "loading": {"mean_pressure": ["40 Pa", "10 kPa"]},
+}
+CONTROL = "a\x00b\x1b[1mc\x07\x9f\ufffe --> d"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a run whose second step is full contact."""
+    folder = tmp_path_factory.mktemp("full")
+    outputs = [
+        {"type": "hdf5"},
+        {"type": "html"},
+        {"type": "maps", "field": "contact", "by": "step"},
+        {"type": "maps", "field": "contact + 0", "by": "step", "name": "number"},
+        {"type": "profiles", "y": "gap", "by": "step"},
+    ]
+    pl.run({**RUN, "outputs": outputs}, directory=folder, progress=False, threads=1)
+    return folder
+
+
+def _colours(path: Path) -> np.ndarray:
+    """Return how far the pixels of a figure are from grey."""
+    return np.ptp(matplotlib.image.imread(path)[..., :3], axis=-1)
+
+
+def test_contact_is_drawn_black_on_white(folder: Path) -> None:
+    """A field of truth values has no colours and no bar; in arithmetic it is a number with both."""
+    assert _colours(folder / "run-maps.png").max() < 0.02
+    assert _colours(folder / "run-number.png").max() > 0.5
+    image = matplotlib.image.imread(folder / "run-maps.png")[..., 0]
+    contact = pl.load(folder / "run.h5").dataset["contact"].mean().item()
+    assert (image < 0.1).mean() > contact / 4
+    assert (image > 0.9).mean() > (1 - contact) / 4
+
+
+def test_round_off_is_no_gap(folder: Path) -> None:
+    """In full contact figures, their numbers and pages show a gap of 0; results keep what it is."""
+    result = pl.load(folder / "run.h5")
+    part, full = (result.dataset.isel(step=step) for step in (0, 1))
+    assert full["contact"].all()
+    assert 0 < abs(full["gap"]).max() < 1e-13
+    assert not without_round_off(full)["gap"].any()
+    opened = part["gap"].values > 1e-8
+    assert opened.sum() > 50
+    assert (without_round_off(part)["gap"].values[opened] == part["gap"].values[opened]).all()
+    with (folder / "run-profiles.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert {float(row["y"]) for row in rows if row["curve"] == "step = 1"} == {0.0}
+    assert max(float(row["y"]) for row in rows) > 1e-7
+    assert _gaps(folder / "run.html")[1] == (0.0, 0.0)
+    assert _gaps(folder / "run.html")[0][1] > 0
+
+
+def _gaps(path: Path) -> list[tuple[float, float]]:
+    """Return the lowest and the highest gap of each frame of a page."""
+    text = path.read_text(encoding="utf-8")
+    (data,) = re.findall(r'<script type="application/json">(.*?)</script>', text, re.DOTALL)
+    fields = [frame["fields"][1] for frame in json.loads(data)["frames"]]
+    return [(field["low"], field["high"]) for field in fields]
+
+
+def test_round_off_is_no_gap_in_a_study(tmp_path: Path) -> None:
+    """The page of a study draws the last steps of its runs, where they are full contact, closed."""
+    study = {**RUN, "outputs": [{"type": "html"}], "study": {"vary": {"kernel.tension": [0, 0.01]}}}
+    pl.run_study(study, tmp_path, progress=False)
+    assert _gaps(tmp_path / "study.html") == [(0.0, 0.0), (0.0, 0.0)]
+
+
+@pytest.mark.parametrize(
+    "output",
+    [
+        {"type": "curves", "x": "x"},
+        {"type": "curves", "y": "pressure"},
+        {"type": "curves", "x": "depth", "y": ["force", "contact"]},
+    ],
+)
+def test_curves_of_fields_say_what_to_write(output: dict[str, Any], tmp_path: Path) -> None:
+    """A field has no value for a step: the message names the functions that make one of it."""
+    with pytest.raises(
+        pl.ConfigError,
+        match=r"^outputs\.0: .* a value for each cell, .* inside mean, sum, min, max",
+    ):
+        pl.run({**RUN, "outputs": [output]}, directory=tmp_path, progress=False)
+
+
+@pytest.mark.parametrize(
+    "output", [{"type": "maps", "field": "1"}, {"type": "profiles", "y": "2", "x": "depth"}]
+)
+def test_bare_numbers_are_drawn(output: dict[str, Any], tmp_path: Path) -> None:
+    """An expression without a variable is the same everywhere."""
+    pl.run({**RUN, "outputs": [output]}, directory=tmp_path, progress=False)
+    assert (tmp_path / f"run-{output['type']}.png").stat().st_size > 0
+
+
+def test_control_characters_stay_out_of_figures_and_pages(tmp_path: Path) -> None:
+    """Whatever a label holds, SVG is XML, and a page holds nothing that HTML forbids."""
+
+    def draw(figure: Any) -> None:
+        axes = figure.add_subplot()
+        axes.plot([0, 1], label=CONTROL)
+        axes.set(title=CONTROL, xlabel=CONTROL)
+        axes.legend()
+
+    (path,) = save_figure(draw, tmp_path / "a", ["svg"])
+    for content in (svg(draw), path.read_bytes()):
+        ET.fromstring(content)
+    text = page(CONTROL, [Section(CONTROL, [Text(CONTROL)])])
+    assert not re.search("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ufffe]", text)
+    assert "--&gt; d" in text
+
+
+def test_control_characters_in_a_title_do_no_harm(tmp_path: Path) -> None:
+    """A result is kept, which no file could be with NUL in it, and a terminal is told nothing."""
+    outputs = [{"type": "hdf5"}, {"type": "figures", "formats": ["svg"]}]
+    run = pl.Run(**RUN, title=CONTROL, outputs=outputs)
+    pl.run(run, directory=tmp_path, progress=False)
+    for path in tmp_path.glob("*.svg"):
+        ET.parse(path)
+    (path,) = tmp_path.glob("*.h5")
+    assert json.loads(pl.load(path).dataset.attrs["configuration"])["title"] == CONTROL
+    shown = CliRunner().invoke(app, ["show", str(path)])
+    assert shown.exit_code == 0
+    assert shown.stdout.startswith("title:    a\ufffdb\ufffd[1mc\ufffd")
+    (tmp_path / "a.toml").write_text(run.to_toml(), encoding="utf-8")
+    planned = CliRunner().invoke(app, ["run", str(tmp_path / "a.toml"), "--dry-run"])
+    assert planned.exit_code == 0
+    assert "\x1b" not in planned.stdout
