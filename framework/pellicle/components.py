@@ -31,6 +31,7 @@ from pydantic import BeforeValidator, Field
 
 from . import storage
 from .checks import whole_number
+from .grid import Grid
 from .model import Model
 from .operators import Array
 from .problem import Problem
@@ -140,6 +141,18 @@ class HasForceCurve(Protocol):
 
         Smooth and rising in depth and length.  ``depth`` [m] is of shape (n,), ``length`` ≥ 0 is
         the elastocapillary length s = 2τ₀/E* [m].
+        """
+        ...
+
+
+@runtime_checkable
+class HasMemory(Protocol):
+    """A solver that states its memory; the estimate before a run uses it."""
+
+    def arrays(self, grid: Grid) -> float:
+        """Return the number of arrays of the grid's shape that a solve holds at its peak.
+
+        Arrays of eight bytes a cell, beside operator and indenter.
         """
         ...
 

@@ -134,7 +134,7 @@ def execute(
     """
     import scipy.fft
 
-    memory.require(run.grid, len(run.loading.values))
+    memory.require(run.grid, len(run.loading.values), run.solver)
     steps = Steps(len(run.loading.values))
     files: list[Path] = []
     with scipy.fft.set_workers(threads or _cores()), bar, ExitStack() as stack:

@@ -55,7 +55,7 @@ class RunTask:
     @property
     def memory(self) -> int:
         """Memory that the run takes at its peak [bytes], estimated."""
-        return int(min(memory.estimate(self.run.grid, self.steps), sys.maxsize))
+        return int(min(memory.estimate(self.run.grid, self.steps, self.run.solver), sys.maxsize))
 
     @property
     def steps(self) -> int:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pellicle import hookimpl
 from pellicle.components import IterativeSolver, Solver
+from pellicle.grid import Grid
 from pellicle.operators import Array
 from pellicle.problem import Problem, height_scale
 
@@ -87,6 +88,10 @@ class ConjugateGradient(IterativeSolver):
             _open_gap(problem, state, contact_changed=False)
             residual = max(state.inside, state.outside) / state.scale
         return residual
+
+    def arrays(self, grid: Grid) -> float:
+        """Return the seven arrays of the state, the contact, and what changes the displacement."""
+        return 8.5
 
     def pressure(self, state: _State) -> Array:
         """Return the pressure of a state."""

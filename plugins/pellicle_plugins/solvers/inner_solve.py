@@ -103,11 +103,14 @@ def inner_solve(
             wrong = signs.certain(pressed, displacement, goal, direction, change)
             if wrong is not None:
                 break
+        # On a large contact each of these is as large as the grid.
+        del change, inside
         ascent = search(residual)
         before, descent = descent, dot(residual, ascent)
         # The direction was multiplied by its step length.
         direction *= curvature / before * (descent / before)
         direction += ascent
+        del ascent
     # The gap is computed next, and the result.
     del residual, direction, whole
     if wrong is None:
@@ -173,7 +176,9 @@ class _Search:
         if not self._keeps_force:
             return self._preconditioner(residual)
         # The mean has no effect but on round-off: single precision must not spend its digits on it.
-        direction = self._preconditioner(residual - self.mean(residual))
+        # In the preconditioner's precision, it takes half of the memory there.
+        closing = (residual - self.mean(residual)).astype(np.float32)
+        direction = self._preconditioner(closing)
         direction -= self._lift * float(direction.sum())
         return direction
 

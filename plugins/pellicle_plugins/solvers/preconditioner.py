@@ -128,7 +128,7 @@ class OnContact:
         self._stiffen = stiffen
         self._given = np.zeros(extension.shape, dtype=np.float32)
 
-    def __call__(self, residual: Array) -> Array:
+    def __call__(self, residual: Array | Field) -> Array:
         """Return the preconditioned residual; both have one value for each cell of `cells`."""
         return self._gathered(self._stiffen(self._spread(residual)))
 
