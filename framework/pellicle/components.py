@@ -31,7 +31,7 @@ from pydantic import Field
 from . import storage
 from .model import Model
 from .operators import Array
-from .problem import Problem
+from .problem import Problem, round_off
 from .result import Result, Solution, Stop
 from .units import Quantity
 
@@ -40,6 +40,9 @@ if TYPE_CHECKING:
 
 Monitor = Callable[[int, float], None]
 """Called by a solver with its iteration and its residual over the tolerance, to show progress."""
+
+# Residuals of an iteration that has gone as far as rounding lets it, over that of an application.
+_ROUNDINGS = 30.0
 
 Outcome = TypeVar("Outcome")
 Footprint = Literal["unbounded", "domain"]
@@ -233,7 +236,8 @@ class IterativeSolver(Solver):
             elif residual <= self.tolerance:
                 stop = Stop.DONE
             elif iteration - best_at >= patience:
-                stop = Stop.STALLED
+                at_rounding = residual <= _ROUNDINGS * round_off(problem, self.pressure(state))
+                stop = Stop.ROUND_OFF if at_rounding else Stop.STALLED
             elif iteration >= self.max_iterations:
                 stop = Stop.ITERATION_LIMIT
             else:

@@ -5,9 +5,10 @@ Convention: û(q) = G(q) p̂(q), displacement u positive into the solid, transfo
 
 from __future__ import annotations
 
+import copy
 import math
 from abc import ABC, abstractmethod
-from typing import Any, Protocol, TypeVar, runtime_checkable
+from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
 import numpy as np
 import scipy.fft
@@ -73,28 +74,73 @@ class Operator(ABC):
 
     fixes_mean: bool
     """Whether a uniform pressure has a displacement; if not, the mean displacement is zero."""
+    _symbol: _Symbol
 
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
         self.kernel = kernel
         self.grid = grid
-        self.applications = 0
+        # `scaled` operators count together.
+        self._count = [0]
+        # Powers of two, so that no digit changes.
+        self._factor = 1.0
+
+    @property
+    def applications(self) -> int:
+        """Number of times that it has been applied, `scaled` or not."""
+        return self._count[0]
+
+    @property
+    def unit(self) -> float:
+        """The power of two next below the greatest compliance of any wave [m/Pa]."""
+        return self._symbol.unit * self._factor
+
+    def scaled(self, factor: float) -> Self:
+        """Return the operator times ``factor``, a power of two; it shares all arrays with this one.
+
+        With 1/`unit` it is near 1, which single precision cannot do without: a compliance in m/Pa
+        may be below the numbers that it has.
+        """
+        scaled = copy.copy(self)
+        scaled._factor = self._factor * factor
+        return scaled
+
+    def coarsened(self) -> Operator:
+        """Return the operator of the same kernel on `Grid.coarsened`, as `scaled` as this one.
+
+        Raises
+        ------
+        ConfigError
+            The kernel cannot work on the coarser grid.
+        """
+        return make_operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) [m/Pa] of the kernel, as `scaled` as the operator."""
+        return np.asarray(self.kernel.compliance(q) * self._factor, dtype=np.float64)
 
     def __call__(self, pressure: NDArray[Float]) -> NDArray[Float]:
         """Return the displacement [m], a new array, for a pressure [Pa].
 
         A pressure in single precision is worked on in single precision, in half of the time.
         """
-        self.applications += 1
-        return np.asarray(self._apply(pressure), dtype=pressure.dtype)
+        self._count[0] += 1
+        displacement = np.asarray(self._apply(pressure), dtype=pressure.dtype)
+        if (unit := self.unit) != 1:
+            displacement *= unit
+        return displacement
 
     @abstractmethod
-    def _apply(self, pressure: NDArray[Any]) -> object: ...
+    def _apply(self, pressure: NDArray[Any]) -> object:
+        """Return the displacement over `unit`, a new array."""
 
 
 class _Symbol:
-    """The transform of an operator, which is real, in both precisions."""
+    """The transform of an operator, which is real, over its unit, in both precisions."""
 
     def __init__(self, values: Array) -> None:
+        greatest = float(np.abs(values).max())
+        self.unit = 2.0 ** (math.frexp(greatest)[1] - 1) if greatest else 1.0
+        values /= self.unit
         self._values: dict[str, NDArray[Any]] = {"D": values}
 
     def __getitem__(self, kind: str) -> NDArray[Any]:

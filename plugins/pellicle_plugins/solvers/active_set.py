@@ -10,16 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle import hookimpl
-from pellicle.components import IterativeSolver, Monitor, Solver
+from pellicle.components import Monitor, Solver
 from pellicle.errors import ConfigError
 from pellicle.operators import Array
-from pellicle.problem import Problem, height_scale
+from pellicle.problem import Problem
 from pellicle.transfer import prolong
 
 from .guess import first_guess, with_force
 from .inner_solve import Inner, inner_solve
 from .preconditioner import OnContact, Preconditioner
 from .relaxation import relaxed
+from .scaling import ScaledSolver
 
 # Coarse grids are solved to this share of the height range: with tension a smaller error than that
 # of the grid itself still moves the edge of the contact by several cells.
@@ -91,7 +92,7 @@ class _State:
         return with_force(self.problem, np.maximum(self.start, 0))
 
 
-class ActiveSet(IterativeSolver):
+class ActiveSet(ScaledSolver):
     """Solver whose operator applications hardly grow with the grid or with the tension.
 
     The contact is guessed on a coarser grid; an inner solve finds the pressure, of either sign,
@@ -158,8 +159,12 @@ class ActiveSet(IterativeSolver):
     ) -> Array:
         """Return the pressure per depth [Pa/m] under a flat punch, by the same inner solves."""
         profile = np.where(contact, 0.0, -np.inf)
-        flat = replace(problem, profile=profile, prescribed="depth", value=1.0)
-        preconditioner = Preconditioner(problem.operator).on(contact)
+        unit = 1 / problem.operator.unit
+        operator = problem.operator.scaled(unit)
+        flat = replace(
+            problem, operator=operator, profile=profile, prescribed="depth", value=1.0
+        )
+        preconditioner = Preconditioner(operator).on(contact)
         goal = self.tolerance / 2
         pressure, displacement = np.zeros(problem.grid.shape), np.zeros(problem.grid.shape)
         error, before, iteration = 1.0, np.inf, 0
@@ -169,10 +174,10 @@ class ActiveSet(IterativeSolver):
             pressure = inner_solve(
                 flat, preconditioner, pressure, displacement, goal, doubt=np.inf
             ).pressure
-            displacement = problem.operator(pressure)
+            displacement = operator(pressure)
             error, before = float(np.abs(1.0 - displacement[contact]).max()), error
             iteration += 1
-        return pressure
+        return pressure * unit
 
     def _cold_start(self, problem: Problem) -> Array:
         if max(problem.grid.shape) > _COARSEST:
@@ -241,7 +246,7 @@ def _measured(
         start=start,
         displacement=displacement,
         on_contact=on_contact,
-        scale=height_scale(problem.profile, pressed, depth),
+        scale=problem.height_scale(pressed, depth, float(start.sum())),
         error=max(inside, -float(gap.min(initial=0.0))),
         preconditioner=preconditioner,
         history=history,

@@ -191,5 +191,5 @@ def edges(grid: Grid) -> tuple[float, float]:
 def _stiffness_orders(operator: Operator, levels: int) -> list[float]:
     """Return α ≥ 0, the stiffness being k ~ q^α at the cells of each level, the finest first."""
     q = np.pi / max(edges(operator.grid)) * 0.5 ** np.arange(levels + 1, dtype=np.float64)
-    stiffness = 1 / operator.kernel.compliance(q)
+    stiffness = 1 / operator.compliance(q)
     return [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]
