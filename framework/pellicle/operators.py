@@ -90,8 +90,13 @@ class Operator(ABC):
         return self._count[0]
 
     @property
+    def greatest(self) -> float:
+        """Greatest compliance of any wave [m/Pa]."""
+        return self._symbol.greatest * self._factor
+
+    @property
     def unit(self) -> float:
-        """The power of two next below the greatest compliance of any wave [m/Pa]."""
+        """The power of two next below `greatest` [m/Pa]; 1 if that is 0."""
         return self._symbol.unit * self._factor
 
     def scaled(self, factor: float) -> Self:
@@ -138,8 +143,8 @@ class _Symbol:
     """The transform of an operator, which is real, over its unit, in both precisions."""
 
     def __init__(self, values: Array) -> None:
-        greatest = float(np.abs(values).max())
-        self.unit = 2.0 ** (math.frexp(greatest)[1] - 1) if greatest else 1.0
+        self.greatest = float(np.abs(values).max())
+        self.unit = 2.0 ** (math.frexp(self.greatest)[1] - 1) if self.greatest else 1.0
         values /= self.unit
         self._values: dict[str, NDArray[Any]] = {"D": values}
 

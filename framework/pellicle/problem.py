@@ -62,7 +62,7 @@ class Problem:
         """
         wave = 0.0
         if self.is_rigid(contact):
-            wave = self.operator.unit * total / contact.size
+            wave = self.operator.greatest * total / contact.size
         return height_scale(self.profile, contact, depth, wave)
 
     def coarsened(self) -> Problem:

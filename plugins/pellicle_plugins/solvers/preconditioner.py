@@ -51,6 +51,11 @@ class Preconditioner:
         self._orders = orders[: levels if joins else min(levels, _HALVINGS)]
         self._stretch = stretch_of(*edges(grid))
 
+    @property
+    def stiffest(self) -> float:
+        """Stiffness of the stiffest wave [Pa/m]."""
+        return self._stiffness.greatest
+
     @cached_property
     def settling(self) -> Stiffness:
         """K on the grid itself as if it were periodic; see `relaxed`."""

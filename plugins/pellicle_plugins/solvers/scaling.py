@@ -36,9 +36,9 @@ class ScaledSolver(IterativeSolver):
 def height_unit(problem: Problem) -> float:
     """Return a power of two near the heights [m] that decide the contact.
 
-    At a depth that is how far the indenter reaches below the undeformed surface. Under a force it is
-    the geometric mean of its height range and of the displacement that the force would have as the
-    most compliant wave, so that either may be much smaller than the other.
+    At a depth that is how far the indenter reaches below the undeformed surface. Under a force it
+    is the geometric mean of its height range and of the displacement that the force would have as
+    the most compliant wave, so that either may be much smaller than the other.
     """
     if problem.prescribed == "depth":
         return 2.0 ** _exponent(problem.value + float(problem.profile.max()))
