@@ -20,6 +20,8 @@ Cells = NDArray[np.int64]
 
 # Without a margin, contact at the edge of a free domain couples across it.
 _FREE_MARGIN: Final = 1.25
+# A row of cells this many times as long across as along yields as in plane strain.
+_SLENDER: Final = 8
 # The extension's plane is rounded up to what can be halved as often as this.
 _HALVINGS: Final = 6
 
@@ -40,7 +42,7 @@ class Preconditioner:
             self._plane = grid.shape
             self._padded = _round_up(grid.shape)
         else:
-            self._plane = self._padded = _free_shape(grid.shape)
+            self._plane = self._padded = _free_shape(grid)
         self._stiffness = Stiffness(operator, self._plane)
         levels = _levels(self._padded)
         orders = _stiffness_orders(operator, levels + 1)
@@ -161,10 +163,15 @@ class OnContact:
         return there[:number]
 
 
-def _free_shape(shape: tuple[int, int]) -> tuple[int, int]:
+def _free_shape(grid: Grid) -> tuple[int, int]:
+    """Return the cells of the plane of E on a free boundary, those of a margin included."""
     multiple = 2**_HALVINGS
+    lengths = grid.spacing
     nx, ny = (
-        multiple * scipy.fft.next_fast_len(int(np.ceil(_FREE_MARGIN * n / multiple))) for n in shape
+        1
+        if n == 1 and across > _SLENDER * along
+        else multiple * scipy.fft.next_fast_len(int(np.ceil(_FREE_MARGIN * n / multiple)))
+        for n, across, along in zip(grid.shape, lengths, lengths[::-1], strict=True)
     )
     return nx, ny
 
