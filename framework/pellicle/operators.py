@@ -169,10 +169,10 @@ class PeriodicOperator(Operator):
         # An incompressible layer has no mean displacement either.
         self.fixes_mean = 0 < mean < math.inf
         symbol = np.empty(q.shape)
+        symbol.ravel()[1:] = _checked(kernel.compliance(q.ravel()[1:]))
         # The first wavenumber is 0.
         symbol.ravel()[0] = 0.0 if mean == math.inf else mean
-        symbol.ravel()[1:] = kernel.compliance(q.ravel()[1:])
-        self._symbol = _Symbol(_checked(symbol))
+        self._symbol = _Symbol(symbol)
 
     def _apply(self, pressure: NDArray[Any]) -> object:
         transform = scipy.fft.rfft2(pressure)
@@ -193,10 +193,10 @@ class FreeOperator(Operator):
         cells = cell_coefficients(
             kernel.greens_function, kernel.radial_primitive, grid.shape, grid.spacing
         )
-        if not np.isfinite(cells).all():
+        if not (np.isfinite(cells).all() and cells[0, 0] > 0):
             raise ConfigError(
-                "displacements are NaN or infinite; check the parameters, or the formula if the "
-                "kernel is yours",
+                "displacements are NaN, infinite or nowhere positive, maybe beyond the numbers "
+                "that a computer has; check the parameters, or the formula if the kernel is yours",
                 "kernel",
             )
         finest = float(kernel.compliance(np.array([np.pi / min(grid.spacing)]))[0])
@@ -239,9 +239,11 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
     ConfigError
         The kernel cannot work on this boundary, or its values are not finite and positive.
     """
-    if grid.boundary == "periodic":
-        return PeriodicOperator(kernel, grid)
-    return FreeOperator(_in_real_space(kernel, grid), grid)
+    # Overflow of a formula shows in its values, which are looked at.
+    with np.errstate(all="ignore"):
+        if grid.boundary == "periodic":
+            return PeriodicOperator(kernel, grid)
+        return FreeOperator(_in_real_space(kernel, grid), grid)
 
 
 def _in_real_space(kernel: HasCompliance, grid: Grid) -> HasClosedForm:
@@ -298,10 +300,11 @@ def _wrap(cells: Array, padded: tuple[int, ...]) -> Array:
 
 
 def _checked(values: Array) -> Array:
-    if not (np.isfinite(values).all() and (values >= 0).all()):
+    if not (np.isfinite(values).all() and (values > 0).all()):
         raise ConfigError(
-            "the compliance has values that are negative, NaN or infinite; check the parameters, "
-            "or the formula if the kernel is yours",
+            "the compliance has values that are not positive, NaN or infinite, maybe beyond the "
+            "numbers that a computer has; check the parameters, or the formula if the kernel is "
+            "yours",
             "kernel",
         )
     return values

@@ -12,8 +12,10 @@ from pellicle.operators import Array
 from pellicle.problem import Problem
 from pellicle.result import Solution
 
-# Exponents of the units: their squares and ratios are numbers that a computer has.
-_LARGEST = 500
+# Greatest exponent of a unit: what is greater than that by 2^100 is still a number.
+_LARGEST = 900
+# Exponent of what is still a number in single precision, and its square in double.
+_FAR = 100
 
 
 class ScaledSolver(IterativeSolver):
@@ -28,7 +30,9 @@ class ScaledSolver(IterativeSolver):
         height = height_unit(problem)
         pressure = height / problem.operator.unit
         scaled = problem.scaled(height, pressure)
-        before = None if start is None else start / pressure
+        # Of a pressure beyond all that this step can have, squares are no numbers any more.
+        known = start is not None and float(start.max()) / pressure < 2.0**_FAR
+        before = start / pressure if start is not None and known else None
         solution = super().solve(scaled, before, monitor)
         return replace(solution, pressure=solution.pressure * pressure)
 
@@ -46,7 +50,11 @@ def height_unit(problem: Problem) -> float:
     moved = _exponent(problem.value) + _exponent(problem.operator.unit)
     moved -= _exponent(problem.grid.cell_area) + _exponent(float(problem.profile.size))
     reach = float(np.ptp(finite)) if finite.size else 0.0
-    return 2.0 ** _within((_exponent(reach) + moved) // 2 if reach else moved)
+    if not reach:
+        return 2.0 ** _within(moved)
+    heights = _exponent(reach)
+    # Single precision goes to 2^127.
+    return 2.0 ** _within(max((heights + moved) // 2, heights - _FAR, moved - _FAR))
 
 
 def _exponent(value: float) -> int:
