@@ -34,7 +34,7 @@ from .checks import whole_number
 from .grid import Grid
 from .model import Model
 from .operators import Array
-from .problem import Problem
+from .problem import Problem, round_off
 from .result import Result, Solution, Stop
 from .units import Quantity
 
@@ -55,6 +55,8 @@ Workers = Annotated[
     BeforeValidator(partial(whole_number, unit="workers"), json_schema_input_type=_Count),
 ]
 """A number of workers ≥ 1, likewise."""
+# Residuals of an iteration that has gone as far as rounding lets it, over that of an application.
+_ROUNDINGS = 30.0
 
 Outcome = TypeVar("Outcome")
 Footprint = Literal["unbounded", "domain"]
@@ -260,7 +262,8 @@ class IterativeSolver(Solver):
             elif residual <= self.tolerance:
                 stop = Stop.DONE
             elif iteration - best_at >= patience:
-                stop = Stop.STALLED
+                at_rounding = residual <= _ROUNDINGS * round_off(problem, self.pressure(state))
+                stop = Stop.ROUND_OFF if at_rounding else Stop.STALLED
             elif iteration >= self.max_iterations:
                 stop = Stop.ITERATION_LIMIT
             else:

@@ -5,10 +5,11 @@ Convention: û(q) = G(q) p̂(q), displacement u positive into the solid, transfo
 
 from __future__ import annotations
 
+import copy
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Any, Protocol, TypeVar, runtime_checkable
+from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
 import numpy as np
 import scipy.fft
@@ -103,41 +104,82 @@ class Operator(ABC):
 
     fixes_mean: bool
     """Whether a uniform pressure has a displacement; if not, the mean displacement is zero."""
-
     _symbol: _Symbol
 
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
         self.kernel = kernel
         self.grid = grid
-        self._applications = 0
+        # `scaled` operators count together.
+        self._count = [0]
+        # Powers of two, so that no digit changes.
+        self._factor = 1.0
 
     @property
     def applications(self) -> int:
-        """How often it was applied."""
-        return self._applications
+        """Number of times that it has been applied, `scaled` or not."""
+        return self._count[0]
+
+    @property
+    def greatest(self) -> float:
+        """Greatest compliance of any wave [m/Pa]."""
+        return self._symbol.greatest * self._factor
+
+    @property
+    def unit(self) -> float:
+        """The power of two next below `greatest` [m/Pa]; 1 if that is 0."""
+        return self._symbol.unit * self._factor
+
+    def scaled(self, factor: float) -> Self:
+        """Return the operator times ``factor``, a power of two; it shares all arrays with this one.
+
+        With 1/`unit` it is near 1, which single precision cannot do without: a compliance in m/Pa
+        may be below the numbers that it has.
+        """
+        scaled = copy.copy(self)
+        scaled._factor = self._factor * factor
+        return scaled
+
+    def coarsened(self) -> Operator:
+        """Return the operator of the same kernel on `Grid.coarsened`, as `scaled` as this one.
+
+        Raises
+        ------
+        ConfigError
+            The kernel cannot work on the coarser grid.
+        """
+        return make_operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) [m/Pa] of the kernel, as `scaled` as the operator."""
+        return np.asarray(self.kernel.compliance(q) * self._factor, dtype=np.float64)
 
     def parts(self) -> dict[str, object]:
         """Return what it consists of, by which a change is noticed."""
-        parts = {**vars(self), "class": type(self), "symbol": self._symbol.double}
-        del parts["_applications"]
-        return parts
+        return {**vars(self), "class": type(self), "symbol": self._symbol["D"]}
 
     def __call__(self, pressure: NDArray[Float]) -> NDArray[Float]:
         """Return the displacement [m], a new array, for a pressure [Pa].
 
         A pressure in single precision is worked on in single precision, in half of the time.
         """
-        self._applications += 1
-        return np.asarray(self._apply(pressure), dtype=pressure.dtype)
+        self._count[0] += 1
+        displacement = np.asarray(self._apply(pressure), dtype=pressure.dtype)
+        if (unit := self.unit) != 1:
+            displacement *= unit
+        return displacement
 
     @abstractmethod
-    def _apply(self, pressure: NDArray[Any]) -> object: ...
+    def _apply(self, pressure: NDArray[Any]) -> object:
+        """Return the displacement over `unit`, a new array."""
 
 
 class _Symbol:
-    """The transform of an operator, which is real, in both precisions."""
+    """The transform of an operator, which is real, over its unit, in both precisions."""
 
     def __init__(self, values: Array) -> None:
+        self.greatest = float(np.abs(values).max())
+        self.unit = 2.0 ** (math.frexp(self.greatest)[1] - 1) if self.greatest else 1.0
+        values /= self.unit
         self.double = read_only(values)
         self._single: NDArray[np.float32] | None = None
 
@@ -199,10 +241,10 @@ class FreeOperator(Operator):
             grid.shape,
             grid.spacing,
         )
-        if not np.isfinite(cells).all():
+        if not (np.isfinite(cells).all() and cells[0, 0] > 0):
             raise ConfigError(
-                "displacements are NaN or infinite; check the parameters, or the formula if the "
-                "kernel is yours",
+                "displacements are NaN, infinite or nowhere positive, maybe beyond the numbers "
+                "that a computer has; check the parameters, or the formula if the kernel is yours",
                 "kernel",
             )
         compliance = checked_call(kernel, "compliance")
@@ -255,9 +297,11 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
         real numbers of the argument's shape, grows for ever shorter waves, or its closed form
         contradicts its compliance.
     """
-    if grid.boundary == "periodic":
-        return PeriodicOperator(kernel, grid)
-    return FreeOperator(_in_real_space(kernel, grid), grid)
+    # Overflow of a formula shows in its values, which are looked at.
+    with np.errstate(all="ignore"):
+        if grid.boundary == "periodic":
+            return PeriodicOperator(kernel, grid)
+        return FreeOperator(_in_real_space(kernel, grid), grid)
 
 
 def _in_real_space(kernel: HasCompliance, grid: Grid) -> HasClosedForm:
@@ -347,8 +391,8 @@ def _positive(kernel: HasCompliance, q: Array, values: Array) -> Array:
     if wrong.size:
         raise ConfigError(
             f"compliance(q) of {component_name(kernel)} is {values[wrong[0]]:.3g} m/Pa at q = "
-            f"{q[wrong[0]]:.3g} rad/m; it has to be positive and finite; check the parameters, or "
-            "the formula if the kernel is yours",
+            f"{q[wrong[0]]:.3g} rad/m; it has to be positive and finite; check the parameters, "
+            "which may lead beyond the numbers of a computer, or the formula if the kernel is yours",
             "kernel",
         )
     return values

@@ -9,11 +9,13 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from .grid import Grid
-from .operators import Array, Operator, make_operator
+from .operators import Array, Operator
 from .transfer import restrict
 
 # An indenter that is flat over the contact has no height range there to measure by.
 _FLAT = 1e-3
+# Heights below this share of a displacement are lost in its rounding.
+_ROUNDING = 1e-13
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,20 @@ class Problem:
         """Whether no force more on ``contact`` makes it sink: full contact that keeps its mean."""
         return bool(contact.all()) and not self.operator.fixes_mean
 
+    def height_scale(
+        self, contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]], depth: float, total: float
+    ) -> float:
+        """Return the length [m] by which gaps are judged; ``total`` is the sum of pressures [Pa].
+
+        The indenter's height range in contact, or the depth where it is flat there. Neither is more
+        than rounding where a flat indenter fills a periodic domain whose mean stays: then it is the
+        displacement that the mean pressure would have as the most compliant wave.
+        """
+        wave = 0.0
+        if self.is_rigid(contact):
+            wave = self.operator.greatest * total / contact.size
+        return height_scale(self.profile, contact, depth, wave)
+
     def coarsened(self) -> Problem:
         """Return the same problem with half as many cells each way.
 
@@ -57,12 +73,22 @@ class Problem:
         ConfigError
             The kernel cannot work on the coarser grid.
         """
-        grid = self.grid.coarsened()
+        operator = self.operator.coarsened()
+        grid = operator.grid
+        return replace(
+            self, grid=grid, operator=operator, profile=restrict(self.profile, grid.shape)
+        )
+
+    def scaled(self, height: float, pressure: float) -> Problem:
+        """Return the same problem with heights in units of ``height`` [m], both powers of two.
+
+        Its pressures are in units of ``pressure`` [Pa]; the lengths of the grid stay in m.
+        """
         return replace(
             self,
-            grid=grid,
-            operator=make_operator(self.operator.kernel, grid),
-            profile=restrict(self.profile, grid.shape),
+            operator=self.operator.scaled(pressure / height),
+            profile=self.profile / height,
+            value=self.value / (height if self.prescribed == "depth" else pressure),
         )
 
 
@@ -104,7 +130,7 @@ def measure(problem: Problem, pressure: Array) -> Equilibrium:
     # Without pressure the lowest point just touches, wherever between the cells it is.
     depth = problem.depth(aloft[contact] if total else np.zeros(1))
     gap = aloft - depth
-    scale = height_scale(problem.profile, contact, depth)
+    scale = problem.height_scale(contact, depth, total)
     inside = np.abs(gap[contact])
     missed = abs(force - problem.value) if problem.prescribed == "force" else 0.0
     return Equilibrium(
@@ -123,17 +149,36 @@ def measure(problem: Problem, pressure: Array) -> Equilibrium:
 
 
 def height_scale(
-    profile: Array, contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]], depth: float
+    profile: Array,
+    contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]],
+    depth: float,
+    wave: float = 0.0,
 ) -> float:
     """Return the length [m] by which gaps are judged: the indenter's height range in contact.
 
-    Where the indenter is flat over the contact (a punch, a single cell) it is the depth.
+    Where the indenter is flat over the contact (a punch, a single cell) it is the depth, or
+    ``wave`` [m] if that is greater, of which the range and the depth may be the rounding.
     """
     heights = profile[contact]
-    if heights.size and (in_contact := float(np.ptp(heights))) > _FLAT * abs(depth):
+    in_contact = float(np.ptp(heights)) if heights.size else 0.0
+    if in_contact > max(_FLAT * abs(depth), _ROUNDING * wave):
         return in_contact
     indenter = profile[np.isfinite(profile)]
-    return abs(depth) or float(np.ptp(indenter)) or 1.0
+    return max(abs(depth), wave) or float(np.ptp(indenter)) or 1.0
+
+
+def round_off(problem: Problem, pressure: Array) -> float:
+    """Return the rounding of a displacement over the height scale, by two applications.
+
+    It is what displacements differ by under one third of the pressure, times three: without
+    rounding they would be the same.
+    """
+    contact = pressure > 0
+    displacement = problem.operator(pressure)
+    rounded = float(np.abs(3 * problem.operator(pressure / 3) - displacement).max())
+    aloft = displacement - problem.profile
+    depth = problem.depth(aloft[contact] if contact.any() else np.zeros(1))
+    return rounded / problem.height_scale(contact, depth, float(pressure.sum()))
 
 
 class Stiffness(NamedTuple):

@@ -71,5 +71,9 @@ class Stop(Enum):
 
     DONE = "tighten the solver's own criterion"
     ITERATION_LIMIT = "the limit of iterations was reached: raise solver.max_iterations"
-    STALLED = "no progress any more: the tolerance is below round-off here, loosen solver.tolerance"
+    ROUND_OFF = "the tolerance is below round-off here: loosen solver.tolerance"
+    STALLED = (
+        "the solver makes no progress any more, and not because of round-off: try another solver, "
+        "another load, or cells that resolve the heights"
+    )
     NOT_FINITE = "the iteration met a value that is not finite"

@@ -21,6 +21,13 @@ def restrict(profile: Array, shape: tuple[int, int]) -> Array:
     return np.where(there, total / np.maximum(share, 1.0), -np.inf)
 
 
+def highest(profile: Array, shape: tuple[int, int]) -> Array:
+    """Return a profile [m] on a coarser grid: the highest of the cells that fall into each."""
+    for axis, coarse in enumerate(shape):
+        profile = np.maximum.reduceat(profile, _starts(profile.shape[axis], coarse), axis=axis)
+    return profile
+
+
 def prolong(pressure: Array, shape: tuple[int, int]) -> Array:
     """Return a pressure [Pa] on a finer grid: that of the cell in which each centre lies."""
     rows, columns = (
@@ -31,9 +38,13 @@ def prolong(pressure: Array, shape: tuple[int, int]) -> Array:
 
 def _gather(field: Array, shape: tuple[int, int]) -> Array:
     for axis, coarse in enumerate(shape):
-        parents = _parents(field.shape[axis], coarse)
-        field = np.add.reduceat(field, np.flatnonzero(np.diff(parents, prepend=-1)), axis=axis)
+        field = np.add.reduceat(field, _starts(field.shape[axis], coarse), axis=axis)
     return field
+
+
+def _starts(fine: int, coarse: int) -> NDArray[np.int64]:
+    """Return the first fine cell of each coarse one."""
+    return np.flatnonzero(np.diff(_parents(fine, coarse), prepend=-1))
 
 
 def _parents(fine: int, coarse: int) -> NDArray[np.int64]:

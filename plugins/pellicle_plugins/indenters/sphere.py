@@ -23,11 +23,14 @@ class Sphere(Indenter):
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return √(R² − x² − y²) − R [m], −inf beyond the equator."""
-        under_root = self.radius**2 - (x**2 + y**2)
-        inside = under_root >= 0
-        root = np.sqrt(under_root, where=inside, out=np.zeros_like(under_root))
+        square = x**2 + y**2
+        distance = np.sqrt(square)
+        inside = distance <= self.radius
+        # R² − r² as a product, which does not overflow.
+        root = np.sqrt(self.radius - distance, where=inside, out=np.zeros_like(distance))
+        root *= np.sqrt(self.radius + distance)
         # −r²/(R + root) instead of root − R, which cancels near the tip.
-        shape = -(x**2 + y**2) / (self.radius + root)
+        shape = -(square / self.radius) / (1 + root / self.radius)
         return np.where(inside, shape, -np.inf)
 
     @property

@@ -10,16 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle import hookimpl
-from pellicle.components import IterativeSolver, Monitor, Solver
+from pellicle.components import Monitor, Solver
 from pellicle.errors import ConfigError
 from pellicle.operators import Array
-from pellicle.problem import Problem, height_scale
-from pellicle.transfer import prolong
+from pellicle.problem import Problem
+from pellicle.transfer import highest, prolong
 
 from .guess import first_guess, with_force
 from .inner_solve import Inner, inner_solve
 from .preconditioner import OnContact, Preconditioner
 from .relaxation import relaxed
+from .scaling import ScaledSolver
 
 # Coarse grids are solved to this share of the height range: with tension a smaller error than that
 # of the grid itself still moves the edge of the contact by several cells.
@@ -35,7 +36,13 @@ _DOUBT: Final = 1.0
 _DEEP_DOUBT: Final = 30.0
 # Under a skin that bends a gap that has shrunk to this share is closed as the cells settle.
 _REDUCTION: Final = 0.1
-# Looks without progress after which round-off is taken to be all that is left of the error.
+# Cells of a coarser grid's contact that lie this share of the height range above the indenter, on a
+# surface rough at the size of a cell, are not in contact.
+_HANGING: Final = 0.4
+# Under a skin that bends a cell joins the contact if it penetrates by this share of the deepest:
+# one that joins lifts those around it.
+_DEEPEST: Final = 0.5
+# Outer iterations without progress after which the solve is abandoned.
 _PATIENCE: Final = 30
 # Where as many looks find no fewer cells wrong, cells are no longer left to settle together.
 _SETTLING: Final = 10
@@ -53,7 +60,7 @@ class History:
     """How often a contact came back; then `contacts` begins anew."""
 
     @property
-    def gets_on(self) -> bool:
+    def makes_progress(self) -> bool:
         """Whether the last look found fewer wrong cells than any before."""
         return len(self.contacts) <= 1 and self.returns == 0
 
@@ -82,6 +89,18 @@ class _State:
     """max(|gap| under pressure, penetration) of ``start`` [m]."""
     preconditioner: Preconditioner
     history: History
+    relaxes: bool
+    """Whether cells may settle together; not once that has led away from the solution."""
+
+    @property
+    def settles(self) -> bool:
+        """Whether cells settle together: bending decides, and the contact is nearly right."""
+        return self.preconditioner.bends and self.relaxes
+
+    @property
+    def is_close(self) -> bool:
+        """Whether the error is small against the height range."""
+        return self.error <= _CLOSE * self.scale
 
     @property
     def pressure(self) -> Array:
@@ -91,7 +110,7 @@ class _State:
         return with_force(self.problem, np.maximum(self.start, 0))
 
 
-class ActiveSet(IterativeSolver):
+class ActiveSet(ScaledSolver):
     """Solver whose operator applications hardly grow with the grid or with the tension.
 
     The contact is guessed on a coarser grid; an inner solve finds the pressure, of either sign,
@@ -111,30 +130,50 @@ class ActiveSet(IterativeSolver):
         preconditioner = Preconditioner(problem.operator)
         if start is not None and start.any():
             state = _measured(problem, start, preconditioner.on(start > 0), preconditioner)
-            if state.error <= _CLOSE * state.scale:
+            if state.is_close:
                 return state
-        start = self._cold_start(problem)
-        return _measured(problem, start, preconditioner.on(start > 0), preconditioner)
+        prolonged = self._prolonged(problem)
+        start = first_guess(problem) if prolonged is None else prolonged
+        state = _measured(problem, start, preconditioner.on(start > 0), preconditioner)
+        return state if prolonged is None else _without_hanging(problem, state)
 
     def step(self, problem: Problem, state: _State) -> _State:
         """Return the state after one inner solve and one look at the contact."""
         goal = self.tolerance / 2 * state.scale
-        # Loose solves are quick as long as they lead to fewer wrong cells.
-        loose = state.history.gets_on
-        found = inner_solve(
+        # Loose solves are quick as long as they lead to fewer wrong cells. Under a skin that bends
+        # they tell what settles, not yet which cells are wrong.
+        loose = state.history.makes_progress and (state.settles or not state.preconditioner.bends)
+        solved = inner_solve(
             problem,
             state.on_contact,
             state.start,
             state.displacement,
             goal,
             doubt=_DOUBT if loose else _DEEP_DOUBT,
-            reduction=_REDUCTION if loose and state.on_contact.bends else 0.0,
+            reduction=_REDUCTION if loose and state.settles else 0.0,
         )
-        history = state.history.after(state.on_contact.contact, found.wrong.size)
-        on_contact, start = _next(problem, state, found, history, goal)
+        history = state.history.after(state.on_contact.contact, solved.wrong.size)
+        if not solved.wrong.size:
+            return _after(problem, state, state.on_contact, solved.pressure, history)
+        if (
+            state.settles
+            and solved.pressure.any()
+            and history.returns == 0
+            and len(history.contacts) <= _SETTLING
+        ):
+            relaxed_state = _relaxed(problem, state, solved, history, goal)
+            if relaxed_state is not None and (
+                relaxed_state.is_close or relaxed_state.error <= state.error
+            ):
+                return relaxed_state
+            if relaxed_state is not None:
+                again = _after(problem, state, state.on_contact, solved.pressure, history)
+                return replace(again, relaxes=False)
+        on_changed = _changed(problem, state, solved, history)
+        pressure = on_changed.moved(solved.pressure)
         # Two arrays less while the next displacement is computed.
-        del found
-        return _measured(problem, start, on_contact, state.preconditioner, history)
+        del solved
+        return _after(problem, state, on_changed, pressure, history)
 
     def residual(self, problem: Problem, state: _State) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""
@@ -160,8 +199,10 @@ class ActiveSet(IterativeSolver):
     ) -> Array:
         """Return the pressure per depth [Pa/m] under a flat punch, by the same inner solves."""
         profile = np.where(contact, 0.0, -np.inf)
-        flat = replace(problem, profile=profile, prescribed="depth", value=1.0)
-        preconditioner = Preconditioner(problem.operator).on(contact)
+        unit = 1 / problem.operator.unit
+        operator = problem.operator.scaled(unit)
+        flat = replace(problem, operator=operator, profile=profile, prescribed="depth", value=1.0)
+        preconditioner = Preconditioner(operator).on(contact)
         goal = self.tolerance / 2
         pressure, displacement = np.zeros(problem.grid.shape), np.zeros(problem.grid.shape)
         error, before, iteration = 1.0, np.inf, 0
@@ -171,56 +212,85 @@ class ActiveSet(IterativeSolver):
             pressure = inner_solve(
                 flat, preconditioner, pressure, displacement, goal, doubt=np.inf
             ).pressure
-            displacement = problem.operator(pressure)
+            displacement = operator(pressure)
             error, before = float(np.abs(1.0 - displacement[contact]).max()), error
             iteration += 1
-        return pressure
+        return pressure * unit
 
-    def _cold_start(self, problem: Problem) -> Array:
-        if max(problem.grid.shape) > _COARSEST:
-            try:
-                coarse = problem.coarsened()
-            except ConfigError:
-                # A thin incompressible layer is rigid under cells much wider than it is thick.
-                return first_guess(problem)
-            if coarse.touches:
-                tolerance = max(self.tolerance, _COARSE_TOLERANCE)
-                solver = self.model_copy(update={"tolerance": tolerance})
-                found = solver.solve(coarse, None, lambda iteration, excess: None)
-                pressure = prolong(found.pressure, problem.grid.shape)
-                # A coarse cell may hang over the rim of the indenter.
-                pressure *= np.isfinite(problem.profile)
-                if pressure.any():
-                    return pressure
-        return first_guess(problem)
+    def _prolonged(self, problem: Problem) -> Array | None:
+        """Return the pressure [Pa] solved for on a coarser grid, None if that tells nothing."""
+        if max(problem.grid.shape) <= _COARSEST:
+            return None
+        try:
+            coarse = problem.coarsened()
+        except ConfigError:
+            # A thin incompressible layer is rigid under cells much wider than it is thick.
+            return None
+        if not coarse.touches:
+            # The indenter touches with less than half of each coarse cell.
+            coarse = replace(coarse, profile=highest(problem.profile, coarse.grid.shape))
+        tolerance = max(self.tolerance, _COARSE_TOLERANCE)
+        solver = self.model_copy(update={"tolerance": tolerance})
+        solution = solver.solve(coarse, None, lambda iteration, residual_ratio: None)
+        pressure = prolong(solution.pressure, problem.grid.shape)
+        # A coarse cell may hang over the rim of the indenter.
+        pressure *= np.isfinite(problem.profile)
+        return pressure if pressure.any() else None
 
 
-def _next(
-    problem: Problem, state: _State, found: Inner, history: History, margin: float
-) -> tuple[OnContact, Array]:
-    """Return the contact to try next and what to start from on it [Pa].
+def _without_hanging(problem: Problem, state: _State) -> _State:
+    """Return the state of a coarser grid's pressure without the cells that hang over the indenter.
+
+    Where heights change from cell to cell, a coarser grid's contact covers pits as well.
+    """
+    contact = state.on_contact.contact
+    gap = state.displacement - problem.profile
+    gap -= problem.depth(gap[contact])
+    hangs = gap > _HANGING * state.scale
+    hangs &= gap * state.preconditioner.stiffest > state.start
+    kept = contact & ~hangs
+    if not kept.any() or kept.sum() == contact.sum():
+        return state
+    on_kept = state.preconditioner.on(kept)
+    return _after(problem, state, on_kept, on_kept.moved(state.start), state.history)
+
+
+def _relaxed(
+    problem: Problem, state: _State, solved: Inner, history: History, margin: float
+) -> _State | None:
+    """Return the state once cells have settled together, None if nothing presses then.
 
     Cells penetrate where they do by more than ``margin`` [m].
     """
-    if not found.wrong.size:
-        return state.on_contact, found.pressure
-    preconditioner, contact = state.preconditioner, state.on_contact.contact
-    if (
-        preconditioner.bends
-        and found.pressure.any()
-        and history.returns == 0
-        and len(history.contacts) <= _SETTLING
-    ):
-        settled, forces = relaxed(problem, preconditioner.settling, state.on_contact, found, margin)
-        on_settled = preconditioner.on(settled)
-        start = on_settled.moved(forces)
-        if start.sum() > 0:
-            return on_settled, start
-    one = history.returns > (1 if preconditioner.bends else 0)
+    preconditioner = state.preconditioner
+    contact, forces = relaxed(problem, preconditioner.settling, state.on_contact, solved, margin)
+    on_contact = preconditioner.on(contact)
+    start = on_contact.moved(forces)
+    return _after(problem, state, on_contact, start, history) if start.sum() > 0 else None
+
+
+def _changed(problem: Problem, state: _State, solved: Inner, history: History) -> OnContact:
+    """Return the contact once the wrong cells have changed sides, or one of them in a cycle."""
+    contact, wrong, bends = state.on_contact.contact, solved.wrong, state.preconditioner.bends
+    if history.returns > (1 if bends else 0):
+        wrong = wrong[:1]
+    elif bends:
+        gap = solved.displacement - problem.profile
+        gap -= problem.depth(gap[contact])
+        joins = ~contact.ravel()[wrong]
+        deepest = float(gap.ravel()[wrong].min(initial=0.0, where=joins))
+        wrong = wrong[~joins | (gap.ravel()[wrong] <= _DEEPEST * deepest)]
     changed = contact.copy()
-    changed.ravel()[found.wrong[: 1 if one else None]] ^= True
-    on_changed = preconditioner.on(changed)
-    return on_changed, on_changed.moved(found.pressure)
+    changed.ravel()[wrong] ^= True
+    return state.preconditioner.on(changed)
+
+
+def _after(
+    problem: Problem, state: _State, on_contact: OnContact, start: Array, history: History
+) -> _State:
+    """Return the state after ``state`` with another pressure [Pa] and contact."""
+    measured = _measured(problem, start, on_contact, state.preconditioner, history)
+    return replace(measured, relaxes=state.relaxes)
 
 
 def _measured(
@@ -243,10 +313,11 @@ def _measured(
         start=start,
         displacement=displacement,
         on_contact=on_contact,
-        scale=height_scale(problem.profile, pressed, depth),
+        scale=problem.height_scale(pressed, depth, float(start.sum())),
         error=max(inside, -float(gap.min(initial=0.0))),
         preconditioner=preconditioner,
         history=history,
+        relaxes=True,
     )
 
 

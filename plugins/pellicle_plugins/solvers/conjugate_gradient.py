@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle import hookimpl
-from pellicle.components import IterativeSolver, Solver
+from pellicle.components import Solver
 from pellicle.grid import Grid
 from pellicle.operators import Array
-from pellicle.problem import Problem, height_scale
+from pellicle.problem import Problem
 
 from .guess import first_guess, with_force
 from .products import dot
+from .scaling import ScaledSolver
 
 # Contact is added only where penetration is at least this share of the error inside.
 _PROPORTION = 0.3
@@ -50,7 +51,7 @@ class _State:
     """Penetration outside the contact [m]."""
 
 
-class ConjugateGradient(IterativeSolver):
+class ConjugateGradient(ScaledSolver):
     """Polonsky & Keer 1999 for a force, Pohrt & Li 2014 for a depth.
 
     Departures from the papers: (1) the displacement is updated by the recurrence u ← u − τ A t and
@@ -168,7 +169,8 @@ def _open_gap(problem: Problem, state: _State, *, contact_changed: bool) -> None
     np.subtract(gap, inner_gap, out=state.scratch)
     state.outside = -float(state.scratch.min(initial=0.0))
     if contact_changed:
-        state.scale = height_scale(problem.profile, state.contact, depth)
+        total = float(state.pressure.sum())
+        state.scale = problem.height_scale(state.contact, depth, total)
 
 
 def _add(state: _State, length: float) -> bool:

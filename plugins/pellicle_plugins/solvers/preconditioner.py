@@ -20,6 +20,8 @@ Cells = NDArray[np.int64]
 
 # Without a margin, contact at the edge of a free domain couples across it.
 _FREE_MARGIN: Final = 1.25
+# A row of cells this many times as long across as along yields as in plane strain.
+_SLENDER: Final = 8
 # The extension's plane is rounded up to what can be halved as often as this.
 _HALVINGS: Final = 6
 
@@ -40,7 +42,7 @@ class Preconditioner:
             self._plane = grid.shape
             self._padded = _round_up(grid.shape)
         else:
-            self._plane = self._padded = _free_shape(grid.shape)
+            self._plane = self._padded = _free_shape(grid)
         self._stiffness = Stiffness(operator, self._plane)
         levels = _levels(self._padded)
         orders = _stiffness_orders(operator, levels + 1)
@@ -50,6 +52,11 @@ class Preconditioner:
         joins = self.bends and grid.boundary == "periodic"
         self._orders = orders[: levels if joins else min(levels, _HALVINGS)]
         self._stretch = stretch_of(*edges(grid))
+
+    @property
+    def stiffest(self) -> float:
+        """Stiffness of the stiffest wave [Pa/m]."""
+        return self._stiffness.greatest
 
     @cached_property
     def settling(self) -> Stiffness:
@@ -130,7 +137,9 @@ class OnContact:
 
     def __call__(self, residual: Array | Field) -> Array:
         """Return the preconditioned residual; both have one value for each cell of `cells`."""
-        return self._gathered(self._stiffen(self._spread(residual)))
+        # A power of two changes no digit, and keeps small residuals in single precision.
+        size = float(np.ldexp(1.0, np.frexp(np.abs(residual).max())[1]))
+        return self._gathered(self._stiffen(self._spread(residual / size))) * size
 
     def extended(self, values: Array | Field) -> Field:
         """Return E of one value for each cell of `cells`; of the grid's shape."""
@@ -170,10 +179,15 @@ class OnContact:
         return there[:number]
 
 
-def _free_shape(shape: tuple[int, int]) -> tuple[int, int]:
+def _free_shape(grid: Grid) -> tuple[int, int]:
+    """Return the cells of the plane of E on a free boundary, those of a margin included."""
     multiple = 2**_HALVINGS
+    lengths = grid.spacing
     nx, ny = (
-        multiple * scipy.fft.next_fast_len(int(np.ceil(_FREE_MARGIN * n / multiple))) for n in shape
+        1
+        if n == 1 and across > _SLENDER * along
+        else multiple * scipy.fft.next_fast_len(int(np.ceil(_FREE_MARGIN * n / multiple)))
+        for n, across, along in zip(grid.shape, lengths, lengths[::-1], strict=True)
     )
     return nx, ny
 
@@ -205,5 +219,5 @@ def edges(grid: Grid) -> tuple[float, float]:
 def _stiffness_orders(operator: Operator, levels: int) -> list[float]:
     """Return α ≥ 0, the stiffness being k ~ q^α at the cells of each level, the finest first."""
     q = np.pi / max(edges(operator.grid)) * 0.5 ** np.arange(levels + 1, dtype=np.float64)
-    stiffness = 1 / operator.kernel.compliance(q)
+    stiffness = 1 / operator.compliance(q)
     return [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]

@@ -29,7 +29,7 @@ class Stiffness:
         q = np.hypot(*plane.wavenumbers())
         # At q = 0 half of the lowest stiffness keeps K positive.
         q[0, 0] = 2 * np.pi / max(plane.size)
-        stiffness = 1 / operator.kernel.compliance(q)
+        stiffness = 1 / operator.compliance(q)
         stiffness[0, 0] /= 2
         self.shape = shape
         self.greatest = float(stiffness.max())

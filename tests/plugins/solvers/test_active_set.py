@@ -534,14 +534,14 @@ def test_history_counts_contacts_that_come_back_until_fewer_are_wrong() -> None:
     assert again.after(~first, 4).returns == 0
 
 
-def test_history_gets_on_until_no_fewer_are_wrong() -> None:
+def test_history_makes_progress_until_no_fewer_are_wrong() -> None:
     """As long as each contact has fewer wrong cells than any before."""
     first, second = np.eye(4, dtype=bool), np.eye(4, dtype=bool)[::-1]
-    assert History().gets_on
-    assert History().after(first, 5).after(second, 4).gets_on
-    assert not History().after(first, 5).after(second, 5).gets_on
-    assert not History().after(first, 5).after(first, 5).gets_on
-    assert History().after(first, 5).after(second, 5).after(~first, 4).gets_on
+    assert History().makes_progress
+    assert History().after(first, 5).after(second, 4).makes_progress
+    assert not History().after(first, 5).after(second, 5).makes_progress
+    assert not History().after(first, 5).after(first, 5).makes_progress
+    assert History().after(first, 5).after(second, 5).after(~first, 4).makes_progress
 
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)

@@ -13,7 +13,7 @@ are as much worse as A is ill-conditioned.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import brentq, nnls
 
-from pellicle import Grid, Problem, Solver, Stop
+from pellicle import Grid, Problem, Solution, Solver, Stop
 from pellicle.operators import Array, make_operator
 from pellicle.problem import height_scale, measure
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
@@ -129,7 +129,7 @@ def _profile(form: str, grid: Grid, random: np.random.Generator) -> Array:
     return np.asarray(heights - heights.max())
 
 
-def assert_solved(problem: Problem, solver: Solver) -> None:
+def assert_solved(problem: Problem, solver: Solver | InOtherUnits) -> None:
     """Assert that a solver finds what the programme finds."""
     solution = solver.solve(problem, None, lambda iteration, excess: None)
     assert solution.stop is Stop.DONE
@@ -166,3 +166,59 @@ def test_active_set(problem: Problem) -> None:
 def test_conjugate_gradient(problem: Problem) -> None:
     """On 100 random problems `conjugate_gradient` finds what the quadratic programme finds."""
     assert_solved(problem, ConjugateGradient(tolerance=TOLERANCE))
+
+
+@dataclass(frozen=True)
+class InOtherUnits:
+    """Solves a problem of unit length and modulus at other ones, and gives back its pressure."""
+
+    solver: Solver
+    length: float
+    """[m]"""
+    modulus: float
+    """[Pa]"""
+
+    def solve(self, problem: Problem, start: None, monitor: object) -> Solution:
+        """Return the pressure in units of the modulus."""
+        kernel = problem.operator.kernel
+        assert isinstance(kernel, TensedMembrane)
+        larger = kernel.model_copy(
+            update={
+                "reduced_modulus": self.modulus,
+                "tension": kernel.tension * self.modulus * self.length,
+            }
+        )
+        size = tuple(self.length * edge for edge in problem.grid.size)
+        grid = problem.grid.model_copy(update={"size": size})
+        of_force = self.modulus * self.length**2
+        scaled = replace(
+            problem,
+            grid=grid,
+            operator=make_operator(larger, grid),
+            profile=problem.profile * self.length,
+            value=problem.value * (self.length if problem.prescribed == "depth" else of_force),
+        )
+        solution = self.solver.solve(scaled, None, lambda iteration, residual_ratio: None)
+        return replace(solution, pressure=solution.pressure / self.modulus)
+
+
+UNITS = st.tuples(
+    st.floats(-15, 9).map(lambda exponent: 10.0**exponent),
+    st.floats(-6, 15).map(lambda exponent: 10.0**exponent),
+)
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(problem=problems(), units=UNITS)
+def test_active_set_on_any_length_and_modulus(problem: Problem, units: tuple[float, float]) -> None:
+    """On lengths of 1e-15 to 1e9 m and moduli of 1e-6 to 1e15 Pa it finds the same pressures."""
+    assert_solved(problem, InOtherUnits(ActiveSet(tolerance=TOLERANCE), *units))
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(problem=problems(), units=UNITS)
+def test_conjugate_gradient_on_any_length_and_modulus(
+    problem: Problem, units: tuple[float, float]
+) -> None:
+    """On lengths of 1e-15 to 1e9 m and moduli of 1e-6 to 1e15 Pa it finds the same pressures."""
+    assert_solved(problem, InOtherUnits(ConjugateGradient(tolerance=TOLERANCE), *units))

@@ -1,0 +1,194 @@
+"""The unit of length and of pressure changes neither the answer nor what it takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+from pellicle import Grid, Problem, Solver, Stop
+from pellicle.operators import make_operator
+from pellicle.problem import measure
+from pellicle_plugins.solvers.active_set import ActiveSet
+from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
+
+Boundary = Literal["free", "periodic"]
+Prescribed = Literal["depth", "force"]
+BOUNDARIES: list[Boundary] = ["free", "periodic"]
+POINTS = 32
+
+
+def kernels(length: float, modulus: float) -> dict[str, dict[str, Any]]:
+    """Return every kernel at a length [m] and a modulus [Pa]; their ratios stay."""
+    solid = {"reduced_modulus": modulus}
+    layer = solid | {"poissons_ratio": 0.3, "thickness": 0.2 * length}
+    tension = 0.05 * modulus * length
+    surface = {"poissons_ratio": 0.3, "surface_stiffness": 2 * tension, "tension": tension}
+    springs = {"type": "winkler", "foundation": modulus / length}
+    return {
+        "half_space": solid,
+        "tensed_membrane": solid | {"tension": tension},
+        "bending_skin": solid | {"tension": 0.0, "bending": 1e-5 * modulus * length**3},
+        "bonded_layer": layer,
+        "frictionless_layer": layer,
+        "gurtin_murdoch": solid | surface,
+        "winkler": {"foundation": modulus / length},
+        "coated": {"substrate": springs, "tension": tension},
+    }
+
+
+@dataclass(frozen=True)
+class Case:
+    """A paraboloid in units of the length, the modulus and the share of both that it is pressed."""
+
+    kernel: str
+    boundary: Boundary
+    prescribed: Prescribed
+    share: float = 1e-3
+
+    def problem(self, length: float, modulus: float) -> Problem:
+        """Return the problem in SI."""
+        grid = Grid(points=POINTS, size=length, boundary=self.boundary)
+        operator = make_operator(
+            pl.kernel(self.kernel, **kernels(length, modulus)[self.kernel]), grid
+        )
+        x, y = (axis / length for axis in grid.coordinates())
+        profile = -10 * self.share * (x**2 + y**2)
+        value = 0.4 * self.share * -float(profile.mean()) / self.share
+        if self.prescribed == "force":
+            value = 0.01 * self.share * modulus * length
+        return Problem(grid, operator, profile * length, self.prescribed, value * length)
+
+
+def solved(case: Case, solver: Solver, length: float, modulus: float) -> tuple[Any, ...]:
+    """Return applications, the relative force and depth, and the pressure over the modulus."""
+    problem = case.problem(length, modulus)
+    solution = solver.solve(problem, None, lambda iteration, residual_ratio: None)
+    applications = problem.operator.applications
+    assert solution.stop is Stop.DONE
+    found = measure(problem, solution.pressure)
+    assert max(found.residual_contact, found.residual_penetration) <= solver.tolerance
+    force = found.force / (modulus * length**2 * case.share)
+    return applications, force, found.depth / (length * case.share), solution.pressure / modulus
+
+
+SCALES = [(1e-15, 1e-6), (1e-12, 1e4), (1e-10, 1e15), (1e9, 1e15), (1e9, 1e-6)]
+SOLVERS: list[Solver] = [ActiveSet(), ConjugateGradient()]
+
+
+@pytest.mark.parametrize("solver", SOLVERS, ids=lambda solver: solver.type)
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+@pytest.mark.parametrize("prescribed", ["depth", "force"])
+@pytest.mark.parametrize("share", [1e-12, 1e-3])
+def test_a_contact_takes_the_same_in_every_unit(
+    solver: Solver, boundary: Boundary, prescribed: Prescribed, share: float
+) -> None:
+    """From 1e-15 to 1e9 m and 1e-6 to 1e15 Pa, also where the indenter is nearly flat."""
+    case = Case("tensed_membrane", boundary, prescribed, share)
+    applications, force, depth, pressure = solved(case, solver, 1.0, 1.0)
+    for length, modulus in SCALES:
+        there = solved(case, solver, length, modulus)
+        assert abs(there[0] - applications) <= 3
+        assert there[1:3] == pytest.approx((force, depth), rel=1e-7)
+        np.testing.assert_allclose(there[3], pressure, atol=1e-6 * pressure.max(), rtol=0)
+
+
+@pytest.mark.parametrize("kernel", kernels(1.0, 1.0))
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+def test_every_kernel_is_solved_in_every_unit(kernel: str, boundary: Boundary) -> None:
+    """The force of a depth scales as its dimension says, whatever the kernel."""
+    case = Case(kernel, boundary, "depth")
+    applications, force, depth, _ = solved(case, ActiveSet(), 1.0, 1.0)
+    for length, modulus in SCALES:
+        there = solved(case, ActiveSet(), length, modulus)
+        assert abs(there[0] - applications) <= 3
+        assert there[1:3] == pytest.approx((force, depth), rel=1e-6)
+
+
+@pytest.mark.parametrize("kernel", kernels(1.0, 1.0))
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+@pytest.mark.filterwarnings("ignore:grid.points")
+def test_displacements_scale_as_lengths(kernel: str, boundary: Boundary) -> None:
+    """The displacement over the domain depends on the pressure over the modulus alone."""
+    pressure = np.random.default_rng(0).uniform(size=(POINTS, POINTS))
+    expected = None
+    for length, modulus in [(1.0, 1.0), *SCALES]:
+        grid = Grid(points=POINTS, size=length, boundary=boundary)
+        made = pl.kernel(kernel, **kernels(length, modulus)[kernel])
+        share = pl.displacement(pressure * modulus, kernel=made, grid=grid) / length
+        expected = share if expected is None else expected
+        # Tables of kernels without a closed form are good to some 1e-9.
+        np.testing.assert_allclose(share, expected, rtol=0, atol=1e-8 * expected.max())
+
+
+@pytest.mark.parametrize("solver", SOLVERS, ids=lambda solver: solver.type)
+def test_stiffness_of_a_contact_scales_as_its_dimension(solver: Solver) -> None:
+    """The punch pressure per depth over modulus and length is the same number."""
+    contact = np.zeros((POINTS, POINTS), dtype=bool)
+    contact[9:22, 12:20] = True
+    expected = None
+    for length, modulus in [(1.0, 1.0), *SCALES]:
+        problem = Case("tensed_membrane", "free", "depth").problem(length, modulus)
+        pressure = solver.punch_pressure(problem, contact, lambda iteration, ratio: None)
+        share = pressure * (length / modulus)
+        expected = share if expected is None else expected
+        np.testing.assert_allclose(share, expected, rtol=0, atol=1e-6 * expected.max())
+
+
+@pytest.mark.parametrize("solver", SOLVERS, ids=lambda solver: solver.type)
+@pytest.mark.parametrize("value", [1e-30, 1e-200, 1e-300])
+@pytest.mark.parametrize("prescribed", ["depth", "force"])
+def test_a_load_just_above_nothing_is_solved(
+    solver: Solver, value: float, prescribed: Prescribed
+) -> None:
+    """A depth or a force far below all other lengths and forces touches with the lowest cell."""
+    grid = Grid(points=33, size=1.0, boundary="free")
+    operator = make_operator(pl.kernel("half_space", reduced_modulus=1.0), grid)
+    x, y = grid.coordinates()
+    problem = Problem(grid, operator, -(x**2 + y**2), prescribed, value)
+    solution = solver.solve(problem, None, lambda iteration, residual_ratio: None)
+    assert solution.stop is Stop.DONE
+    found = measure(problem, solution.pressure)
+    assert np.count_nonzero(found.contact) == 1
+    assert getattr(found, prescribed) == pytest.approx(value, rel=1e-8)
+
+
+def test_a_start_far_above_the_load_is_not_used() -> None:
+    """A step of 1e-200 m after one of 1e-2 m is solved as if it were the first."""
+    grid = Grid(points=33, size=1.0, boundary="free")
+    operator = make_operator(pl.kernel("half_space", reduced_modulus=1.0), grid)
+    x, y = grid.coordinates()
+    problem = Problem(grid, operator, -(x**2 + y**2), "depth", 1e-200)
+    for solver in SOLVERS:
+        start = np.full(grid.shape, 1e-2)
+        solution = solver.solve(problem, start, lambda iteration, residual_ratio: None)
+        assert solution.stop is Stop.DONE
+
+
+@pytest.mark.parametrize("boundary", BOUNDARIES)
+@pytest.mark.parametrize(
+    ("type_", "parameters"),
+    [
+        ("half_space", {"reduced_modulus": 1e308}),
+        ("half_space", {"reduced_modulus": 1e-308}),
+        ("tensed_membrane", {"reduced_modulus": 1.0, "tension": 1e308}),
+    ],
+)
+def test_parameters_beyond_numbers_are_refused(
+    boundary: Boundary, type_: str, parameters: dict[str, float]
+) -> None:
+    """A compliance that overflows, or is lost, is refused in words."""
+    grid = Grid(points=POINTS, size=1e-3, boundary=boundary)
+    with pytest.raises(pl.ConfigError, match="beyond the numbers that a computer has"):
+        make_operator(pl.kernel(type_, **parameters), grid)
+
+
+@pytest.mark.parametrize("type_", ["paraboloid", "sphere"])
+def test_a_radius_beyond_the_domain_is_flat(type_: str) -> None:
+    """A radius of 1e308 m overflows nowhere: its profile is flat to rounding."""
+    grid = Grid(points=POINTS, size=1e-3)
+    profile = pl.indenter(type_, radius=1e308).profile(*grid.coordinates())
+    assert np.abs(profile).max() < 1e-300
