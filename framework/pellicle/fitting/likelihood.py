@@ -6,12 +6,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from pellicle.components import HasForceCurve
+from pellicle.errors import ConvergenceError
 from pellicle.operators import Array
 
 from .simulated import SimulatedCurve
@@ -20,6 +21,10 @@ POINT, MODULUS, TENSION, OFFSET, SLOPE = range(5)
 """Parameters: contact point [m], log of E* in Pa, τ₀ [N/m], force offset [N], its slope [N/m]."""
 REACH = np.log(100.0)
 """How far in log E*, and in log τ₀ above, an interval is followed before it is called open."""
+FARTHEST = 10.0
+"""How far outside the curve contact may have begun, over the range of positions."""
+_METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 60), ("trf", 1000))
+"""Searches for a minimum, and the steps that they may take."""
 _TOLERANCE = 1e-10
 _ACCURACY = 1e-6
 """Of the master curves."""
@@ -49,6 +54,15 @@ class ChiSquared(ABC):
     @abstractmethod
     def scale(self) -> Array:
         """What each parameter moves by, about."""
+
+    @cached_property
+    @abstractmethod
+    def limits(self) -> tuple[Array, Array]:
+        """The least and the greatest value of each parameter; of the modulus, relative.
+
+        A contact point further away than `FARTHEST`, or a baseline that carries more than the
+        whole force, makes other parameters cancel it, along valleys that never end.
+        """
 
     @abstractmethod
     def expanded(self, parameters: Array) -> tuple[Array, Array]:
@@ -107,11 +121,9 @@ class ChiSquared(ABC):
         if not free:
             return Minimum(best, self.chi_squared(best))
         scale = self.scale[free]
-        lowest = np.full(best.size, -np.inf)
-        highest = np.full(best.size, np.inf)
-        lowest[TENSION] = 0.0
-        # Far beyond every interval, and where no exponential overflows.
-        lowest[MODULUS], highest[MODULUS] = start[MODULUS] - 20, start[MODULUS] + 20
+        lowest, highest = (limit.copy() for limit in self.limits)
+        lowest[MODULUS] += start[MODULUS]
+        highest[MODULUS] += start[MODULUS]
 
         def full(u: Array) -> Array:
             parameters = best.copy()
@@ -130,17 +142,28 @@ class ChiSquared(ABC):
             known = slopes.get(u.tobytes())
             return (self.slopes(full(u)) if known is None else known)[:, free] * scale
 
-        found = least_squares(
-            residuals,
-            np.clip(best[free], lowest[free], highest[free]) / scale,
-            jacobian,
-            (lowest[free] / scale, highest[free] / scale),
-            method="dogbox",
-            xtol=_TOLERANCE,
-            ftol=_TOLERANCE,
-            gtol=_TOLERANCE,
+        u = np.clip(best[free], lowest[free], highest[free]) / scale
+        # Dogbox is the faster where bounds are active, but creeps along curved valleys.
+        for method, most in _METHODS:
+            solution = least_squares(
+                residuals,
+                u,
+                jacobian,
+                (lowest[free] / scale, highest[free] / scale),
+                method=method,
+                xtol=_TOLERANCE,
+                ftol=_TOLERANCE,
+                gtol=_TOLERANCE,
+                max_nfev=most,
+            )
+            if solution.success:
+                return Minimum(full(solution.x), 2 * float(solution.cost))
+            u = solution.x
+        raise ConvergenceError(
+            f"the search for the parameters of least χ² did not end in {_METHODS[-1][1]} steps: "
+            "the curve does not tell them apart; hold one of them (fix), or fit less of the "
+            "baseline"
         )
-        return Minimum(full(found.x), 2 * float(found.cost))
 
 
 @dataclass(frozen=True)
@@ -162,11 +185,40 @@ class Likelihood(ChiSquared):
         span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
         return np.array([span, 1.0, height / span, height, height / span])
 
+    @cached_property
+    def base(self) -> Array:
+        """Position of the cantilever's base [m], or of the indenter if no stiffness is known.
+
+        This is what the instrument sets, so it holds no noise of the force.
+        """
+        if self.stiffness is None:
+            return self.position
+        return self.position + self.force / self.stiffness
+
+    @cached_property
+    def travel(self) -> Array:
+        """Travel of the base since the first point [m], along which a baseline drifts.
+
+        The position of the tip holds the measured force over the stiffness: with a slope of minus
+        the stiffness along it, any curve would be reproduced exactly.
+        """
+        return self.base - self.base[0]
+
     @property
     def accuracy(self) -> float:
         """Of the model, relative to the largest force."""
         curve = self.indenter
         return curve.accuracy if isinstance(curve, SimulatedCurve) else _ACCURACY
+
+    @cached_property
+    def limits(self) -> tuple[Array, Array]:
+        """The least and the greatest value of each parameter; of the modulus, relative."""
+        span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
+        steepest = height / float(self.travel[-1])
+        # E* moves far beyond every interval, and to where no exponential overflows.
+        lowest = [self.position.min() - FARTHEST * span, -20, 0, self.force.min() - height]
+        highest = [self.position.max(), 20, np.inf, self.force.max() + height]
+        return np.array([*lowest, -steepest]), np.array([*highest, steepest])
 
     def coarse(self) -> Likelihood | None:
         """Return the same with the force curve of a coarser grid, if it has one."""
@@ -184,7 +236,7 @@ class Likelihood(ChiSquared):
         modulus = np.exp(log_modulus)
         length = 2 * tension / modulus
         curve = self.indenter.force_curve(position - point, length)
-        moved = self.position - self.position[0]
+        moved = self.travel
         force = modulus * curve.force + offset + slope * moved
         jacobian = np.column_stack(
             [
@@ -214,11 +266,10 @@ class Likelihood(ChiSquared):
         """
         if self.stiffness is None:
             return self._model(self.position, parameters)
-        base = self.position + self.force / self.stiffness
         force = self.force.copy()
         enough = _BALANCED * float(np.ptp(self.force))
         while True:
-            there, jacobian = self._model(base - force / self.stiffness, parameters)
+            there, jacobian = self._model(self.base - force / self.stiffness, parameters)
             give = 1 - jacobian[:, POINT] / self.stiffness
             step = (there - force) / give
             force += step
