@@ -13,18 +13,19 @@ from numpy.typing import ArrayLike
 from pellicle.components import Executor, HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 
-from .answer import Answer
+from .answer import Answer, doubt
 from .curve import Segment
 from .design import advice, undecided
 from .estimate import Estimate
 from .explained import explain
 from .interval import allowed_rise
-from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood, Minimum, least
+from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood, Minimum, best_minimum
 from .measured import Calibration, Measured
 from .plausible import plausible
 from .posed import Posed, posed
 from .profiled import profiled
 from .question import Baseline
+from .residuals import FailedCheck
 from .simulated import described
 from .simulation import GRID_POINTS
 from .sources import Source
@@ -49,6 +50,8 @@ class Fit(Answer):
     """Rows that were used."""
     likelihood: Likelihood
     """The curve and its χ²."""
+    failed_checks: tuple[FailedCheck, ...]
+    """What the residuals show besides noise; the messages say it too."""
 
     def model(self) -> dict[str, Any]:
         """Return indenter and kernel that were fitted with, as JSON has them.
@@ -63,6 +66,7 @@ class Fit(Answer):
             "model": self.model(),
             "noise": {"value": self.noise, "unit": "N", "from": self.noise_from},
             "points": self.points,
+            "failed_checks": [check.to_dict() for check in self.failed_checks],
         }
 
 
@@ -207,6 +211,7 @@ def fitted(posed: Posed) -> Fit:
         advice=advice(likelihood, best, tension),
         messages=(
             *alone.messages,
+            *(check.message for check in alone.failed_checks),
             *found.messages,
             *plausible(posed, point.value, modulus.value, tension.value),
             *undecided(modulus, tension, likelihood, best),
@@ -214,6 +219,8 @@ def fitted(posed: Posed) -> Fit:
         parameters=best,
         parameters_without_tension=found.without_tension.parameters,
         rise=rise,
+        failed_checks=alone.failed_checks,
+        doubt=doubt(alone.failed_checks),
         contact_point=point,
         offset=found.estimate(OFFSET, "N"),
         slope=found.estimate(SLOPE, "N/m"),
@@ -229,4 +236,4 @@ def _without_tension(likelihood: Likelihood, best: Minimum) -> Minimum:
     begun = best.parameters.copy()
     begun[TENSION] = 0.0
     held = replace(likelihood, free=tuple(k for k in likelihood.free if k != TENSION))
-    return least(held.minimise(start) for start in (begun, *starts(held, begun)[:1]))
+    return best_minimum(held, (begun, *starts(held, begun)[:1]))

@@ -84,7 +84,7 @@ def _end(
         warm = found.parameters
         return float(np.sqrt(max(found.chi_squared - best.chi_squared, 0.0)) - np.sqrt(rise))
 
-    deviation = float(likelihood.deviations(best.parameters)[which])
+    deviation = float(likelihood.bounds(best.parameters, likelihood.free)[which])
     inside, below = 0.0, -float(np.sqrt(rise))
     share = float(np.sqrt(rise)) * deviation / abs(span)
     # A cone without tension: a little of it has the effect of another contact point.

@@ -19,6 +19,8 @@ from .simulated import SimulatedCurve
 
 POINT, MODULUS, TENSION, OFFSET, SLOPE = range(5)
 """Parameters: contact point [m], log of E* in Pa, τ₀ [N/m], force offset [N], its slope [N/m]."""
+NAMES = ("contact_point", "reduced_modulus", "tension", "offset", "slope")
+"""What results call them."""
 REACH = np.log(100.0)
 """How far in log E*, and in log τ₀ above, an interval is followed before it is called open."""
 FARTHEST = 10.0
@@ -42,6 +44,28 @@ class Minimum(NamedTuple):
 def least(found: Iterable[Minimum]) -> Minimum:
     """Return the least of several minima."""
     return min(found, key=lambda each: each.chi_squared)
+
+
+def best_minimum(
+    chi_squared: ChiSquared, starts: Iterable[Array], held: Sequence[int] = ()
+) -> Minimum:
+    """Return the least of the minima near several starts, of those whose search ends.
+
+    Raises
+    ------
+    ConvergenceError
+        None of them ends.
+    """
+    minima: list[Minimum] = []
+    error: ConvergenceError | None = None
+    for start in starts:
+        try:
+            minima.append(chi_squared.minimise(start, held))
+        except ConvergenceError as failure:
+            error = failure
+    if error is not None and not minima:
+        raise error
+    return least(minima)
 
 
 class ChiSquared(ABC):
@@ -103,15 +127,29 @@ class ChiSquared(ABC):
         return jacobian.T @ jacobian
 
     def deviations(self, parameters: Array) -> Array:
-        """Return the Cramér–Rao bound of each parameter, as a standard deviation; 0 if held."""
+        """Return the Cramér–Rao bound of each parameter, as a standard deviation; 0 if held.
+
+        At its limit, 0, the tension has none, and the bounds of the others are those without it:
+        an interval that ends there may be narrower than the bound of a tension of either sign.
+        """
+        if TENSION in self.free and not parameters[TENSION]:
+            bound = self.bounds(parameters, [k for k in self.free if k != TENSION])
+            bound[TENSION] = np.inf
+            return bound
+        return self.bounds(parameters, self.free)
+
+    def bounds(self, parameters: Array, free: Sequence[int]) -> Array:
+        """Return the Cramér–Rao bound of each free parameter as a standard deviation, 0 else."""
         bound = np.zeros(parameters.size)
-        information = self.information(parameters, self.free)
+        if not free:
+            return bound
+        information = self.information(parameters, free)
         try:
             variances = np.diag(np.linalg.inv(information))
         except np.linalg.LinAlgError:
-            variances = np.full(len(self.free), np.inf)
+            variances = np.full(len(free), np.inf)
         variances = np.where(variances > 0, variances, np.inf)
-        bound[list(self.free)] = np.sqrt(variances) * self.scale[list(self.free)]
+        bound[list(free)] = np.sqrt(variances) * self.scale[list(free)]
         return bound
 
     def minimise(self, start: Array, held: Sequence[int] = ()) -> Minimum:
@@ -202,7 +240,8 @@ class Likelihood(ChiSquared):
         The position of the tip holds the measured force over the stiffness: with a slope of minus
         the stiffness along it, any curve would be reproduced exactly.
         """
-        return self.base - self.base[0]
+        travel: Array = self.base - self.base[0]
+        return travel
 
     @property
     def accuracy(self) -> float:
