@@ -58,6 +58,8 @@ class Answer:
     """The same with tension held at 0 (Hertz, for a paraboloid)."""
     rise: float
     """Rise of χ² at the ends of the intervals."""
+    failed_checks: tuple[FailedCheck, ...]
+    """What the residuals show besides noise; the messages say it too."""
     doubt: str
     """Why a tension that fits better than none is not shown by this; empty if nothing speaks
     against it."""
@@ -116,6 +118,7 @@ class Answer:
             "tension_needed": self.tension_needed,
             "comparison": self.comparison,
             "advice": self.advice,
+            "failed_checks": [check.to_dict() for check in self.failed_checks],
             "messages": list(self.messages),
         }
 

@@ -20,7 +20,7 @@ from .residuals import (
 
 _OFF = 4.0
 """Standard errors that the force before contact may be from 0."""
-_WINDOWS = (1 / 4, 1 / 8, 1 / 16, 1 / 32)
+_WINDOWS = (1 / 2, 1 / 4, 1 / 8, 1 / 16, 1 / 32)
 """Shares of the rows before contact in which a dip is sought, next to contact."""
 _FEWEST = 3
 """Rows of the narrowest such window."""
@@ -38,12 +38,14 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     rows = force.size
     independent = residuals.independent_noise(before)
     line = np.column_stack([np.ones(rows), travel / travel[-1]])
-    depth, window = _deepest_dip(force, line[:, :1], independent)
-    if abs(_slope(force, line)[0]) > abs(depth) * independent:
+    # As measured: a slope of the baseline that is fitted takes up a part of a dip.
+    measured = residuals.likelihood.force[before]
+    depth, window = _deepest_dip(measured, line[:, :1], independent)
+    if abs(_slope(measured, line)[0]) > abs(depth) * independent:
         # A line explains more than a dip, which must then show beside the line.
-        depth, window = _deepest_dip(force, line, independent)
+        depth, window = _deepest_dip(measured, line, independent)
     # A dip may begin before its window.
-    far = rows - 2 * window if depth < _DEEPEST else rows
+    far = max(rows - 2 * window, rows // 4) if depth < _DEEPEST else rows
     slow = binned_noise(force[:far], line[:far], _equal_bins(far))
     if slow is not None and not exceeds(slow, independent, independent_freedom(far)):
         slow = None
@@ -52,7 +54,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     trend = line
     if depth * independent < _DEEPEST * noise_of_sums:
         trend = np.column_stack([line, _last(window, rows)])
-        failed.append(_adhesion(force, window))
+        failed.append(_adhesion(measured, window))
     else:
         far = rows
     failed += _drift_or_offset(residuals, force[:far], line[:far], noise_of_sums)

@@ -25,7 +25,6 @@ from .plausible import plausible
 from .posed import Posed, posed
 from .profiled import profiled
 from .question import Baseline
-from .residuals import FailedCheck
 from .simulated import described
 from .simulation import GRID_POINTS
 from .sources import Source
@@ -50,8 +49,6 @@ class Fit(Answer):
     """Rows that were used."""
     likelihood: Likelihood
     """The curve and its χ²."""
-    failed_checks: tuple[FailedCheck, ...]
-    """What the residuals show besides noise; the messages say it too."""
 
     def model(self) -> dict[str, Any]:
         """Return indenter and kernel that were fitted with, as JSON has them.
@@ -66,7 +63,6 @@ class Fit(Answer):
             "model": self.model(),
             "noise": {"value": self.noise, "unit": "N", "from": self.noise_from},
             "points": self.points,
-            "failed_checks": [check.to_dict() for check in self.failed_checks],
         }
 
 

@@ -28,6 +28,7 @@ from .posed import posed
 from .profiled import profiled
 from .question import Baseline
 from .residuals import FailedCheck
+from .shape_check import check_pooled_shape
 from .simulated import described
 from .simulation import GRID_POINTS
 from .sources import Curves, Source, gather
@@ -237,6 +238,7 @@ def _fitted(every: Sequence[Explained], contact_points: bool) -> PooledFit:
                 ),
             )
         )
+    shapes = tuple(check_pooled_shape(pool, found.best))
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,
@@ -244,11 +246,16 @@ def _fitted(every: Sequence[Explained], contact_points: bool) -> PooledFit:
         chi_squared=found.best.chi_squared,
         chi_squared_without_tension=found.without_tension.chi_squared,
         advice=_advice(modulus, tension),
-        messages=(*found.messages, *_open(modulus, tension)),
+        messages=(
+            *(check.message for check in shapes),
+            *found.messages,
+            *_open(modulus, tension),
+        ),
         parameters=found.best.parameters,
         parameters_without_tension=found.without_tension.parameters,
         rise=rise,
-        doubt=_doubt(curves),
+        failed_checks=shapes,
+        doubt=_doubt(curves) or doubt(shapes),
         curves=tuple(curves),
         agreement=_agreement(curves, spread, degrees, factor),
         agree=factor == 1,
@@ -268,14 +275,19 @@ def _agreement(curves: Sequence[PooledCurve], spread: float, degrees: int, facto
     )
 
 
+def _failures(curve: PooledCurve) -> list[FailedCheck]:
+    return [check for check in curve.failed_checks if check.of_model and check.code != "shape"]
+
+
 def _doubt(curves: Sequence[PooledCurve]) -> str:
     """Return why these curves are no evidence of a tension, if more of them fail than by chance."""
-    failing = [curve for curve in curves if any(check.of_model for check in curve.failed_checks)]
+    # The shape is judged for all curves together.
+    failing = [curve for curve in curves if _failures(curve)]
     if not failing or bdtrc(len(failing) - 1, len(curves), _FAILING) > _RARE:
         return ""
     names = ", ".join(curve.name for curve in failing[:_NAMED])
     more = ", …" if len(failing) > _NAMED else ""
-    reason = doubt([check for curve in failing for check in curve.failed_checks])
+    reason = doubt([check for curve in failing for check in _failures(curve)])
     return f"{reason}; {len(failing)} of {len(curves)} curves fail it: {names}{more}"
 
 
