@@ -159,6 +159,20 @@ class HasMemory(Protocol):
         ...
 
 
+@runtime_checkable
+class IsShallowLimit(Protocol):
+    """An indenter that stands for another shape as long as it is pressed in little."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of curvature at the tip [m], against which the depth is little."""
+        ...
+
+    def whole_shape(self) -> HasForceCurve:
+        """Return the shape that it stands for."""
+        ...
+
+
 class Solver(Component):
     """Finds the pressure of one load step."""
 

@@ -184,7 +184,7 @@ def test_noise_of_the_deflection_is_in_the_position_too() -> None:
         noise = 0.005 * FORCE.max() * random.standard_normal(FORCE.size)
         seen = POSITION - noise / SPRING, FORCE + noise
         fit = pl.fit(*seen, indenter=BEAD, spring_constant=SPRING)
-        assert not fit.messages
+        assert not fit.failed_checks
         bound = fit.likelihood.deviations(truth)
         errors += [
             np.log(fit.reduced_modulus.value / MODULUS) / bound[1],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -10,7 +11,25 @@ from pellicle.operators import Array
 
 from .estimate import Estimate
 from .interval import CONFIDENCE
+from .residuals import FailedCheck
 from .written import as_json, write_json
+
+LOOK_ALIKES = (
+    "one curve of a solid that relaxes, softens with depth or adheres can look the same: a second "
+    "speed or a dwell, a second radius, and the retract would tell"
+)
+"""What a tension can be mistaken for, and which measurement tells."""
+
+
+def doubt(failed: Sequence[FailedCheck]) -> str:
+    """Return why checks that fail leave no evidence of a tension; empty if they leave it."""
+    codes = list(dict.fromkeys(check.code for check in failed if check.of_model))
+    if not codes:
+        return ""
+    if "adhesion" in codes:
+        return "no tension is needed where the force dips before contact: that is adhesion"
+    what = "a check" if len(codes) == 1 else "checks"
+    return f"this shows none, because the model fails {what} ({', '.join(codes)})"
 
 
 @dataclass(frozen=True)
@@ -39,12 +58,23 @@ class Answer:
     """The same with tension held at 0 (Hertz, for a paraboloid)."""
     rise: float
     """Rise of χ² at the ends of the intervals."""
+    failed_checks: tuple[FailedCheck, ...]
+    """What the residuals show besides noise; the messages say it too."""
+    doubt: str
+    """Why a tension that fits better than none is not shown by this; empty if nothing speaks
+    against it."""
 
     @property
     def youngs_modulus(self) -> Estimate | None:
         """E = (1 − ν²) E* [Pa], if Poisson's ratio was given."""
         ratio = self.poissons_ratio
         return None if ratio is None else self.reduced_modulus.times(1 - ratio**2)
+
+    @property
+    def tension_needed(self) -> bool:
+        """Whether no value of the tension down to 0 does as well, and no check speaks against."""
+        tension = self.tension
+        return not tension.held and tension.low is not None and not self.doubt
 
     @property
     def comparison(self) -> str:
@@ -55,8 +85,10 @@ class Answer:
             return "tension is held at 0, so whether it is needed was not asked"
         if tension.held:
             return f"tension is held at {tension.value:.4g} N/m ({figures} against none)"
+        if tension.low is not None and self.doubt:
+            return f"tension fits better than none ({figures}), but {self.doubt}"
         if tension.low is not None:
-            return f"tension is needed ({figures} against none)"
+            return f"tension is needed ({figures} against none); {LOOK_ALIKES}"
         if tension.high is not None:
             bound = f"it is below {tension.high:.3g} N/m"
             return f"{self._does} not show tension ({figures}); {bound}"
@@ -83,8 +115,10 @@ class Answer:
             "confidence": CONFIDENCE,
             "chi_squared": self.chi_squared,
             "without_tension": {"delta_chi_squared": self._gain, "delta_aic": self._gain - 2},
+            "tension_needed": self.tension_needed,
             "comparison": self.comparison,
             "advice": self.advice,
+            "failed_checks": [check.to_dict() for check in self.failed_checks],
             "messages": list(self.messages),
         }
 

@@ -65,12 +65,13 @@ def clean(
     span = float(np.ptp(z))
     if not span:
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
-    _stiffens(z, f)
     base = z if stiffness is None else z + f / stiffness
+    _stiffens(base, f)
     rows = _one_pass(base, segment, messages)
-    z, f = z[rows], f[rows]
+    z, f, base = z[rows], f[rows], base[rows]
     _enough(z, f"its {segment}")
-    order = np.argsort(z, kind="stable")
+    # The position of a tip holds the noise of the force: in its order, the noise has a slope.
+    order = np.argsort(base, kind="stable")
     z, f = z[order], f[order]
     if z.size < _FEW:
         messages.append(f"only {z.size} points: expect wide intervals")

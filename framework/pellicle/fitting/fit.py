@@ -13,13 +13,13 @@ from numpy.typing import ArrayLike
 from pellicle.components import Executor, HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 
-from .answer import Answer
+from .answer import Answer, doubt
 from .curve import Segment
 from .design import advice, undecided
 from .estimate import Estimate
 from .explained import explain
 from .interval import allowed_rise
-from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood, Minimum, least
+from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood, Minimum, best_minimum
 from .measured import Calibration, Measured
 from .plausible import plausible
 from .posed import Posed, posed
@@ -207,6 +207,7 @@ def fitted(posed: Posed) -> Fit:
         advice=advice(likelihood, best, tension),
         messages=(
             *alone.messages,
+            *(check.message for check in alone.failed_checks),
             *found.messages,
             *plausible(posed, point.value, modulus.value, tension.value),
             *undecided(modulus, tension, likelihood, best),
@@ -214,6 +215,8 @@ def fitted(posed: Posed) -> Fit:
         parameters=best,
         parameters_without_tension=found.without_tension.parameters,
         rise=rise,
+        failed_checks=alone.failed_checks,
+        doubt=doubt(alone.failed_checks),
         contact_point=point,
         offset=found.estimate(OFFSET, "N"),
         slope=found.estimate(SLOPE, "N/m"),
@@ -229,4 +232,4 @@ def _without_tension(likelihood: Likelihood, best: Minimum) -> Minimum:
     begun = best.parameters.copy()
     begun[TENSION] = 0.0
     held = replace(likelihood, free=tuple(k for k in likelihood.free if k != TENSION))
-    return least(held.minimise(start) for start in (begun, *starts(held, begun)[:1]))
+    return best_minimum(held, (begun, *starts(held, begun)[:1]))

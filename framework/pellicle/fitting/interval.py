@@ -8,7 +8,7 @@ from scipy.special import stdtrit
 
 from pellicle.operators import Array
 
-from .likelihood import MODULUS, POINT, REACH, TENSION, ChiSquared, Minimum
+from .likelihood import MODULUS, REACH, TENSION, ChiSquared, Minimum
 
 Ends = tuple[float | None, float | None]
 
@@ -40,7 +40,7 @@ def interval(likelihood: ChiSquared, best: Minimum, which: int, rise: float) -> 
     """Return the ends between which the least χ² at a held parameter is up by at most ``rise``.
 
     None stands for an end that is not reached: tension 0, a modulus or a tension a hundred times
-    off, a contact point ten times the measured range away.
+    off, or the limit of the contact point or of the baseline.
 
     Raises
     ------
@@ -60,8 +60,8 @@ def _limits(likelihood: ChiSquared, best: Array, which: int) -> tuple[float, flo
         return value - REACH, value + REACH
     if kind == TENSION:
         return 0.0, float(np.exp(REACH)) * max(value, scale)
-    reach = 10 * scale if kind == POINT else 1e3 * scale
-    return value - reach, value + reach
+    lowest, highest = likelihood.limits
+    return float(lowest[which]), float(highest[which])
 
 
 def _end(
@@ -84,7 +84,7 @@ def _end(
         warm = found.parameters
         return float(np.sqrt(max(found.chi_squared - best.chi_squared, 0.0)) - np.sqrt(rise))
 
-    deviation = float(likelihood.deviations(best.parameters)[which])
+    deviation = float(likelihood.bounds(best.parameters, likelihood.free)[which])
     inside, below = 0.0, -float(np.sqrt(rise))
     share = float(np.sqrt(rise)) * deviation / abs(span)
     # A cone without tension: a little of it has the effect of another contact point.

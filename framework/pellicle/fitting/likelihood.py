@@ -6,21 +6,28 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from pellicle.components import HasForceCurve
 from pellicle.contracts import force_curve_of
+from pellicle.errors import ConvergenceError
 from pellicle.operators import Array
 
 from .simulated import SimulatedCurve
 
 POINT, MODULUS, TENSION, OFFSET, SLOPE = range(5)
 """Parameters: contact point [m], log of E* in Pa, τ₀ [N/m], force offset [N], its slope [N/m]."""
+NAMES = ("contact_point", "reduced_modulus", "tension", "offset", "slope")
+"""What results call them."""
 REACH = np.log(100.0)
 """How far in log E*, and in log τ₀ above, an interval is followed before it is called open."""
+FARTHEST = 10.0
+"""How far outside the curve contact may have begun, over the range of positions."""
+_METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 60), ("trf", 1000))
+"""Searches for a minimum, and the steps that they may take."""
 _TOLERANCE = 1e-10
 _ACCURACY = 1e-6
 """Of the master curves."""
@@ -40,6 +47,28 @@ def least(found: Iterable[Minimum]) -> Minimum:
     return min(found, key=lambda each: each.chi_squared)
 
 
+def best_minimum(
+    chi_squared: ChiSquared, starts: Iterable[Array], held: Sequence[int] = ()
+) -> Minimum:
+    """Return the least of the minima near several starts, of those whose search ends.
+
+    Raises
+    ------
+    ConvergenceError
+        None of them ends.
+    """
+    minima: list[Minimum] = []
+    error: ConvergenceError | None = None
+    for start in starts:
+        try:
+            minima.append(chi_squared.minimise(start, held))
+        except ConvergenceError as failure:
+            error = failure
+    if error is not None and not minima:
+        raise error
+    return least(minima)
+
+
 class ChiSquared(ABC):
     """χ² over parameters of which `POINT`, `MODULUS` and `TENSION` come first."""
 
@@ -50,6 +79,15 @@ class ChiSquared(ABC):
     @abstractmethod
     def scale(self) -> Array:
         """What each parameter moves by, about."""
+
+    @cached_property
+    @abstractmethod
+    def limits(self) -> tuple[Array, Array]:
+        """The least and the greatest value of each parameter; of the modulus, relative.
+
+        A contact point further away than `FARTHEST`, or a baseline that carries more than the
+        whole force, makes other parameters cancel it, along valleys that never end.
+        """
 
     @abstractmethod
     def expanded(self, parameters: Array) -> tuple[Array, Array]:
@@ -90,15 +128,29 @@ class ChiSquared(ABC):
         return jacobian.T @ jacobian
 
     def deviations(self, parameters: Array) -> Array:
-        """Return the Cramér–Rao bound of each parameter, as a standard deviation; 0 if held."""
+        """Return the Cramér–Rao bound of each parameter, as a standard deviation; 0 if held.
+
+        At its limit, 0, the tension has none, and the bounds of the others are those without it:
+        an interval that ends there may be narrower than the bound of a tension of either sign.
+        """
+        if TENSION in self.free and not parameters[TENSION]:
+            bound = self.bounds(parameters, [k for k in self.free if k != TENSION])
+            bound[TENSION] = np.inf
+            return bound
+        return self.bounds(parameters, self.free)
+
+    def bounds(self, parameters: Array, free: Sequence[int]) -> Array:
+        """Return the Cramér–Rao bound of each free parameter as a standard deviation, 0 else."""
         bound = np.zeros(parameters.size)
-        information = self.information(parameters, self.free)
+        if not free:
+            return bound
+        information = self.information(parameters, free)
         try:
             variances = np.diag(np.linalg.inv(information))
         except np.linalg.LinAlgError:
-            variances = np.full(len(self.free), np.inf)
+            variances = np.full(len(free), np.inf)
         variances = np.where(variances > 0, variances, np.inf)
-        bound[list(self.free)] = np.sqrt(variances) * self.scale[list(self.free)]
+        bound[list(free)] = np.sqrt(variances) * self.scale[list(free)]
         return bound
 
     def minimise(self, start: Array, held: Sequence[int] = ()) -> Minimum:
@@ -108,11 +160,9 @@ class ChiSquared(ABC):
         if not free:
             return Minimum(best, self.chi_squared(best))
         scale = self.scale[free]
-        lowest = np.full(best.size, -np.inf)
-        highest = np.full(best.size, np.inf)
-        lowest[TENSION] = 0.0
-        # Far beyond every interval, and where no exponential overflows.
-        lowest[MODULUS], highest[MODULUS] = start[MODULUS] - 20, start[MODULUS] + 20
+        lowest, highest = (limit.copy() for limit in self.limits)
+        lowest[MODULUS] += start[MODULUS]
+        highest[MODULUS] += start[MODULUS]
 
         def full(u: Array) -> Array:
             parameters = best.copy()
@@ -131,17 +181,28 @@ class ChiSquared(ABC):
             known = slopes.get(u.tobytes())
             return (self.slopes(full(u)) if known is None else known)[:, free] * scale
 
-        found = least_squares(
-            residuals,
-            np.clip(best[free], lowest[free], highest[free]) / scale,
-            jacobian,
-            (lowest[free] / scale, highest[free] / scale),
-            method="dogbox",
-            xtol=_TOLERANCE,
-            ftol=_TOLERANCE,
-            gtol=_TOLERANCE,
+        u = np.clip(best[free], lowest[free], highest[free]) / scale
+        # Dogbox is the faster where bounds are active, but creeps along curved valleys.
+        for method, most in _METHODS:
+            solution = least_squares(
+                residuals,
+                u,
+                jacobian,
+                (lowest[free] / scale, highest[free] / scale),
+                method=method,
+                xtol=_TOLERANCE,
+                ftol=_TOLERANCE,
+                gtol=_TOLERANCE,
+                max_nfev=most,
+            )
+            if solution.success:
+                return Minimum(full(solution.x), 2 * float(solution.cost))
+            u = solution.x
+        raise ConvergenceError(
+            f"the search for the parameters of least χ² did not end in {_METHODS[-1][1]} steps: "
+            "the curve does not tell them apart; hold one of them (fix), or fit less of the "
+            "baseline"
         )
-        return Minimum(full(found.x), 2 * float(found.cost))
 
 
 @dataclass(frozen=True)
@@ -163,11 +224,41 @@ class Likelihood(ChiSquared):
         span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
         return np.array([span, 1.0, height / span, height, height / span])
 
+    @cached_property
+    def base(self) -> Array:
+        """Position of the cantilever's base [m], or of the indenter if no stiffness is known.
+
+        This is what the instrument sets, so it holds no noise of the force.
+        """
+        if self.stiffness is None:
+            return self.position
+        return self.position + self.force / self.stiffness
+
+    @cached_property
+    def travel(self) -> Array:
+        """Travel of the base since the first point [m], along which a baseline drifts.
+
+        The position of the tip holds the measured force over the stiffness: with a slope of minus
+        the stiffness along it, any curve would be reproduced exactly.
+        """
+        travel: Array = self.base - self.base[0]
+        return travel
+
     @property
     def accuracy(self) -> float:
         """Of the model, relative to the largest force."""
         curve = self.indenter
         return curve.accuracy if isinstance(curve, SimulatedCurve) else _ACCURACY
+
+    @cached_property
+    def limits(self) -> tuple[Array, Array]:
+        """The least and the greatest value of each parameter; of the modulus, relative."""
+        span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
+        steepest = height / float(self.travel[-1])
+        # E* moves far beyond every interval, and to where no exponential overflows.
+        lowest = [self.position.min() - FARTHEST * span, -20, 0, self.force.min() - height]
+        highest = [self.position.max(), 20, np.inf, self.force.max() + height]
+        return np.array([*lowest, -steepest]), np.array([*highest, steepest])
 
     def coarse(self) -> Likelihood | None:
         """Return the same with the force curve of a coarser grid, if it has one."""
@@ -185,7 +276,7 @@ class Likelihood(ChiSquared):
         modulus = np.exp(log_modulus)
         length = 2 * tension / modulus
         curve = force_curve_of(self.indenter, position - point, length)
-        moved = self.position - self.position[0]
+        moved = self.travel
         force = modulus * curve.force + offset + slope * moved
         jacobian = np.column_stack(
             [
@@ -215,11 +306,10 @@ class Likelihood(ChiSquared):
         """
         if self.stiffness is None:
             return self._model(self.position, parameters)
-        base = self.position + self.force / self.stiffness
         force = self.force.copy()
         enough = _BALANCED * float(np.ptp(self.force))
         while True:
-            there, jacobian = self._model(base - force / self.stiffness, parameters)
+            there, jacobian = self._model(self.base - force / self.stiffness, parameters)
             give = 1 - jacobian[:, POINT] / self.stiffness
             step = (there - force) / give
             force += step

@@ -57,6 +57,12 @@ class Pool(ChiSquared):
         """What each parameter moves by, about."""
         return self.joined([member.scale for member in self.members])
 
+    @cached_property
+    def limits(self) -> tuple[Array, Array]:
+        """The least and the greatest value of each parameter; of the modulus, relative."""
+        lowest, highest = zip(*(member.limits for member in self.members), strict=True)
+        return self.joined(lowest), self.joined(highest)
+
     @property
     def accuracy(self) -> float:
         """Of the least exact force curve, relative to the largest force."""

@@ -9,7 +9,7 @@ import numpy as np
 from pellicle.operators import Array
 
 from .explained import Explained
-from .likelihood import MODULUS, TENSION, Minimum, least
+from .likelihood import MODULUS, TENSION, Minimum, best_minimum, least
 from .pool import SHARED, Pool
 from .start import KEPT
 
@@ -38,7 +38,7 @@ def _from(pool: Pool, parts: Sequence[Array], shared: Array, held: Sequence[int]
 
 def alone(each: Explained, part: Array) -> Minimum:
     """Return the least χ² of a curve by itself."""
-    return least(each.likelihood.minimise(start) for start in (each.parameters, part))
+    return best_minimum(each.likelihood, (each.parameters, part))
 
 
 def without_tension(pool: Pool, best: Minimum) -> Minimum:

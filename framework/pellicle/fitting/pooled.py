@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy.special import chdtrc
+from scipy.special import bdtrc, chdtrc
 
 from pellicle.components import Executor, HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 
-from .answer import Answer
+from .answer import Answer, doubt
 from .curve import Segment
 from .design import percent
 from .estimate import Estimate
@@ -27,12 +27,20 @@ from .pool_minima import alone, begin, without_tension
 from .posed import posed
 from .profiled import profiled
 from .question import Baseline
+from .residuals import FailedCheck
+from .shape_check import check_pooled_shape
 from .simulated import described
 from .simulation import GRID_POINTS
 from .sources import Curves, Source, gather
 
 _CHANCE = 1e-3
 """A disagreement less likely than this is no chance."""
+_FAILING = 0.01
+"""Share of curves without fault that fail some check of the model."""
+_RARE = 0.05
+"""More failing curves than are likely with this chance are no chance."""
+_NAMED = 5
+"""Failing curves that a message names."""
 
 
 @dataclass(frozen=True)
@@ -59,12 +67,15 @@ class PooledCurve:
     """That modulus [Pa]."""
     tension_alone: float
     """That tension [N/m]."""
+    failed_checks: tuple[FailedCheck, ...]
+    """What its residuals alone show besides noise; the messages say it too."""
     messages: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold."""
         return vars(self) | {
             "contact_point": self.contact_point.to_dict(),
+            "failed_checks": [check.to_dict() for check in self.failed_checks],
             "messages": list(self.messages),
         }
 
@@ -219,12 +230,15 @@ def _fitted(every: Sequence[Explained], contact_points: bool) -> PooledFit:
                 chi_squared_alone=single.chi_squared,
                 reduced_modulus_alone=float(np.exp(single.parameters[MODULUS])),
                 tension_alone=float(single.parameters[TENSION]),
+                failed_checks=each.failed_checks,
                 messages=(
                     *each.messages,
+                    *(check.message for check in each.failed_checks),
                     *plausible(each.posed, point.value, modulus.value, tension.value),
                 ),
             )
         )
+    shapes = tuple(check_pooled_shape(pool, found.best))
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,
@@ -232,10 +246,16 @@ def _fitted(every: Sequence[Explained], contact_points: bool) -> PooledFit:
         chi_squared=found.best.chi_squared,
         chi_squared_without_tension=found.without_tension.chi_squared,
         advice=_advice(modulus, tension),
-        messages=(*found.messages, *_open(modulus, tension)),
+        messages=(
+            *(check.message for check in shapes),
+            *found.messages,
+            *_open(modulus, tension),
+        ),
         parameters=found.best.parameters,
         parameters_without_tension=found.without_tension.parameters,
         rise=rise,
+        failed_checks=shapes,
+        doubt=_doubt(curves) or doubt(shapes),
         curves=tuple(curves),
         agreement=_agreement(curves, spread, degrees, factor),
         agree=factor == 1,
@@ -253,6 +273,22 @@ def _agreement(curves: Sequence[PooledCurve], spread: float, degrees: int, facto
         f"the curves do not agree on what they share ({figures} against each on its own), "
         f"{worst.name} least of all; the intervals are widened by {np.sqrt(factor):.2g}"
     )
+
+
+def _failures(curve: PooledCurve) -> list[FailedCheck]:
+    return [check for check in curve.failed_checks if check.of_model and check.code != "shape"]
+
+
+def _doubt(curves: Sequence[PooledCurve]) -> str:
+    """Return why these curves are no evidence of a tension, if more of them fail than by chance."""
+    # The shape is judged for all curves together.
+    failing = [curve for curve in curves if _failures(curve)]
+    if not failing or bdtrc(len(failing) - 1, len(curves), _FAILING) > _RARE:
+        return ""
+    names = ", ".join(curve.name for curve in failing[:_NAMED])
+    more = ", …" if len(failing) > _NAMED else ""
+    reason = doubt([check for curve in failing for check in _failures(curve)])
+    return f"{reason}; {len(failing)} of {len(curves)} curves fail it: {names}{more}"
 
 
 def _advice(modulus: Estimate, tension: Estimate) -> str:

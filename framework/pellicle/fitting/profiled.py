@@ -8,11 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
+from pellicle.errors import ConvergenceError
 from pellicle.operators import Array
 
 from .estimate import Estimate
 from .interval import Better, Ends, interval
-from .likelihood import MODULUS, TENSION, ChiSquared, Minimum, least
+from .likelihood import MODULUS, NAMES, TENSION, ChiSquared, Minimum, least
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class Profiled:
     ends: Mapping[int, Ends]
     """Of the interval of each parameter; log E* in Pa for the modulus."""
     messages: tuple[str, ...]
-    """By how much the intervals were widened."""
+    """By how much the intervals were widened, and which could not be found."""
 
     @cached_property
     def _bound(self) -> Array:
@@ -61,13 +62,30 @@ def profiled(
         if TENSION in likelihood.free and without.chi_squared <= best.chi_squared + 1e-6:
             # As good, and then exactly on the edge.
             best = without
+        ends: dict[int, Ends] = {}
+        lost = []
         try:
-            ends = {k: interval(likelihood, best, k, rise) for k in wanted}
+            for which in wanted:
+                try:
+                    ends[which] = interval(likelihood, best, which, rise)
+                except ConvergenceError:
+                    ends[which] = None, None
+                    lost.append(NAMES[likelihood.kind(which)])
         except Better as better:
             again = likelihood.minimise(better.minimum.parameters)
             best = least([again, better.minimum])
         else:
-            return Profiled(likelihood, best, without, *widened(ends, likelihood, best))
+            wider, messages = widened(ends, likelihood, best)
+            if lost:
+                messages += (_unsettled(lost),)
+            return Profiled(likelihood, best, without, wider, messages)
+
+
+def _unsettled(lost: Sequence[str]) -> str:
+    return (
+        f"no search for the interval of {', '.join(lost)} came to an end, and it is left open: the "
+        "curve does not tell the parameters apart; hold one of them, or fit less of the baseline"
+    )
 
 
 def widened(

@@ -42,13 +42,15 @@ def table(rows: list[dict[str, Any]]) -> xr.Dataset:
             if key == "value" or np.isfinite(values).any():
                 label = name if key == "value" else f"{name}_{key}"
                 columns[label] = ("curve", values, {"units": unit})
-    for name in ("points", "chi_squared"):
+    for name in ("points", "chi_squared", "tension_needed"):
         columns[name] = ("curve", [_number(row.get(name)) for row in rows], {"units": "1"})
     for name in ("delta_chi_squared", "delta_aic"):
         gains = [_number(row.get("without_tension", {}).get(name)) for row in rows]
         columns[name] = ("curve", gains, {"units": "1"})
     for name in _TEXTS:
         columns[name] = ("curve", [row.get(name, "") for row in rows], {})
+    codes = ["; ".join(check["code"] for check in row.get("failed_checks", ())) for row in rows]
+    columns["failed_checks"] = ("curve", codes, {})
     columns["messages"] = ("curve", ["; ".join(row.get("messages", ())) for row in rows], {})
     variables = {
         name: (

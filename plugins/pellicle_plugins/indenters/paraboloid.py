@@ -13,9 +13,11 @@ from pellicle.operators import Array
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
 
+from .sphere import Sphere
+
 
 class Paraboloid(Indenter):
-    """Paraboloid of revolution, the shallow limit of a sphere."""
+    """Paraboloid of revolution, as in the theory of Hertz: the shallow limit of a sphere."""
 
     type: Literal["paraboloid"] = "paraboloid"
     radius: Annotated[Length, Field(description="radius of curvature R at the tip [m]")]
@@ -33,6 +35,10 @@ class Paraboloid(Indenter):
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
         """Return P/E* and its sensitivities from the master curve of the axisymmetric equation."""
         return master_curves.paraboloid(self.radius, depth, length)
+
+    def whole_shape(self) -> Sphere:
+        """Return the sphere of the same radius."""
+        return Sphere(radius=self.radius)
 
 
 @hookimpl
