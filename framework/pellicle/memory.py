@@ -14,16 +14,15 @@ from .grid import Grid
 # In arrays of the grid's shape, eight bytes a cell. The peaks were measured on Linux with glibc.
 # The indenter, and the operator with its transforms: those of a free boundary are padded.
 _OPERATOR = {"free": 9.0, "periodic": 4.75}
+# The same of a line of cells along x, whose transforms are twice as long and need tables.
+_LINE = 14.0
 # The solver active_set in full contact, and any that states nothing else (`HasMemory`).
-_SOLVER = {"free": 15.0, "periodic": 9.5}
+_SOLVER = {"free": 15.3, "periodic": 9.65}
 # A load step in the result: pressure, displacement, gap, and a byte that tells the contact.
 _STEP = 3 + 1 / 8
-# What blocks in use keep malloc from returning to the system, for each load step.
-_FRAGMENTS = 3 / 8
-# A load step in the image of the result file, which is compressed, the less the rougher it is.
-_IMAGE = 2.4
-# Operator and indenter, and a field that is read, while the result file grows.
-_IDLE = 6.0
+# The same in the compressed image of the result file, in which steps are joined. It does not fit
+# into the blocks that the solver has freed and malloc keeps.
+_IMAGE = 2.1
 
 # Files of a control group: its limit, its usage, and the line of memory.stat with its file cache.
 _VERSION_2 = "memory.max", "memory.current", "inactive_file"
@@ -33,22 +32,17 @@ _VERSION_1 = "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_f
 def estimate(grid: Grid, steps: int, solver: object = None) -> float:
     """Return the memory [bytes] that a run on ``grid`` needs at its peak, beside the libraries.
 
-    The peak is either that of the last solve, beside the steps before it, or that of joining all
-    steps in the result file. How much of the domain is in contact is not known before: it is that
-    of full contact, which takes up to a quarter more than a small one. A ``solver`` that is no
-    `HasMemory` counts as active_set.
+    It is that of the last solve, beside the steps before it and the image of their file. How much
+    of the domain will be in contact is not known: full contact is assumed, which takes up to a
+    quarter more than a small one. A ``solver`` that is no `HasMemory` counts as active_set.
     """
     try:
         cells = float(grid.points[0] * grid.points[1])
     except OverflowError:
         return math.inf
-    if grid.boundary == "periodic":
-        # The transform of a real row has half of its numbers and one more, each of two parts.
-        cells *= max(1.0, 2 / grid.points[1])
+    operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
     iterating = solver.arrays(grid) if isinstance(solver, HasMemory) else _SOLVER[grid.boundary]
-    solving = _OPERATOR[grid.boundary] + iterating + (_STEP + _FRAGMENTS) * (steps - 1)
-    joining = _IDLE + (_STEP + _IMAGE) * steps
-    return 8 * cells * max(solving, joining)
+    return 8 * cells * (operator + iterating + (_STEP + _IMAGE) * (steps - 1))
 
 
 def available(root: Path = Path("/")) -> float | None:

@@ -79,7 +79,13 @@ def coordination(labels: Labels, grid: Grid) -> NDArray[np.int64]:
     i, j = ndimage.distance_transform_edt(
         empty, sampling=grid.spacing, return_distances=False, return_indices=True
     )[:, mx : mx + nx, my : my + ny]
-    shares = labels[(i - mx) % nx, (j - my) % ny]
+    i -= mx
+    i %= nx
+    j -= my
+    j %= ny
+    shares = labels[i, j]
+    # Of a periodic grid they are as large as four of its fields.
+    del empty, i, j
     pairs = np.concatenate([_pairs(shares, axis, periodic) for axis in (0, 1)], axis=1)
     pairs = np.unique(np.sort(pairs, axis=0), axis=1)
     return np.bincount(pairs.ravel(), minlength=count + 1)[1:]
