@@ -122,6 +122,8 @@ def _damage(dataset: xr.Dataset) -> str:
             return f"has {name} over {', '.join(map(str, variable.dims)) or 'nothing'}"
         if variable.dtype.kind not in _KINDS.get(name, _NUMBERS):
             return f"has {name} of type {variable.dtype}"
+    if unknown := {*dataset["status_code"].values} - {*Status.__members__}:
+        return f"has the status_code {min(map(str, unknown))!r}"
     configuration = json.loads(dataset.attrs["configuration"])
     try:
         grid = Grid(**configuration["grid"])

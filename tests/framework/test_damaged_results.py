@@ -1,9 +1,10 @@
-"""Result files that somebody or something has changed: every command refuses them in words."""
+"""Result files of another program that look like ours: every command refuses them in words."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
+from pellicle import checksum
 from pellicle.cli import app
 
 RUN: dict[str, Any] = {
@@ -66,6 +68,16 @@ def _variable(name: str, values: Any, kind: Any = None) -> Callable[[h5py.File],
     return change
 
 
+def write_changed(path: Path, content: bytes, change: Callable[[h5py.File], object]) -> None:
+    """Write a result file with a change, whose checksum is that of the changed content."""
+    path.write_bytes(content)
+    with h5py.File(path, "r+") as file:
+        change(file)
+    image = BytesIO(path.read_bytes())
+    checksum.seal(image)
+    path.write_bytes(image.getvalue())
+
+
 TEXT = h5py.string_dtype()
 RESULTS = {
     "configuration a list": (_attribute("configuration", "[]"), "not a table"),
@@ -84,6 +96,8 @@ RESULTS = {
     "depth a text": (_variable("depth", "deep", TEXT), "has depth of type"),
     "contact a number": (_variable("contact", 1.5), "has contact of type float64"),
     "status a number": (_variable("status", 1), "has status of type int64"),
+    "status_code a number": (_variable("status_code", 1), "has status_code of type int64"),
+    "status_code unknown": (_variable("status_code", "SOLVED", TEXT), "status_code 'SOLVED'"),
 }
 
 
@@ -92,9 +106,7 @@ def test_result(damage: str, whole: bytes, tmp_path: Path) -> None:
     """``show``, ``plot`` and `pellicle.load` say what is wrong with the file."""
     change, message = RESULTS[damage]
     path = tmp_path / "a.h5"
-    path.write_bytes(whole)
-    with h5py.File(path, "r+") as file:
-        change(file)
+    write_changed(path, whole, change)
     with pytest.raises(pl.StorageError, match=message):
         pl.load(path)
     for command in ("show", "plot"):
@@ -111,6 +123,7 @@ TABLES = {
     "axes a list": _attribute("axes", "[]"),
     "first run a list": _attribute("first_run", "[]"),
     "status a number": _variable("status", 1),
+    "status_code unknown": _variable("status_code", "SOLVED", TEXT),
     "force a text": _variable("force", "much", TEXT),
     "run gone": lambda file: file.__delitem__("run"),
     "converged gone": lambda file: file.__delitem__("converged"),
@@ -121,9 +134,7 @@ TABLES = {
 def test_table(damage: str, table: bytes, tmp_path: Path) -> None:
     """``show`` and ``plot`` say that the table of a study is damaged."""
     path = tmp_path / "study.h5"
-    path.write_bytes(table)
-    with h5py.File(path, "r+") as file:
-        TABLES[damage](file)
+    write_changed(path, table, TABLES[damage])
     for command in ("show", "plot"):
         done = CliRunner().invoke(app, [command, str(path)])
         assert done.exit_code == 2, (command, done.exception, done.output)
