@@ -17,12 +17,14 @@ _OPERATOR = {"free": 9.0, "periodic": 4.75}
 # The same of a line of cells along x, whose transforms are twice as long and need tables.
 _LINE = 14.0
 # The solver active_set in full contact, and any that states nothing else (`HasMemory`).
-_SOLVER = {"free": 15.3, "periodic": 9.65}
+_SOLVER = {"free": 15.6, "periodic": 10.15}
 # A load step in the result: pressure, displacement, gap, and a byte that tells the contact.
 _STEP = 3 + 1 / 8
 # The same in the compressed image of the result file, in which steps are joined. It does not fit
 # into the blocks that the solver has freed and malloc keeps.
 _IMAGE = 2.1
+# Buffers and Python's own objects [bytes].
+_FIXED = 1e6
 
 # Files of a control group: its limit, its usage, and the line of memory.stat with its file cache.
 _VERSION_2 = "memory.max", "memory.current", "inactive_file"
@@ -42,7 +44,8 @@ def estimate(grid: Grid, steps: int, solver: object = None) -> float:
         return math.inf
     operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
     iterating = solver.arrays(grid) if isinstance(solver, HasMemory) else _SOLVER[grid.boundary]
-    return 8 * cells * (operator + iterating + (_STEP + _IMAGE) * (steps - 1))
+    arrays = operator + iterating + (_STEP + _IMAGE) * (steps - 1)
+    return _FIXED + 8 * cells * arrays
 
 
 def available(root: Path = Path("/")) -> float | None:

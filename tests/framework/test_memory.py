@@ -55,13 +55,13 @@ ALL_OUTPUTS = {"outputs": [{"type": name} for name in OUTPUTS]}
 KINDS = {
     "free": _kind(1024, kernel=SKIN),
     "free, contact over most of the domain": _kind(1024, loading={"depth": 2e-4}),
-    "free, tabulated kernel": _kind(1024, kernel=LAYER),
+    "free, tabulated kernel": _kind(512, kernel=LAYER),
     "free, four steps": _kind(512, loading={"depth": [5e-6, 1e-5, 1.5e-5, 2e-5]}),
     "free, conjugate_gradient": _kind(512, solver={"type": "conjugate_gradient"}),
     "free, self-affine down to two cells": _kind(
-        1024, indenter=_rough(1024, 2.01), loading={"depth": 2e-6}
+        512, indenter=_rough(512, 2.01), loading={"depth": 2e-6}
     ),
-    "free, contact stiffness": _kind(1024, loading={"depth": 2e-5, "stiffness": True}),
+    "free, contact stiffness": _kind(512, loading={"depth": 2e-5, "stiffness": True}),
     "free, prescribed area": _kind(512, loading={"contact_radius": 1e-4}),
     "free, many outputs": _kind(1024, **ALL_OUTPUTS),
     "periodic, little contact": _kind(1024, "periodic"),
