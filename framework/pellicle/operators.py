@@ -351,8 +351,9 @@ def _refuse_growth(
 ) -> None:
     """Refuse a kernel whose G(q) grows with q at the grid's shortest waves and does not stop.
 
-    The work of a point force would be infinite. G(q) of an incompressible layer grows too, up to
-    waves as short as the layer is thick: therefore shorter waves than the grid's decide.
+    To short waves a solid is a half-space, whose G(q) falls as 1/q; a bed of springs answers all
+    waves alike. G(q) of an incompressible layer grows too, up to waves about as long as the layer
+    is thick, which may be shorter than the grid's: therefore shorter waves decide.
     """
     if not shortest > 0:
         return

@@ -863,6 +863,21 @@ def test_an_output_cannot_change_the_table_of_a_study(change: Any, tmp_path: Pat
         pl.run_study(study(outputs=[Changing()]), tmp_path, progress=False, threads=1)
 
 
+def test_a_file_system_that_is_read_only_is_no_lie() -> None:
+    """What an output raises because it cannot write is not taken for a change of its data."""
+
+    class Unlucky(Output):
+        """Cannot write."""
+
+        def close(self, place: Any, result: Any) -> Any:
+            """Raise what the system raises."""
+            raise OSError("the volume is read-only")
+
+    with pytest.raises(OSError, match="the volume is read-only") as error:
+        run(outputs=[Unlucky()])
+    assert error.value.__notes__[0].startswith("output 'liar' failed")
+
+
 @pytest.mark.parametrize("returned", ["nothing", 3, {"step": 1}])
 def test_steps_that_are_none_are_refused(returned: Any) -> None:
     """What resume() returns is a dataset of steps, or None."""
