@@ -28,7 +28,7 @@ Float = TypeVar("Float", np.float32, np.float64)
 # A cell's displacement under its own pressure over that of the finest wave, at least.
 _LEAST_OWN = 0.25
 # Waves up to this many times shorter than the grid's shortest tell whether G(q) grows for good.
-_SHORTER = np.geomspace(1.0, 1e6, 7)
+_SHORTER = np.geomspace(1.0, 1e12, 13)
 _GROWTH = 1e-6  # relative; less is rounding
 
 

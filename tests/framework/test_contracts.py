@@ -228,7 +228,7 @@ def test_a_compliance_that_is_not_positive_is_refused(value: float, boundary: st
         pl.displacement(np.ones(grid.shape), kernel=Bad(reduced_modulus=1e4), grid=grid)
 
 
-@pytest.mark.parametrize("thickness", ["1 um", "20 um"])
+@pytest.mark.parametrize("thickness", ["1 nm", "1 um", "20 um"])
 def test_a_thin_incompressible_layer_may_yield_more_to_shorter_waves(thickness: str) -> None:
     """On cells wider than the layer G(q) grows over all of the grid's waves, and is allowed to."""
     kernel = pl.kernel("bonded_layer", reduced_modulus=1e4, poissons_ratio=0.5, thickness=thickness)
