@@ -50,7 +50,8 @@ def blamed(component: object) -> Iterator[None]:
         if getattr(error, "__notes__", ()):
             raise
         name, place = component_name(component), _place(component, error)
-        if any(refusal in str(error) for refusal in _REFUSALS):
+        is_write = isinstance(error, (ValueError, AttributeError))
+        if is_write and any(refusal in str(error) for refusal in _REFUSALS):
             raise PluginError(
                 f"{name} changes what it is given{place}: {error}; it has to work on a copy"
             ) from error

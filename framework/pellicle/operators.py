@@ -32,7 +32,7 @@ _BLOCK = 2**17
 # A cell's displacement under its own pressure over that of the finest wave, at least.
 _LEAST_OWN = 0.25
 # Waves up to this many times shorter than the grid's shortest tell whether G(q) grows for good.
-_SHORTER = np.geomspace(1.0, 1e6, 7)
+_SHORTER = np.geomspace(1.0, 1e12, 13)
 _GROWTH = 1e-6  # relative; less is rounding
 
 
@@ -403,8 +403,9 @@ def _refuse_growth(
 ) -> None:
     """Refuse a kernel whose G(q) grows with q at the grid's shortest waves and does not stop.
 
-    The work of a point force would be infinite. G(q) of an incompressible layer grows too, up to
-    waves as short as the layer is thick: therefore shorter waves than the grid's decide.
+    To short waves a solid is a half-space, whose G(q) falls as 1/q; a bed of springs answers all
+    waves alike. G(q) of an incompressible layer grows too, up to waves about as long as the layer
+    is thick, which may be shorter than the grid's: therefore shorter waves decide.
     """
     if not shortest > 0:
         return

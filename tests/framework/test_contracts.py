@@ -228,7 +228,7 @@ def test_a_compliance_that_is_not_positive_is_refused(value: float, boundary: st
         pl.displacement(np.ones(grid.shape), kernel=Bad(reduced_modulus=1e4), grid=grid)
 
 
-@pytest.mark.parametrize("thickness", ["1 um", "20 um"])
+@pytest.mark.parametrize("thickness", ["1 nm", "1 um", "20 um"])
 def test_a_thin_incompressible_layer_may_yield_more_to_shorter_waves(thickness: str) -> None:
     """On cells wider than the layer G(q) grows over all of the grid's waves, and is allowed to."""
     kernel = pl.kernel("bonded_layer", reduced_modulus=1e4, poissons_ratio=0.5, thickness=thickness)
@@ -861,6 +861,21 @@ def test_an_output_cannot_change_the_table_of_a_study(change: Any, tmp_path: Pat
 
     with pytest.raises(pl.PluginError, match="output 'liar' changes what it is given"):
         pl.run_study(study(outputs=[Changing()]), tmp_path, progress=False, threads=1)
+
+
+def test_a_file_system_that_is_read_only_is_no_lie() -> None:
+    """What an output raises because it cannot write is not taken for a change of its data."""
+
+    class Unlucky(Output):
+        """Cannot write."""
+
+        def close(self, place: Any, result: Any) -> Any:
+            """Raise what the system raises."""
+            raise OSError("the volume is read-only")
+
+    with pytest.raises(OSError, match="the volume is read-only") as error:
+        run(outputs=[Unlucky()])
+    assert error.value.__notes__[0].startswith("output 'liar' failed")
 
 
 @pytest.mark.parametrize("returned", ["nothing", 3, {"step": 1}])

@@ -611,10 +611,10 @@ class Meddling(Solver):
 
 
 SOLVERS = {
-    Mute: "solution_is_one",
-    Rowwise: "solution_is_one",
-    OutOfPhase: "solution_is_one",
-    Meddling: "solution_is_one",
+    Mute: "solve_returns_a_solution",
+    Rowwise: "solve_returns_a_solution",
+    OutOfPhase: "solve_returns_a_solution",
+    Meddling: "solve_returns_a_solution",
     Sucking: "pressure_is_nowhere_negative",
     Lying: "done_means_solved",
     GivingUp: "what_is_prescribed_is_solved",

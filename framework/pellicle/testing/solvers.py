@@ -97,7 +97,7 @@ def _ignore(iteration: int, residual: float) -> None:
     pass
 
 
-def solution_is_one(solver: Solver) -> None:
+def solve_returns_a_solution(solver: Solver) -> None:
     """solve() returns a Solution of real numbers and leaves its problem as it is."""
     for problem in _problems():
         solution_of(solver, problem, None, _ignore)
@@ -218,7 +218,7 @@ def punch_is_flat(solver: Solver) -> None:
 
 
 RULES: list[Rule] = [
-    solution_is_one,
+    solve_returns_a_solution,
     pressure_is_nowhere_negative,
     done_means_solved,
     start_belongs_to_the_caller,
