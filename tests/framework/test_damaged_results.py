@@ -103,6 +103,24 @@ def test_result(damage: str, whole: bytes, tmp_path: Path) -> None:
         assert done.stderr.startswith(f"error: {path}: ")
 
 
+@pytest.mark.parametrize("damage", RESULTS)
+def test_run_that_would_go_on(
+    damage: str, whole: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run whose file is damaged says so, and how to begin anew; no output is blamed for it."""
+    monkeypatch.chdir(tmp_path)
+    run = pl.Run(**RUN)
+    Path("a.toml").write_text(run.to_toml(), encoding="utf-8")
+    Path("a").mkdir()
+    Path("a/a.h5").write_bytes(whole)
+    with h5py.File("a/a.h5", "r+") as file:
+        RESULTS[damage][0](file)
+    done = CliRunner().invoke(app, ["run", "a.toml"])
+    assert done.exit_code == 2, done.output
+    assert done.stderr.startswith("error: a/a.h5: ")
+    assert "--overwrite" in done.stderr
+
+
 TABLES = {
     "configuration a list": _attribute("configuration", "[]"),
     "configuration empty": _attribute("configuration", "{}"),
