@@ -106,10 +106,13 @@ def damage(table: xr.Dataset) -> str:
         if variable.dtype.kind not in kinds:
             return f"has {name} of type {variable.dtype}"
     try:
-        texts = [json.loads(table.attrs[name]) for name in ("configuration", "axes", FIRST_RUN)]
+        study, axes, run = (
+            json.loads(table.attrs[name]) for name in ("configuration", "axes", FIRST_RUN)
+        )
+        known = all(isinstance(part, dict) for part in (study["study"], axes, run))
     except (LookupError, TypeError, ValueError):
-        texts = []
-    if not texts or not all(isinstance(each, dict) for each in (*texts, texts[0].get("study"))):
+        known = False
+    if not known:
         return "does not say which study it is of"
     return ""
 

@@ -59,8 +59,8 @@ def _variable(name: str, values: Any, kind: Any = None) -> Callable[[h5py.File],
         old = file[name]
         scales = [next(iter(dim.values())).name for dim in old.dims]
         del file[name]
-        made = file.create_dataset(name, data=np.full(old.shape, values, kind), dtype=kind)
-        for dim, scale in zip(made.dims, scales, strict=True):
+        changed = file.create_dataset(name, data=np.full(old.shape, values, kind), dtype=kind)
+        for dim, scale in zip(changed.dims, scales, strict=True):
             dim.attach_scale(file[scale])
 
     return change
