@@ -54,9 +54,9 @@ class _GivenPath(type(Path())):  # type: ignore[misc]
 
 
 def _given_path(path: str | Path, given: str) -> Path:
-    made = _GivenPath(path)
-    made.given = given
-    return made
+    remembering = _GivenPath(path)
+    remembering.given = given
+    return remembering
 
 
 def as_given(path: Path) -> str:

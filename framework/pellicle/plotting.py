@@ -56,7 +56,7 @@ def without_round_off(step: xr.Dataset) -> xr.Dataset:
     A gap counts as 0 up to ``solver.tolerance`` times the length by which the residuals of the step
     are judged, so that full contact is not drawn as a landscape of femtometres.
     """
-    solver = json.loads(step.attrs["configuration"]).get("solver", {})
+    solver = json.loads(step.attrs.get("configuration", "{}")).get("solver", {})
     tolerance = float(solver.get("tolerance", Solver.model_fields["tolerance"].default))
     gap, depth = step["gap"].values, float(step["depth"])
     # A step that failed may hold infinite numbers of both signs.

@@ -182,8 +182,8 @@ def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[Run
     made = []
     for point in study.points:
         identity = point.run.identity
-        said = point.run.to_json(as_given=True)
-        place = Place(directory / "runs", identity[:16], said, identity, overwrite)
+        configuration = point.run.to_json(as_given=True)
+        place = Place(directory / "runs", identity[:16], configuration, identity, overwrite)
         made.append(RunTask(point.name, point.run, place, point.place, _by_run(named)))
     return made
 
@@ -302,10 +302,10 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
         There is none, or it cannot be read.
     """
     whole = path / "study.h5" if path.is_dir() else path
-    made = storage.table(whole)
-    if problem := table.damage(made):
+    dataset = storage.table(whole)
+    if problem := table.damage(dataset):
         raise StorageError(f"{whole}: {problem}, so it is damaged; run the study again")
-    return made, whole.parent
+    return dataset, whole.parent
 
 
 def is_table(path: Path) -> bool:

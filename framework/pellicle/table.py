@@ -115,10 +115,13 @@ def damage(table: xr.Dataset) -> str:
     if unknown := {*table["status_code"].values.ravel()} - {"", *Status.__members__}:
         return f"has the status_code {min(map(str, unknown))!r}"
     try:
-        inputs = [json.loads(table.attrs[name]) for name in ("configuration", "axes", FIRST_RUN)]
+        study, axes, run = (
+            json.loads(table.attrs[name]) for name in ("configuration", "axes", FIRST_RUN)
+        )
+        known = all(isinstance(part, dict) for part in (study["study"], axes, run))
     except (LookupError, TypeError, ValueError):
-        inputs = []
-    if not inputs or not all(isinstance(it, dict) for it in (*inputs, inputs[0].get("study"))):
+        known = False
+    if not known:
         return "does not say which study it is of"
     return ""
 

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import cache
+from functools import cache, lru_cache
 from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any, get_args
 
@@ -89,6 +89,45 @@ def _is_unit(text: str) -> bool:
     return len(text) <= _LONGEST_UNIT and _UNIT.fullmatch(text) is not None
 
 
+# Each takes pint half a millisecond, and a study has thousands of values.
+@lru_cache(maxsize=1000)
+def _factor(unit: str, si: str) -> float:
+    """Return the factor from ``unit`` to the unit ``si``.
+
+    Raises
+    ------
+    ValueError
+        What is wrong with the unit.
+    """
+    unknown = f"has no unit that is known ({shown(unit)})"
+    if not _is_unit(unit):
+        raise ValueError(unknown)
+    registry = _registry()
+    try:
+        one, root = registry.Quantity(1.0, unit), _root(registry.Quantity(1.0, si))
+        factor = float(one.to(si).magnitude)
+        zero = float(registry.Quantity(0.0, unit).to(si).magnitude)
+    except Exception as error:
+        # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
+        if type(error).__name__ != "DimensionalityError":
+            raise ValueError(unknown) from None
+        measured = registry.Unit(unit).dimensionality
+        raise ValueError(f"measures {measured}, not {_dimension(si)}") from None
+    # Per cent, decibels and counts have no dimension in pint, as an angle has none.
+    if _root(one) != root:
+        raise ValueError(f"measures {_root(one)}, not {_dimension(si)}")
+    if zero != 0:
+        raise ValueError(f"is in a unit whose zero is {zero:.6g} {si}")
+    if not 0 < factor < math.inf:
+        raise ValueError(f"is in a unit of {factor:g} {si}")
+    return factor
+
+
+def _dimension(unit: str) -> str:
+    dimension = str(_registry().Unit(unit).dimensionality)
+    return "an angle" if dimension == "dimensionless" else dimension
+
+
 @dataclass(frozen=True)
 class Quantity:
     """Annotation of a float field: its SI unit and the values that make sense.
@@ -147,41 +186,15 @@ class Quantity:
         return self._convert(number, unit, value)
 
     def _convert(self, number: str, unit: str, value: str) -> float:
-        registry = _registry()
-        why, factor = "", 1.0
-        unknown = f"has no unit that is known ({shown(unit)})"
-        unit = " ".join(unit.split())
         try:
-            if not _is_unit(unit):
-                raise ValueError
-            one = registry.Quantity(1.0, unit)
-            factor = float(one.to(self.unit).magnitude)
-            # Per cent, decibels and counts have no dimension in pint, as an angle has none.
-            if _root(one) != _root(registry.Quantity(1.0, self.unit)):
-                why = f"measures {_root(one)}, not {self._dimension()}"
-            elif (zero := registry.Quantity(0.0, unit).to(self.unit).magnitude) != 0:
-                why = f"is in a unit whose zero is {zero:.6g} {self.unit}"
-            elif not 0 < factor < math.inf:
-                why = f"is in a unit of {factor:g} {self.unit}"
-        except Exception as error:
-            # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
-            kind = type(error).__name__
-            why = (
-                f"measures {registry.Unit(unit).dimensionality}, not {self._dimension()}"
-                if kind == "DimensionalityError"
-                else unknown
-            )
-        if why:
-            raise ValueError(f"{shown(value)} {why}; give {self._wanted()}")
+            factor = _factor(" ".join(unit.split()), self.unit)
+        except ValueError as problem:
+            raise ValueError(f"{shown(value)} {problem}; give {self._wanted()}") from None
         if not math.isfinite(float(number)) or float(number) == 0:
             # Its exponent may be beyond those of a decimal.
             return float(number)
         # In decimal "10 um" is 1e-05; in binary it would be 9.999999999999999e-06.
         return float(Decimal(number) * Decimal(repr(factor)))
-
-    def _dimension(self) -> str:
-        dimension = str(_registry().Unit(self.unit).dimensionality)
-        return "an angle" if dimension == "dimensionless" else dimension
 
     @property
     def has_known_unit(self) -> bool:

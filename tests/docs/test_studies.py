@@ -73,14 +73,14 @@ def test_fig2_cells_have_the_symbol(tmp_path: Path) -> None:
 def test_fig2_agreement_is_what_the_page_says() -> None:
     """On the grid of the file the largest difference, over the range named, is the figure given."""
     text = (ROOT / "docs/paper.md").read_text(encoding="utf-8")
-    (said,) = re.findall(r"a twelfth of the highest they agree within ([\d.]+) %", text)
+    (figure,) = re.findall(r"a twelfth of the highest they agree within ([\d.]+) %", text)
     largest = 0.0
     for point in Study.from_toml(STUDIES / "fig2.toml").points:
         q, cells = of_cells_along_x(point.run)
         used = slice(9, int(np.searchsorted(q, q[-1] / 12, "right")))
         symbol = point.run.kernel.compliance(q[used])
         largest = max(largest, float(np.abs(cells[used] / symbol - 1).max()))
-    assert f"{100 * largest:.2f}" == said
+    assert f"{100 * largest:.2f}" == figure
 
 
 def test_fig3_the_correction_helps_on_every_grid(tmp_path: Path) -> None:

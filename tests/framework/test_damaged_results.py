@@ -61,8 +61,8 @@ def _variable(name: str, values: Any, kind: Any = None) -> Callable[[h5py.File],
         old = file[name]
         scales = [next(iter(dim.values())).name for dim in old.dims]
         del file[name]
-        made = file.create_dataset(name, data=np.full(old.shape, values, kind), dtype=kind)
-        for dim, scale in zip(made.dims, scales, strict=True):
+        changed = file.create_dataset(name, data=np.full(old.shape, values, kind), dtype=kind)
+        for dim, scale in zip(changed.dims, scales, strict=True):
             dim.attach_scale(file[scale])
 
     return change
@@ -113,6 +113,24 @@ def test_result(damage: str, whole: bytes, tmp_path: Path) -> None:
         done = CliRunner().invoke(app, [command, str(path)])
         assert done.exit_code == 2, (done.exception, done.output)
         assert done.stderr.startswith(f"error: {path}: ")
+
+
+@pytest.mark.parametrize("damage", RESULTS)
+def test_run_that_would_go_on(
+    damage: str, whole: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run whose file is damaged says so, and how to begin anew; no output is blamed for it."""
+    monkeypatch.chdir(tmp_path)
+    run = pl.Run(**RUN)
+    Path("a.toml").write_text(run.to_toml(), encoding="utf-8")
+    Path("a").mkdir()
+    Path("a/a.h5").write_bytes(whole)
+    with h5py.File("a/a.h5", "r+") as file:
+        RESULTS[damage][0](file)
+    done = CliRunner().invoke(app, ["run", "a.toml"])
+    assert done.exit_code == 2, done.output
+    assert done.stderr.startswith("error: a/a.h5: ")
+    assert "--overwrite" in done.stderr
 
 
 TABLES = {

@@ -85,13 +85,13 @@ def test_given_paths_mean_the_same_from_anywhere(
     monkeypatch.chdir("/")
     run = pl.Run.from_toml(project / "runs" / "a.toml")
     file = project / "runs" / "../data/a.npy"
-    for made in (run, pickle.loads(pickle.dumps(run)), pl.Run.from_json(run.to_json())):
-        assert made.indenter.path == file  # type: ignore[attr-defined]
-        assert made == run
+    for copy in (run, pickle.loads(pickle.dumps(run)), pl.Run.from_json(run.to_json())):
+        assert copy.indenter.path == file  # type: ignore[attr-defined]
+        assert copy == run
     assert json.loads(run.to_json())["indenter"]["path"] == str(file)
-    for made in (run, pickle.loads(pickle.dumps(run))):
-        said = json.loads(made.to_json(as_given=True))
-        assert said["indenter"]["path"] == "../data/a.npy"
+    for copy in (run, pickle.loads(pickle.dumps(run))):
+        configuration = json.loads(copy.to_json(as_given=True))
+        assert configuration["indenter"]["path"] == "../data/a.npy"
     study = pl.Study.from_toml(project / "runs" / "s.toml")
     assert [point.run.indenter.path.name for point in study.points] == ["a.npy", "b.npy"]  # type: ignore[attr-defined]
     varied = pl.Study(run=run, vary={"indenter.unit": ["1 um", "2 um"]}).points[1].run

@@ -45,7 +45,7 @@ def print_steps(result: Result) -> None:
         data["step"].values.tolist(), data["converged"], data["status"], strict=True
     ):
         if converged and status != "converged" and number not in coarse:
-            typer.echo(f"step {number}: {status.item()}", err=True)
+            typer.echo(f"step {number}: {for_document(str(status.item()))}", err=True)
 
 
 def print_contact(result: Result) -> None:
@@ -87,7 +87,7 @@ def exit_by_convergence(result: Result) -> None:
     from pellicle.result import said_of_steps
 
     for step, message in result.failures():
-        typer.echo(f"step {step} did not converge: {message}", err=True)
+        typer.echo(f"step {step} did not converge: {for_document(message)}", err=True)
     if coarse := result.coarse():
         print_warning(said_of_steps(coarse))
     if not result.converged:
@@ -100,6 +100,6 @@ def exit_by_status(table: xr.Dataset) -> None:
 
     if message := failures(table):
         for reason in reasons(table):
-            typer.echo(reason, err=True)
+            typer.echo(for_document(reason), err=True)
         typer.echo(message, err=True)
         raise typer.Exit(NOT_CONVERGED)

@@ -202,9 +202,9 @@ def _irregular(path: Path) -> ConfigError:
     )
 
 
-def _is_coordinates(reader: Any, found: Any) -> bool:
+def _is_coordinates(reader: Any, channel: Any) -> bool:
     """Whether what was read as a matrix of three columns are points x, y, z."""
-    return bool(reader.format() == "asc" and found.nb_grid_pts[0] == 3)
+    return bool(reader.format() == "asc" and channel.nb_grid_pts[0] == 3)
 
 
 def _on_grid(columns: Array, size: tuple[float, float], path: Path) -> Array:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from pellicle import hookimpl, storage
 from pellicle.components import Output, Place
 from pellicle.errors import StorageError
-from pellicle.result import Result
+from pellicle.result import Result, load
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,11 +40,14 @@ class Hdf5(Output):
             )
 
     def resume(self, place: Place) -> xr.Dataset | None:
-        """Return the steps in the file."""
+        """Return the steps in the file; refuse one that something has damaged."""
         path = place.file(".h5")
         if place.overwrite or not path.exists():
             return None
-        steps = storage.read(path)
+        try:
+            steps = load(path).dataset
+        except StorageError as error:
+            raise StorageError(f"{error}; {storage.REPLACING}") from None
         storage.require_consecutive(steps, path)
         return steps
 

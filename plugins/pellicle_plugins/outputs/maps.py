@@ -77,6 +77,9 @@ class Maps(Drawing):
         )
         values = values[np.isfinite(values)] * factor
         low, high = (values.min(), values.max()) if values.size and not yes_or_no else (0.0, 1.0)
+        if low == high:
+            # Colours go from 0, where matplotlib would put 0 in the middle of nothing.
+            low, high = min(low, 0.0), max(high, 0.0 if low else 1.0)
         for axes, (title, run, field) in zip(all_axes, panels, strict=False):
             length, unit = axis_unit(np.append(run["x"].values, run["y"].values), "m")
             image = axes.imshow(

@@ -384,12 +384,12 @@ SIZED = "Channel: Main\nWidth: 4 um\nHeight: 3 um\nValue units: um"
 @pytest.mark.parametrize("unit", [1.0, 1e-6])
 def test_coordinates_under_a_header_with_sizes(unit: float, tmp_path: Path) -> None:
     """Three columns on a regular grid, in any order and length unit, are its heights."""
-    x, y = (each.ravel() for each in np.meshgrid([0.0, 1, 2, 3], [0.0, 1, 2], indexing="ij"))
+    x, y = (axis.ravel() for axis in np.meshgrid([0.0, 1, 2, 3], [0.0, 1, 2], indexing="ij"))
     columns = np.stack([unit * x, unit * y, x * y / 10], axis=1)
     path = tmp_path / "a.txt"
     np.savetxt(path, np.random.default_rng(0).permutation(columns), header=SIZED)
-    found = _profile(pl.Grid(points=[4, 3], size=["4 um", "3 um"]), path, level="none")
-    assert found == pytest.approx((x * y - 6).reshape(4, 3) * 1e-7, abs=1e-18)
+    profile = _profile(pl.Grid(points=[4, 3], size=["4 um", "3 um"]), path, level="none")
+    assert profile == pytest.approx((x * y - 6).reshape(4, 3) * 1e-7, abs=1e-18)
 
 
 @pytest.mark.parametrize(
@@ -410,7 +410,7 @@ def test_coordinates_that_are_no_grid_of_that_size(
     change: Callable[[np.ndarray], np.ndarray], header: str, message: str, tmp_path: Path
 ) -> None:
     """A point that is missing, twice or off its place, and another size, are refused."""
-    x, y = (each.ravel() for each in np.meshgrid([0.0, 1, 2, 3], [0.0, 1, 2], indexing="ij"))
+    x, y = (axis.ravel() for axis in np.meshgrid([0.0, 1, 2, 3], [0.0, 1, 2], indexing="ij"))
     np.savetxt(tmp_path / "a.txt", change(np.stack([x, y, x * y], axis=1)), header=header)
     with pytest.raises(pl.ConfigError, match=rf"^path: .*{message}"):
         pl.indenter("topography", path=tmp_path / "a.txt")

@@ -91,6 +91,17 @@ def _gaps(path: Path) -> list[tuple[float, float]]:
     return [(field["low"], field["high"]) for field in fields]
 
 
+def test_map_of_one_value_has_the_colour_of_its_value(tmp_path: Path) -> None:
+    """Nowhere a gap is the lowest colour, and the same pressure everywhere the highest."""
+    full = {**RUN, "loading": {"mean_pressure": "10 kPa"}}
+    outputs = [{"type": "maps", "field": f, "name": f} for f in ("gap", "mean_pressure")]
+    pl.run({**full, "outputs": outputs}, directory=tmp_path, progress=False)
+    for field, end in (("gap", 0.0), ("mean_pressure", 1.0)):
+        image = matplotlib.image.imread(tmp_path / f"run-{field}.png")
+        middle = image[image.shape[0] // 2, image.shape[1] // 3, :3]
+        np.testing.assert_allclose(middle, matplotlib.colormaps["viridis"](end)[:3], atol=0.01)
+
+
 def test_round_off_is_no_gap_in_a_study(tmp_path: Path) -> None:
     """The page of a study draws the last steps of its runs, where they are full contact, closed."""
     study = {**RUN, "outputs": [{"type": "html"}], "study": {"vary": {"kernel.tension": [0, 0.01]}}}
