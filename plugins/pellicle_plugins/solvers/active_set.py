@@ -42,6 +42,8 @@ _HANGING: Final = 0.4
 # Under a skin that bends a cell joins the contact if it penetrates by this share of the deepest:
 # one that joins lifts those around it.
 _DEEPEST: Final = 0.5
+# Cells that settled have gone astray where the error is above this share of the height range.
+_ASTRAY: Final = 0.5
 # Outer iterations without progress after which the solve is abandoned.
 _PATIENCE: Final = 30
 # Where as many looks find no fewer cells wrong, cells are no longer left to settle together.
@@ -94,13 +96,8 @@ class _State:
 
     @property
     def settles(self) -> bool:
-        """Whether cells settle together: bending decides, and the contact is nearly right."""
+        """Whether cells settle together: bending decides, and they have not gone astray."""
         return self.preconditioner.bends and self.relaxes
-
-    @property
-    def is_close(self) -> bool:
-        """Whether the error is small against the height range."""
-        return self.error <= _CLOSE * self.scale
 
     @property
     def pressure(self) -> Array:
@@ -130,7 +127,7 @@ class ActiveSet(ScaledSolver):
         preconditioner = Preconditioner(problem.operator)
         if start is not None and start.any():
             state = _measured(problem, start, preconditioner.on(start > 0), preconditioner)
-            if state.is_close:
+            if state.error <= _CLOSE * state.scale:
                 return state
         prolonged = self._prolonged(problem)
         start = first_guess(problem) if prolonged is None else prolonged
@@ -162,11 +159,9 @@ class ActiveSet(ScaledSolver):
             and len(history.contacts) <= _SETTLING
         ):
             relaxed_state = _relaxed(problem, state, solved, history, goal)
-            if relaxed_state is not None and (
-                relaxed_state.is_close or relaxed_state.error <= state.error
-            ):
-                return relaxed_state
             if relaxed_state is not None:
+                if relaxed_state.error <= max(state.error, _ASTRAY * relaxed_state.scale):
+                    return relaxed_state
                 again = _after(problem, state, state.on_contact, solved.pressure, history)
                 return replace(again, relaxes=False)
         on_changed = _changed(problem, state, solved, history)
