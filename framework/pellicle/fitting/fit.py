@@ -204,7 +204,7 @@ def fitted(posed: Posed) -> Fit:
         poissons_ratio=posed.asked.poissons_ratio,
         chi_squared=found.best.chi_squared,
         chi_squared_without_tension=found.without_tension.chi_squared,
-        advice=advice(likelihood, best, tension),
+        advice=advice(likelihood, best, modulus, tension),
         messages=(
             *alone.messages,
             *(check.message for check in alone.failed_checks),

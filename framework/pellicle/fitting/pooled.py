@@ -296,8 +296,10 @@ def _advice(modulus: Estimate, tension: Estimate) -> str:
     bounds = [
         f"± {percent(each.bound / each.value)} of the {name}"
         for name, each in (("modulus", modulus), ("tension", tension))
-        if not each.held and each.value
+        if not each.held and each.value and np.isfinite(each.bound)
     ]
+    if not bounds:
+        return ""
     return (
         f"no unbiased fit of these curves could beat {' and '.join(bounds)} (Cramér–Rao bound, "
         "one standard deviation)"

@@ -36,11 +36,16 @@ class Profiled:
     def estimate(self, which: int, unit: str) -> Estimate:
         """Return what is known of a parameter; of `MODULUS`, E* itself.
 
-        What no interval was sought of has no ends.
+        What no interval was sought of has no ends.  An interval that is narrower than the bound
+        has none: the bound is that of a model linear in its parameters, and this one is not.
         """
         value, bound = float(self.best.parameters[which]), float(self._bound[which])
         held = which not in self.likelihood.free
         low, high = (value, value) if held else self.ends.get(which, (None, None))
+        # The tension ends at 0.
+        lowest = 0.0 if which == TENSION and low is None else low
+        if lowest is not None and high is not None and max(high - value, value - lowest) < bound:
+            bound = np.inf
         found = Estimate(value, low, high, unit, bound, held)
         return found.exponential() if which == MODULUS else found
 
