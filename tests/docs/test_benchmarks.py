@@ -1,4 +1,4 @@
-"""The scripts that print the tables of docs/performance.md run, on small grids."""
+"""The scripts that print tables of the documentation run, on little."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 SCRIPTS = {
+    "fit_rivals.py": (["1"], 11),
     "cost.py": (["--cases", "rough", "punch", "--points", "32"], 2 * 3),
     "kernels.py": (["--cases", "rough", "--points", "32"], 18),
     "next_step.py": (["--cases", "rough", "--points", "32", "--repeats", "1"], 3 * 2),

@@ -128,8 +128,9 @@ def _check_contact(residuals: Residuals, before: NoiseEstimate) -> NoiseEstimate
         wrong = exceeds(sums, max(before.slow.noise, independent), before.slow.freedom)
     if wrong:
         failed.append(_pattern(residuals, sums, independent))
-        if sums.noise > noise:
-            noise, freedom = sums.noise, sums.freedom
+    # Noise that is slower than the bins before contact shows in the wider ones in contact.
+    if (wrong or before.slow is not None) and sums.noise > noise:
+        noise, freedom = sums.noise, sums.freedom
     return NoiseEstimate(noise, freedom, tuple(failed))
 
 

@@ -16,6 +16,10 @@ Segment = Literal["approach", "retract"]
 FEWEST = 8
 """Points that a fit needs at least."""
 _FEW = 30
+_ALIKE = 1e6
+"""Stiffness of a cantilever over that of a curve, or the reverse, that is fitted at most."""
+_SMALLEST = 1e-30
+"""Largest position [m] or force [N] of a curve, and one over the largest, that is fitted."""
 _PASS = 0.5
 """A change of direction counts if the position then moves by this share of its range."""
 _SEEN = 4.0
@@ -62,10 +66,12 @@ def clean(
         messages.append(f"{missing} of {z.size} rows hold no finite number and were left out")
         z, f = z[known], f[known]
     _enough(z, "the curve")
+    _in_si(z, "position", "m")
+    _in_si(f, "force", "N")
     span = float(np.ptp(z))
     if not span:
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
-    base = z if stiffness is None else z + f / stiffness
+    base = z if stiffness is None else _base(z, f, stiffness)
     _stiffens(base, f)
     rows = _one_pass(base, segment, messages)
     z, f, base = z[rows], f[rows], base[rows]
@@ -83,6 +89,8 @@ def clean(
 
 
 def _array(values: ArrayLike, name: str) -> Array:
+    if np.iscomplexobj(values):
+        raise ConfigError("holds complex numbers; give real values in SI", name)
     try:
         array = np.asarray(values, dtype=float)
     except (TypeError, ValueError):
@@ -90,6 +98,36 @@ def _array(values: ArrayLike, name: str) -> Array:
     if array.ndim != 1:
         raise ConfigError(f"is of shape {array.shape}; give a list, one curve at a time", name)
     return array
+
+
+def _base(z: Array, f: Array, stiffness: float) -> Array:
+    """Return the position of the cantilever's base [m].
+
+    Raises
+    ------
+    ConfigError
+        Its deflection is of another order than the position.
+    """
+    deflection = float(np.ptp(f)) / float(np.ptp(z))
+    if not 1 / _ALIKE <= deflection / stiffness <= _ALIKE:
+        raise ConfigError(
+            f"of {stiffness:.3g} N/m is far from the {deflection:.3g} N/m that this curve has "
+            "itself, so that one of force and deflection is nothing beside the other; give that of "
+            "the cantilever with its unit",
+            "spring_constant",
+        )
+    return z + f / stiffness
+
+
+def _in_si(values: Array, name: str, unit: str) -> None:
+    """Raise if values are so large or small that they cannot be what they are called."""
+    largest = float(np.max(np.abs(values)))
+    if largest and not _SMALLEST <= largest <= 1 / _SMALLEST:
+        raise ConfigError(
+            f"reaches {largest:.3g} {unit}, and must reach between {_SMALLEST:g} and "
+            f"{1 / _SMALLEST:g} {unit}: give SI values",
+            name,
+        )
 
 
 def _enough(z: Array, what: str) -> None:

@@ -63,10 +63,15 @@ def decidable(now: Design, others: list[Design]) -> bool:
     return any(design.worse < _USELESS for design in [now, *others])
 
 
-def advice(likelihood: Likelihood, parameters: Array, tension: Estimate) -> str:
+def advice(likelihood: Likelihood, parameters: Array, modulus: Estimate, tension: Estimate) -> str:
     """Return advice, if both modulus and tension were asked for."""
     if not {MODULUS, TENSION} <= set(likelihood.free):
         return ""
+    if tension.value and not np.isfinite([modulus.bound, tension.bound]).all():
+        return (
+            "the force is so far from linear in modulus and tension that no bound (Cramér–Rao) of "
+            "their errors holds; the intervals do"
+        )
     supposed = _with_tension(likelihood, parameters, tension)
     text = _advice(likelihood, supposed)
     if tension.value == supposed[TENSION]:

@@ -29,6 +29,7 @@ from .simulated import described
 from .simulation import GRID_POINTS
 from .sources import Source
 from .start import starts
+from .status import Report, ignore, status
 
 
 @dataclass(frozen=True)
@@ -124,7 +125,7 @@ def fit(
     grid_points
         Cells of each grid of a study along x and y.
     progress
-        Show how far a study is.
+        Show how far a study and the fit are, on a terminal.
 
     Raises
     ------
@@ -173,17 +174,22 @@ def fit_source(
     (found,) = posed([source], indenter, options)
     if isinstance(found, PellicleError):
         raise found
-    return fitted(found.modelled(**study))
+    modelled = found.modelled(**study)
+    with status(study.get("progress", False)) as report:
+        return fitted(modelled, report)
 
 
-def fitted(posed: Posed) -> Fit:
+def fitted(posed: Posed, report: Report = ignore) -> Fit:
     """Return the fit of a curve by an indenter that has a force curve.
+
+    ``report`` is called with what the fit is doing.
 
     Raises
     ------
     ConfigError
         The curve cannot be fitted.
     """
+    report("least squares")
     alone = explain(posed)
     likelihood, rise = alone.likelihood, allowed_rise(alone.freedom)
     found = profiled(
@@ -192,6 +198,7 @@ def fitted(posed: Posed) -> Fit:
         rise,
         likelihood.free,
         partial(_without_tension, likelihood),
+        report,
     )
     best = found.best.parameters
     point, modulus, tension = (
@@ -204,7 +211,7 @@ def fitted(posed: Posed) -> Fit:
         poissons_ratio=posed.asked.poissons_ratio,
         chi_squared=found.best.chi_squared,
         chi_squared_without_tension=found.without_tension.chi_squared,
-        advice=advice(likelihood, best, tension),
+        advice=advice(likelihood, best, modulus, tension),
         messages=(
             *alone.messages,
             *(check.message for check in alone.failed_checks),

@@ -71,17 +71,17 @@ def _end(
     span = limit - value
     if not span:
         return None
-    warm = best.parameters
+    # Minima on the way: a search that begins further out may end in another valley.
+    path = {0.0: best.parameters}
 
     def excess(share: float) -> float:
         """Return √Δχ² − √rise, nearly linear in the distance."""
-        nonlocal warm
-        start = warm.copy()
+        start = path[max(nearer for nearer in path if nearer <= share)].copy()
         start[which] = value + share * span
         found = likelihood.minimise(start, (which,))
         if found.chi_squared < best.chi_squared - _BETTER:
             raise Better(found)
-        warm = found.parameters
+        path[share] = found.parameters
         return float(np.sqrt(max(found.chi_squared - best.chi_squared, 0.0)) - np.sqrt(rise))
 
     deviation = float(likelihood.bounds(best.parameters, likelihood.free)[which])

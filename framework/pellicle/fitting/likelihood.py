@@ -31,6 +31,8 @@ _METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 60), ("
 _TOLERANCE = 1e-10
 _ACCURACY = 1e-6
 """Of the master curves."""
+_BALANCING = 200
+"""Steps of Newton's method in which they must."""
 _BALANCED = 1e-9
 """To which cantilever and solid balance, relative to the range of the force."""
 
@@ -307,8 +309,10 @@ class Likelihood(ChiSquared):
         if self.stiffness is None:
             return self._model(self.position, parameters)
         force = self.force.copy()
-        enough = _BALANCED * float(np.ptp(self.force))
-        while True:
+        # Positions that are far from 0 are rounded, and so is the force that they balance.
+        rounding = 8 * float(np.finfo(float).eps * np.max(np.abs(self.base))) * self.stiffness
+        enough = max(_BALANCED * float(np.ptp(self.force)), rounding)
+        for _ in range(_BALANCING):
             there, jacobian = self._model(self.base - force / self.stiffness, parameters)
             give = 1 - jacobian[:, POINT] / self.stiffness
             step = (there - force) / give
@@ -316,3 +320,7 @@ class Likelihood(ChiSquared):
             # Written so that NaN ends it.
             if not np.max(np.abs(step)) > enough:
                 return force, jacobian / give[:, None]
+        raise ConvergenceError(
+            f"the force of the cantilever does not balance that of the solid in {_BALANCING} "
+            "steps; is the spring constant right?"
+        )

@@ -32,6 +32,7 @@ from .shape_check import check_pooled_shape
 from .simulated import described
 from .simulation import GRID_POINTS
 from .sources import Curves, Source, gather
+from .status import Report, status
 
 _CHANCE = 1e-3
 """A disagreement less likely than this is no chance."""
@@ -195,10 +196,12 @@ def pool_sources(
             every.append(explain(each.modelled(**study)))
         except ConfigError as error:
             raise source.named(error, "; leave it out") from None
-    return _fitted(every, contact_points)
+    with status(study.get("progress", False)) as report:
+        return _fitted(every, contact_points, report)
 
 
-def _fitted(every: Sequence[Explained], contact_points: bool) -> PooledFit:
+def _fitted(every: Sequence[Explained], contact_points: bool, report: Report) -> PooledFit:
+    report("least squares")
     pool = Pool.of([each.likelihood for each in every])
     begun = begin(pool, every)
     singles = [
@@ -211,7 +214,7 @@ def _fitted(every: Sequence[Explained], contact_points: bool) -> PooledFit:
     rise = factor * allowed_rise(sum(each.freedom for each in every))
     points = [pool.place(number, POINT) for number in range(len(every))]
     wanted = [*shared, *(k for k in points if contact_points and k in pool.free)]
-    found = profiled(pool, begun, rise, wanted, partial(without_tension, pool))
+    found = profiled(pool, begun, rise, wanted, partial(without_tension, pool), report)
     modulus, tension = found.estimate(MODULUS, "Pa"), found.estimate(TENSION, "N/m")
     curves = []
     for number, part in enumerate(pool.parts(found.best.parameters)):
@@ -296,8 +299,10 @@ def _advice(modulus: Estimate, tension: Estimate) -> str:
     bounds = [
         f"± {percent(each.bound / each.value)} of the {name}"
         for name, each in (("modulus", modulus), ("tension", tension))
-        if not each.held and each.value
+        if not each.held and each.value and np.isfinite(each.bound)
     ]
+    if not bounds:
+        return ""
     return (
         f"no unbiased fit of these curves could beat {' and '.join(bounds)} (Cramér–Rao bound, "
         "one standard deviation)"

@@ -14,6 +14,7 @@ from pellicle.operators import Array
 from .estimate import Estimate
 from .interval import Better, Ends, interval
 from .likelihood import MODULUS, NAMES, TENSION, ChiSquared, Minimum, least
+from .status import Report, ignore
 
 
 @dataclass(frozen=True)
@@ -36,11 +37,16 @@ class Profiled:
     def estimate(self, which: int, unit: str) -> Estimate:
         """Return what is known of a parameter; of `MODULUS`, E* itself.
 
-        What no interval was sought of has no ends.
+        What no interval was sought of has no ends.  An interval that is narrower than the bound
+        has none: the bound is that of a model linear in its parameters, and this one is not.
         """
         value, bound = float(self.best.parameters[which]), float(self._bound[which])
         held = which not in self.likelihood.free
         low, high = (value, value) if held else self.ends.get(which, (None, None))
+        # The tension ends at 0.
+        lowest = 0.0 if which == TENSION and low is None else low
+        if lowest is not None and high is not None and max(high - value, value - lowest) < bound:
+            bound = np.inf
         found = Estimate(value, low, high, unit, bound, held)
         return found.exponential() if which == MODULUS else found
 
@@ -51,13 +57,15 @@ def profiled(
     rise: float,
     wanted: Sequence[int],
     without_tension: Callable[[Minimum], Minimum],
+    report: Report = ignore,
 ) -> Profiled:
     """Return the minimum near ``best``, that without tension, and intervals of what is ``wanted``.
 
-    ``without_tension`` finds a minimum without tension from one with it.  The intervals are where
+    ``report`` is called with what is sought.  ``without_tension`` finds a minimum without tension from one with it.  The intervals are where
     χ² has risen by ``rise``, widened by what the grids of a simulated curve may have shifted.
     """
     while True:
+        report("without tension")
         without = without_tension(best)
         if TENSION in likelihood.free and without.chi_squared <= best.chi_squared + 1e-6:
             # As good, and then exactly on the edge.
@@ -66,6 +74,7 @@ def profiled(
         lost = []
         try:
             for which in wanted:
+                report(f"interval of {NAMES[likelihood.kind(which)]}")
                 try:
                     ends[which] = interval(likelihood, best, which, rise)
                 except ConvergenceError:

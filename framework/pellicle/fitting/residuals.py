@@ -13,7 +13,7 @@ from pellicle.operators import Array
 from .likelihood import OFFSET, POINT, SLOPE, TENSION, Likelihood
 from .noise import BinnedNoise, binned_noise, neighbour_noise, resolution
 
-CHANCE = 2e-3
+CHANCE = 3e-3
 """Share of curves without fault that a check flags."""
 _NEAR = 0.01
 """Rows count as before contact if they lie further from it than this share of the range."""
