@@ -370,7 +370,9 @@ class Executor(Component):
 
     threads: Annotated[
         int | None,
-        Field(ge=1, description="threads of each run's Fourier transforms; all cores if absent"),
+        Field(
+            ge=1, description="threads of each run's Fourier transforms; if absent, what is fastest"
+        ),
     ] = None
 
     @abstractmethod
