@@ -410,7 +410,7 @@ class Executor(Component):
 
     threads: Annotated[
         Threads | None,
-        Field(description="threads of each run's Fourier transforms; all cores if absent"),
+        Field(description="threads of each run's Fourier transforms; if absent, what is fastest"),
     ] = None
 
     @abstractmethod

@@ -30,7 +30,10 @@ def run(
         bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")
     ] = False,
     threads: Annotated[
-        int | None, typer.Option(min=1, help="Threads of the Fourier transforms; all cores.")
+        int | None,
+        typer.Option(
+            min=1, help="Threads of the Fourier transforms; if not given, what is fastest."
+        ),
     ] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Begin anew, in place of whatever result is there.")

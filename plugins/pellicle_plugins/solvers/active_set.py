@@ -236,8 +236,11 @@ class ActiveSet(ScaledSolver):
 def _without_hanging(problem: Problem, state: _State) -> _State:
     """Return the state of a coarser grid's pressure without the cells that hang over the indenter.
 
-    Where heights change from cell to cell, a coarser grid's contact covers pits as well.
+    Where heights change from cell to cell, a coarser grid's contact covers pits as well. A
+    prescribed force may be high enough for them to touch.
     """
+    if problem.prescribed == "force":
+        return state
     contact = state.on_contact.contact
     gap = state.displacement - problem.profile
     gap -= problem.depth(gap[contact])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import cached_property
 from typing import Final
@@ -138,7 +139,7 @@ class OnContact:
     def __call__(self, residual: Array | Field) -> Array:
         """Return the preconditioned residual; both have one value for each cell of `cells`."""
         # A power of two changes no digit, and keeps small residuals in single precision.
-        size = float(np.ldexp(1.0, np.frexp(np.abs(residual).max())[1]))
+        size = 2.0 ** math.frexp(float(np.abs(residual).max()))[1]
         return self._gathered(self._stiffen(self._spread(residual / size))) * size
 
     def extended(self, values: Array | Field) -> Field:

@@ -1,0 +1,32 @@
+"""How many threads a run takes if it is not said."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+import pellicle as pl
+from pellicle.orchestrator import default_threads
+
+
+@pytest.mark.parametrize(
+    ("points", "boundary", "threads"),
+    [
+        (64, "periodic", 1),
+        (1024, "periodic", 1),
+        (2047, "periodic", 1),
+        (2048, "periodic", 6),
+        ((4096, 1024), "periodic", 6),
+        (512, "free", 1),
+        (1023, "free", 1),
+        (1024, "free", 6),
+    ],
+)
+def test_threads_are_taken_where_transforms_are_large(
+    points: int, boundary: str, threads: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All cores from 2048² transformed points on, of which a free grid has four for each cell."""
+    monkeypatch.setattr(os, "sched_getaffinity", lambda pid: set(range(6)), raising=False)
+    grid = pl.Grid(points=points, size=1.0, boundary=boundary)  # type: ignore[arg-type]
+    assert default_threads(grid) == threads
