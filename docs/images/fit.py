@@ -15,7 +15,7 @@ from pellicle.fitting.drawing import save_figure
 
 def main() -> None:
     """Fit, draw and write the picture next to this file."""
-    bead = pl.indenter("paraboloid", radius="5 um")
+    bead = pl.indenter("sphere", radius="5 um")
     assert isinstance(bead, pl.HasForceCurve)
     depth = np.linspace(-0.5e-6, 1.5e-6, 1000)
     force = 2e3 * bead.force_curve(depth, 5e-6).force

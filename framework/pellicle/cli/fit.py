@@ -31,7 +31,12 @@ def fit(
         ),
     ],
     indenter: Annotated[
-        str, typer.Option("--indenter", "-i", help="Type: paraboloid, sphere, cone, flat_punch, …")
+        str,
+        typer.Option(
+            "--indenter",
+            "-i",
+            help="Type: sphere (a bead), paraboloid (Hertz, to 0.1 R), cone, flat_punch, …",
+        ),
     ],
     radius: Annotated[
         list[str] | None,

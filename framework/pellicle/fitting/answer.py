@@ -14,12 +14,6 @@ from .interval import CONFIDENCE
 from .residuals import FailedCheck
 from .written import as_json, write_json
 
-LOOK_ALIKES = (
-    "one curve of a solid that relaxes, softens with depth or adheres can look the same: a second "
-    "speed or a dwell, a second radius, and the retract would tell"
-)
-"""What a tension can be mistaken for, and which measurement tells."""
-
 
 def doubt(failed: Sequence[FailedCheck]) -> str:
     """Return why checks that fail leave no evidence of a tension; empty if they leave it."""
@@ -37,6 +31,11 @@ class Answer:
     """Modulus and tension, and how well they explain what was measured."""
 
     _does: ClassVar[str] = "this curve does"
+    _look_alikes: ClassVar[str] = (
+        "one curve of a solid that relaxes, softens with depth or adheres can look the same: a "
+        "second speed or a dwell, a second radius, and the retract would tell"
+    )
+    """What a tension can be mistaken for, and which measurement tells."""
 
     reduced_modulus: Estimate
     """E* [Pa]."""
@@ -88,7 +87,7 @@ class Answer:
         if tension.low is not None and self.doubt:
             return f"tension fits better than none ({figures}), but {self.doubt}"
         if tension.low is not None:
-            return f"tension is needed ({figures} against none); {LOOK_ALIKES}"
+            return f"tension is needed ({figures} against none); {self._look_alikes}"
         if tension.high is not None:
             bound = f"it is below {tension.high:.3g} N/m"
             return f"{self._does} not show tension ({figures}); {bound}"

@@ -46,9 +46,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
         depth, window = _deepest_dip(measured, line, independent)
     # A dip may begin before its window.
     far = max(rows - 2 * window, rows // 4) if depth < _DEEPEST else rows
-    slow = binned_noise(force[:far], line[:far], _equal_bins(far))
-    if slow is not None and not exceeds(slow, independent, independent_freedom(far)):
-        slow = None
+    slow = _slow(force[:far], line[:far], independent)
     noise_of_sums = independent if slow is None else max(slow.noise, independent)
     failed: list[FailedCheck] = []
     trend = line
@@ -91,6 +89,23 @@ def _deepest_dip(force: Array, baseline: Array, noise: float) -> tuple[float, in
         if depth < deepest:
             deepest, width = depth, window
     return deepest, width
+
+
+def _slow(force: Array, line: Array, independent: float) -> BinnedNoise | None:
+    """Return the noise about a line, if it is more than what neighbours show, else None.
+
+    Sums over bins show slow noise best; the scatter itself shows data that were smoothed.
+    """
+    rows = force.size
+    left = force - line @ np.linalg.lstsq(line, force, rcond=None)[0]
+    scatter = BinnedNoise(float(np.sqrt(np.sum(left**2) / (rows - 2))), rows - 2)
+    shown = [scatter, binned_noise(force, line, _equal_bins(rows))]
+    slow = [
+        noise
+        for noise in shown
+        if noise is not None and exceeds(noise, independent, independent_freedom(rows))
+    ]
+    return max(slow, default=None, key=lambda noise: noise.noise)
 
 
 def _slope(force: Array, line: Array) -> tuple[float, float]:

@@ -86,6 +86,10 @@ class PooledFit(Answer):
     """What several curves say together of one solid."""
 
     _does: ClassVar[str] = "these curves do"
+    _look_alikes: ClassVar[str] = (
+        "curves of one speed on a solid that relaxes, or that adheres, can look the same: a second "
+        "speed or a dwell, and the retract would tell"
+    )
 
     curves: tuple[PooledCurve, ...]
     agreement: str

@@ -61,8 +61,9 @@ def profiled(
 ) -> Profiled:
     """Return the minimum near ``best``, that without tension, and intervals of what is ``wanted``.
 
-    ``report`` is called with what is sought.  ``without_tension`` finds a minimum without tension from one with it.  The intervals are where
+    ``without_tension`` finds a minimum without tension from one with it.  The intervals are where
     χ² has risen by ``rise``, widened by what the grids of a simulated curve may have shifted.
+    ``report`` is called with what is sought.
     """
     while True:
         report("without tension")

@@ -53,7 +53,7 @@ def check_shape(likelihood: Likelihood, best: Minimum) -> tuple[list[str], list[
     words = _words(likelihood, best.parameters, shape, free.parameters)
     if not fails:
         return [words], []
-    return [], [FailedCheck("shape", f"{words}, and explains the curve as well without tension")]
+    return [], [FailedCheck("shape", f"{words}; it explains the curve as well without tension")]
 
 
 def check_pooled_shape(pool: Pool, best: Minimum) -> list[FailedCheck]:
