@@ -391,8 +391,9 @@ def _positive(kernel: HasCompliance, q: Array, values: Array) -> Array:
     if wrong.size:
         raise ConfigError(
             f"compliance(q) of {component_name(kernel)} is {values[wrong[0]]:.3g} m/Pa at q = "
-            f"{q[wrong[0]]:.3g} rad/m; it has to be positive and finite; check the parameters, "
-            "which may lead beyond a computer's numbers, or the formula if the kernel is yours",
+            f"{q[wrong[0]]:.3g} rad/m; it has to be positive and finite, and may be beyond the "
+            "numbers that a computer has; check the parameters, or the formula if the kernel is "
+            "yours",
             "kernel",
         )
     return values

@@ -77,7 +77,7 @@ def test_round_off_is_no_gap(folder: Path) -> None:
     assert (without_round_off(part)["gap"].values[opened] == part["gap"].values[opened]).all()
     with (folder / "run-profiles.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert {float(row["y"]) for row in rows if row["curve"] == "step = 1"} == {0.0}
+    assert {float(row["y"]) for row in rows if row["curve"] == "step = 2"} == {0.0}
     assert max(float(row["y"]) for row in rows) > 1e-7
     assert _gaps(folder / "run.html")[1] == (0.0, 0.0)
     assert _gaps(folder / "run.html")[0][1] > 0
