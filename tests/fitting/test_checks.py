@@ -201,7 +201,7 @@ def test_tables_and_pools_carry_failed_checks(cli: Callable[..., Result], tmp_pa
         header = "position [um],force [nN]"
         np.savetxt(name, rows, delimiter=",", header=header, comments="", fmt="%.12g")
     common = ("dip.csv", "clean.csv", "-i", "paraboloid", "--radius", "5 um", "-o", "out")
-    cli(*common)
+    assert "adhesion" in cli(*common).stdout
     with Path("out/fits.csv").open(encoding="utf-8") as file:
         dip, clean = csv.DictReader(file)
     assert "adhesion" in dip["failed_checks"].split("; ")
