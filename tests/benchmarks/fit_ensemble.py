@@ -51,7 +51,7 @@ def scores(curves: int, seed: int, *, points: int = 2000, tensed: bool = True) -
         fit = pl.fit(depth + point, measured, indenter=indenter)
         truth = np.array([point, np.log(modulus), tension, 0.0, 0.0])
         true = Likelihood(depth + point, force, indenter, noise, (0, 1, 2))
-        _, of_modulus, of_tension, *_ = true.deviations(truth)
+        _, of_modulus, of_tension, *_ = true.bounds(truth, true.free)
         yield Score(
             (fit.reduced_modulus.value / modulus - 1) / of_modulus,
             (fit.tension.value - tension) / of_tension,

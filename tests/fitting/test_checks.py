@@ -92,6 +92,17 @@ def test_advice_on_drift_mends_it() -> None:
     assert not fit(position, force, baseline="slope").failed_checks
 
 
+def test_slope_that_takes_up_attraction_is_cautioned() -> None:
+    """A fitted baseline that falls towards contact may be attraction, and one that rises not."""
+    position, force = white(1)
+    depth = position - 1e-6
+    attracted = force - 0.02 * force.max() * np.exp(np.minimum(depth, 0.0) / (0.3 * depth[-1]))
+    result = fit(position, attracted, baseline="slope")
+    assert any("attraction of long range" in message for message in result.messages)
+    risen = force + 0.02 * force.max() * np.linspace(0, 1, force.size)
+    assert not fit(position, risen, baseline="slope").messages
+
+
 def test_offset_is_said_and_mended() -> None:
     """A baseline off 0 is said, with its value and the baseline that fits it."""
     position, force = white(2)
@@ -190,7 +201,7 @@ def test_tables_and_pools_carry_failed_checks(cli: Callable[..., Result], tmp_pa
         header = "position [um],force [nN]"
         np.savetxt(name, rows, delimiter=",", header=header, comments="", fmt="%.12g")
     common = ("dip.csv", "clean.csv", "-i", "paraboloid", "--radius", "5 um", "-o", "out")
-    cli(*common)
+    assert "adhesion" in cli(*common).stdout
     with Path("out/fits.csv").open(encoding="utf-8") as file:
         dip, clean = csv.DictReader(file)
     assert "adhesion" in dip["failed_checks"].split("; ")
@@ -219,10 +230,8 @@ def test_pool_of_curves_that_fail_needs_no_tension() -> None:
 
 def _cantilever(stiffness: float) -> tuple[Array, Array]:
     """Return position and force of a solid that stiffens, under a soft cantilever, with noise."""
-    base = np.linspace(-1.0, 1.0, 400) * 1.5e-6
-    depth = np.linspace(-1.5, 1.5, 20000) * 1e-6
-    force = np.maximum(depth / 1.5e-6, 0.0) ** 2.2 * 1.2e-8
-    seen = np.interp(base, depth + force / stiffness, force)
+    base = np.linspace(-0.3, 1.0, 400) * 1.5e-6
+    seen = 0.8 * stiffness * 1.5e-6 * np.maximum(base / 1.5e-6, 0.0) ** 2.2
     seen += 0.005 * seen.max() * np.random.default_rng(3).standard_normal(base.size)
     return base - seen / stiffness, seen
 
@@ -242,7 +251,7 @@ def test_fit_with_a_cantilever_and_a_baseline_ends(
         return whole(*arguments)  # type: ignore[arg-type]
 
     monkeypatch.setattr(Likelihood, "_model", counted)
-    result = fit(*_cantilever(1e-3), spring_constant=1e-3, baseline=baseline)
+    result = fit(*_cantilever(5e-4), spring_constant=5e-4, baseline=baseline)
     assert result.failed_checks
 
 

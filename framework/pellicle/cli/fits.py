@@ -47,7 +47,9 @@ def print_fits(rows: list[dict[str, Any]]) -> None:
                 told = found and not found["held"]
                 line[f"95 % of {name}"] = _interval(found["low"], found["high"]) if told else ""
         verdict, _, reason = row["status"].partition(": ")
-        shown.append(line | {"notes": str(len(row.get("messages", ()))), "status": verdict})
+        codes = ", ".join(check["code"] for check in row.get("failed_checks", ()))
+        notes = str(len(row.get("messages", ())))
+        shown.append(line | {"failed checks": codes, "notes": notes, "status": verdict})
         if reason:
             typer.echo(f"{row['curve']}: {reason}", err=True)
     print_table(list(shown[0]), shown)

@@ -40,10 +40,10 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     line = np.column_stack([np.ones(rows), travel / travel[-1]])
     # As measured: a slope of the baseline that is fitted takes up a part of a dip.
     measured = residuals.likelihood.force[before]
-    depth, window = _deepest_dip(measured, line[:, :1], independent)
+    depth, window, drop = _deepest_dip(measured, line[:, :1], independent)
     if abs(_slope(measured, line)[0]) > abs(depth) * independent:
         # A line explains more than a dip, which must then show beside the line.
-        depth, window = _deepest_dip(measured, line, independent)
+        depth, window, drop = _deepest_dip(measured, line, independent)
     # A dip may begin before its window.
     far = max(rows - 2 * window, rows // 4) if depth < _DEEPEST else rows
     slow = _slow(force[:far], line[:far], independent)
@@ -52,7 +52,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     trend = line
     if depth * independent < _DEEPEST * noise_of_sums:
         trend = np.column_stack([line, _last(window, rows)])
-        failed.append(_adhesion(measured, window))
+        failed.append(_adhesion(drop, window))
     else:
         far = rows
     failed += _drift_or_offset(residuals, force[:far], line[:far], noise_of_sums)
@@ -72,12 +72,30 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     return NoiseEstimate(noise, freedom, tuple(failed), slow)
 
 
-def _deepest_dip(force: Array, baseline: Array, noise: float) -> tuple[float, int]:
-    """Return the depth of the deepest dip next to contact, in standard errors, and its rows.
+def falling_baseline(residuals: Residuals) -> tuple[str, ...]:
+    """Return a caution if a fitted baseline falls towards contact, as attraction would have it."""
+    if not residuals.is_free(SLOPE):
+        return ()
+    before = residuals.before
+    force, travel = residuals.likelihood.force[before], residuals.likelihood.travel[before]
+    line = np.column_stack([np.ones(force.size), travel / travel[-1]])
+    slope, steepness = _slope(force, line)
+    if ndtr(slope / residuals.independent_noise(before)) >= CHANCE:
+        return ()
+    change = slope * steepness * float(np.ptp(line[:, 1]))
+    return (
+        f"the baseline falls by {-change:.3g} N towards contact, which drift does, and attraction "
+        "of long range too, which bends a curve as tension does: see whether it falls as much "
+        "further out",
+    )
+
+
+def _deepest_dip(force: Array, baseline: Array, noise: float) -> tuple[float, int, float]:
+    """Return the depth of the deepest dip next to contact in standard errors, its rows, and [N].
 
     The depth is negative.  What the columns of ``baseline`` span is fitted beside the dip.
     """
-    deepest, width = 0.0, 0
+    deepest, width, drop = 0.0, 0, 0.0
     basis, _ = np.linalg.qr(baseline)
     for share in _WINDOWS:
         window = int(share * force.size)
@@ -85,10 +103,11 @@ def _deepest_dip(force: Array, baseline: Array, noise: float) -> tuple[float, in
             break
         step = _last(window, force.size)
         step -= basis @ (basis.T @ step)
-        depth = float(step @ force) / (noise * float(np.linalg.norm(step)))
+        norm = float(np.linalg.norm(step))
+        depth = float(step @ force) / (noise * norm)
         if depth < deepest:
-            deepest, width = depth, window
-    return deepest, width
+            deepest, width, drop = depth, window, -depth * noise / norm
+    return deepest, width, drop
 
 
 def _slow(force: Array, line: Array, independent: float) -> BinnedNoise | None:
@@ -125,11 +144,10 @@ def _equal_bins(rows: int) -> Array:
     return np.where(number[:, None] == np.arange(_BINS), 1.0, 0.0)
 
 
-def _adhesion(force: Array, window: int) -> FailedCheck:
-    depth = float(np.mean(force[:-window]) - np.mean(force[-window:]))
+def _adhesion(drop: float, window: int) -> FailedCheck:
     return FailedCheck(
         "adhesion",
-        f"the force dips by {depth:.3g} N below its baseline over the last {window} points before "
+        f"the force dips by {drop:.3g} N below its baseline over the last {window} points before "
         "contact: that is adhesion, which the model does not have, and which bends a curve as "
         "tension does; measure where nothing attracts, or fit the tension with a model of adhesion",
     )

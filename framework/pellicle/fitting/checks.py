@@ -9,7 +9,7 @@ from scipy.special import fdtrc
 
 from pellicle.operators import Array
 
-from .baseline_checks import check_baseline
+from .baseline_checks import check_baseline, falling_baseline
 from .likelihood import POINT, Likelihood
 from .noise import BinnedNoise
 from .residuals import (
@@ -63,6 +63,7 @@ def examine(likelihood: Likelihood, parameters: Array) -> Examined:
         whole = _check_whole(residuals)
     else:
         source = f"{count} points before contact"
+        messages = falling_baseline(residuals)
         whole = _check_contact(residuals, check_baseline(residuals))
     failed = (*spikes, *whole.failed)
     if failed:

@@ -34,7 +34,7 @@ def save_report(fit: Fit | PooledFit, path: Path, title: str) -> Path:
     else:
         said, found, drawn = sheet.careful(fit.messages), [_estimates(fit)], drawing.pictures(fit)
         told = [sheet.model([fit.model()]), _facts(fit)]
-    comparison = Notice(sheet.sentence(fit.comparison), good=True)
+    comparison = Notice(sheet.sentence(fit.comparison), good=not fit.doubt)
     sections = [
         Section("Result", [comparison, *said, *found]),
         Section("Figures", sheet.pictures(drawn)),
