@@ -74,7 +74,7 @@ def test_one_wave_on_a_row_of_long_cells_under_a_plate(depth: float) -> None:
 
 
 def test_single_peaks_that_no_coarser_cell_touches_are_seen() -> None:
-    """Where no coarse cell is reached in the mean, the highest cells are pressed: 9 applications."""
+    """Where no coarse cell is reached in the mean, the highest are pressed: 9 applications."""
     grid = Grid(points=96, size=LENGTH, boundary="free")
     heights = np.full(grid.shape, -1e-5)
     heights[::16, ::16] = 0.0
