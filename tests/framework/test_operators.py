@@ -22,3 +22,20 @@ def test_single_precision(boundary: Literal["free", "periodic"]) -> None:
     assert 0 < np.abs(rough - exact).max() < 3e-6 * np.abs(exact).max()
     np.testing.assert_array_equal(operator(pressure), exact)
     assert operator.applications == 3
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_a_scaled_operator_keeps_every_digit(boundary: Literal["free", "periodic"]) -> None:
+    """By a power of two; both count together, and the coarser one is scaled as well."""
+    grid = Grid(points=16, size=1e-12, boundary=boundary)
+    operator = make_operator(TensedMembrane(reduced_modulus=1e9, tension=2e-5), grid)
+    relative = operator.scaled(1 / operator.unit)
+    pressure = np.random.default_rng(1).uniform(size=grid.shape)
+    np.testing.assert_array_equal(relative(pressure) * operator.unit, operator(pressure))
+    assert operator.applications == relative.applications == 2
+    assert relative.unit == 1
+    assert 1 <= relative.greatest < 2
+    wave = np.array([np.pi / 1e-13])
+    assert relative.compliance(wave) * operator.unit == operator.kernel.compliance(wave)
+    coarse = make_operator(operator.kernel, grid.coarsened())
+    assert relative.coarsened().greatest * operator.unit == coarse.greatest

@@ -7,7 +7,7 @@ import pytest
 
 from pellicle import Grid, Problem
 from pellicle.operators import make_operator
-from pellicle.transfer import prolong, restrict
+from pellicle.transfer import highest, prolong, restrict
 from pellicle_plugins.kernels.half_space import HalfSpace
 
 # Fine shape, coarse shape: halves, odd, primes, one cell, and numbers that share no factor.
@@ -72,6 +72,18 @@ def test_same_shape_is_the_same_field() -> None:
     heights[1, 2] = -np.inf
     np.testing.assert_array_equal(restrict(heights, (5, 4)), heights)
     np.testing.assert_array_equal(prolong(heights, (5, 4)), heights)
+
+
+@pytest.mark.parametrize(("fine", "coarse"), PAIRS)
+def test_highest_is_that_of_the_cells_within(
+    fine: tuple[int, int], coarse: tuple[int, int]
+) -> None:
+    """Each fine cell is no higher than the coarse one in which it lies; one of them is as high."""
+    heights = field(fine)
+    peaks = highest(heights, coarse)
+    above = prolong(peaks, fine)
+    assert (heights <= above).all()
+    assert (heights == above).sum() == peaks.size
 
 
 def test_half_without_indenter_is_without() -> None:

@@ -162,7 +162,8 @@ class ActiveSet(ScaledSolver):
             if relaxed_state is not None:
                 if relaxed_state.error <= max(state.error, _ASTRAY * relaxed_state.scale):
                     return relaxed_state
-                again = _after(problem, state, state.on_contact, solved.pressure, history)
+                # The same contact once more, solved further.
+                again = _after(problem, state, state.on_contact, solved.pressure, state.history)
                 return replace(again, relaxes=False)
         on_changed = _changed(problem, state, solved, history)
         pressure = on_changed.moved(solved.pressure)

@@ -73,6 +73,16 @@ def test_one_wave_on_a_row_of_long_cells_under_a_plate(depth: float) -> None:
     assert_solved(make(PLATE, grid, 1e-6 * np.cos(2 * np.pi * x / LENGTH), "depth", depth), 600)
 
 
+def test_single_peaks_that_no_coarser_cell_touches_are_seen() -> None:
+    """Where no coarse cell is reached in the mean, the highest are pressed: 9 applications."""
+    grid = Grid(points=96, size=LENGTH, boundary="free")
+    heights = np.full(grid.shape, -1e-5)
+    heights[::16, ::16] = 0.0
+    problem = make(SOLID, grid, heights, "depth", 1e-6)
+    assert not problem.coarsened().touches
+    assert_solved(problem, 12)
+
+
 @pytest.mark.parametrize("kernel", KERNELS.values(), ids=KERNELS.keys())
 @pytest.mark.parametrize("share", [1e-9, 1e-6, 1e-3, 1e-2, 0.1])
 def test_white_noise_at_a_depth_near_full_contact(kernel: Kernel, share: float) -> None:
