@@ -23,11 +23,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-
-from . import checksum, netcdf
+from . import checksum, netcdf, version_1
 from .errors import StorageError, shown
-from .status import Status
 
 if TYPE_CHECKING:
     import h5py
@@ -45,23 +42,6 @@ REPLACING = (
 """What to do where a file of something else is in the way."""
 _SMALL = 4_000_000
 """Files that are copied for each step [bytes]: it takes no longer than beginning another one."""
-_HEADS_OF_VERSION_1 = {
-    "converged; the contact area": Status.NEAREST_AREA,
-    "converged, but the cells": Status.COARSE,
-    "converged": Status.CONVERGED,
-    "the pressure became": Status.NOT_FINITE,
-    "the solver returned": Status.NEGATIVE_PRESSURE,
-    "the surface misses": Status.CONTACT_RESIDUAL,
-    "the surface penetrates": Status.PENETRATION,
-    "pressure acts": Status.COMPLEMENTARITY,
-    "the force misses": Status.LOAD,
-    "the contact area misses": Status.AREA,
-    "the contact stiffness": Status.STIFFNESS,
-    "the contact reaches": Status.CONTACT_AT_EDGE,
-    "not run": Status.NOT_RUN,
-    "failed": Status.FAILED,
-}
-"""How the messages of version 1 begin, which had no codes."""
 
 
 def write(dataset: xr.Dataset, path: Path) -> None:
@@ -299,30 +279,9 @@ def _version(file: h5py.File) -> Any:
 def _content(file: h5py.File, without: Collection[str] = ()) -> xr.Dataset:
     content = netcdf.dataset(file, without=without)
     if _version(file) == 1:
-        content = _from_version_1(content)
+        content = version_1.completed(content)
     content.attrs = _attributes(file)
     return content
-
-
-def _from_version_1(content: xr.Dataset) -> xr.Dataset:
-    """Return steps that count from 1, and the codes of their statuses."""
-    if "step" in content.coords:
-        attributes = content["step"].attrs
-        content = content.assign_coords(step=content["step"] + 1)
-        content["step"].attrs = attributes
-    if "status" in content:
-        messages = content["status"]
-        codes = [_code_of_version_1(text) for text in messages.values.ravel()]
-        shaped = np.array(codes, dtype=object).reshape(messages.shape)
-        content = content.assign(status_code=(messages.dims, shaped))
-    return content
-
-
-def _code_of_version_1(message: str) -> str:
-    if not message:
-        return ""
-    heads = (head for head in _HEADS_OF_VERSION_1 if message.startswith(head))
-    return _HEADS_OF_VERSION_1[next(heads, message)].name
 
 
 def _attributes(file: h5py.File) -> dict[str, Any]:

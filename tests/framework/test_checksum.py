@@ -13,7 +13,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle import checksum, storage
+from pellicle import checksum, storage, version_1
 from pellicle.cli import app
 
 DATA = Path(__file__).parents[1] / "data"
@@ -149,6 +149,32 @@ def test_version_1_is_read(version_1: Path) -> None:
     assert data["step"].values.tolist() == [1, 2]
     assert data["force"].values.tolist() == [1e-6, 2e-6]
     assert storage.scalars(version_1)["step"].values.tolist() == [1, 2]
+
+
+MESSAGES_OF_VERSION_1 = {
+    "converged": "CONVERGED",
+    "converged; the contact area misses the prescribed one by 1.0e-03, and no load brings a nearer "
+    "number of whole cells: more points do": "NEAREST_AREA",
+    "converged, but the cells are too coarse for this contact, which covers 4 of them: force, depth "
+    "and area may be far off; use more points, or a smaller grid.size": "COARSE",
+    "the contact area misses the prescribed one by 1.0e-01, over 0.05; use more points": "AREA",
+    "pressure acts across a gap: complementarity 1.0e-06 is over the tolerance 1.0e-08; no progress "
+    "any more: the tolerance is below round-off here, loosen solver.tolerance": "COMPLEMENTARITY",
+    "not run": "NOT_RUN",
+    "failed: no space left on device": "FAILED",
+    "": "",
+}
+
+
+def test_statuses_of_version_1_get_codes() -> None:
+    """Of the sentences that version 1 wrote, runs that failed or were not done among them."""
+    table = xr.Dataset(
+        {"status": (("axis", "step"), np.array([[*MESSAGES_OF_VERSION_1]], dtype=object))},
+        {"step": np.arange(len(MESSAGES_OF_VERSION_1))},
+    )
+    completed = version_1.completed(table)
+    assert completed["status_code"].values.tolist() == [[*MESSAGES_OF_VERSION_1.values()]]
+    assert completed["step"].values.tolist() == [*range(1, len(MESSAGES_OF_VERSION_1) + 1)]
 
 
 def test_version_1_is_resumed(version_1: Path) -> None:

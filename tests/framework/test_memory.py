@@ -74,6 +74,7 @@ KINDS = {
         512, "periodic", loading={"depth": [1e-6 * (step + 1) for step in range(8)]}
     ),
     "periodic, little contact, many outputs": _kind(1024, "periodic", **ALL_OUTPUTS),
+    "periodic, full contact, many outputs": _kind(1024, "periodic", **FULL, **ALL_OUTPUTS),
     "periodic, a line of cells": _kind(
         512,
         "periodic",

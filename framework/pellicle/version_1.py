@@ -1,0 +1,57 @@
+"""What result files of version 1 lack: steps that count from 1, and codes of statuses."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .status import Status
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_HEADS = {
+    "converged; the contact area": Status.NEAREST_AREA,
+    "converged, but the cells": Status.COARSE,
+    "converged": Status.CONVERGED,
+    "the pressure became": Status.NOT_FINITE,
+    "the solver returned": Status.NEGATIVE_PRESSURE,
+    "the surface misses": Status.CONTACT_RESIDUAL,
+    "the surface penetrates": Status.PENETRATION,
+    "pressure acts": Status.COMPLEMENTARITY,
+    "the force misses": Status.LOAD,
+    "the contact area misses": Status.AREA,
+    "the contact stiffness": Status.STIFFNESS,
+    "the contact reaches": Status.CONTACT_AT_EDGE,
+    "not run": Status.NOT_RUN,
+    "failed": Status.FAILED,
+}
+"""How its messages begin."""
+
+
+def completed(content: xr.Dataset) -> xr.Dataset:
+    """Return the content of a result or of a table of version 1 as the present version has it.
+
+    Raises
+    ------
+    KeyError
+        A message is not one of version 1.
+    """
+    if "step" in content.coords:
+        attributes = content["step"].attrs
+        content = content.assign_coords(step=content["step"] + 1)
+        content["step"].attrs = attributes
+    if "status" in content:
+        messages = content["status"]
+        codes = [_code(message) for message in messages.values.ravel()]
+        shaped = np.array(codes, dtype=object).reshape(messages.shape)
+        content = content.assign(status_code=(messages.dims, shaped))
+    return content
+
+
+def _code(message: str) -> str:
+    if not message:
+        return ""
+    heads = (head for head in _HEADS if message.startswith(head))
+    return _HEADS[next(heads, message)].name
