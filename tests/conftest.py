@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from importlib.metadata import entry_points
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -41,6 +42,14 @@ def end(process: subprocess.Popen[bytes]) -> None:
     except subprocess.TimeoutExpired:
         process.kill()
         process.wait()
+
+
+def written_address(file: Path) -> str:
+    """Return the address in the file of a dask scheduler; empty as long as it is not whole."""
+    try:
+        return str(json.loads(file.read_text())["address"])
+    except (OSError, ValueError):
+        return ""
 
 
 @pytest.fixture(scope="session")
@@ -76,10 +85,9 @@ def start_dask(tmp_path_factory: pytest.TempPathFactory) -> StartDask:
 
             run(*scheduler, *loopback, "--scheduler-file", str(file))
             latest = time.monotonic() + 60
-            while not file.exists():
+            while not (address := written_address(file)):
                 assert time.monotonic() < latest
                 time.sleep(0.02)
-            address = json.loads(file.read_text())["address"]
             assert address.startswith("tcp://127.0.0.1:")
             if workers:
                 local = ["--local-directory", str(folder), "--nworkers", str(workers)]

@@ -133,7 +133,7 @@ def test_other_readers_are_not_disturbed(content: bytes, tmp_path: Path) -> None
 
 
 @pytest.fixture
-def version_1(tmp_path: Path) -> Path:
+def old_file(tmp_path: Path) -> Path:
     """Return a result of two steps of three, as the version before the checksum wrote it.
 
     By commit 0ead6f1 of this repository; the run is the one in its attributes, interrupted.
@@ -143,23 +143,24 @@ def version_1(tmp_path: Path) -> Path:
     return path
 
 
-def test_version_1_is_read(version_1: Path) -> None:
+def test_version_1_is_read(old_file: Path) -> None:
     """A file without a checksum is read as it is; its steps, which counted from 0, from 1."""
-    data = pl.load(version_1).dataset
+    data = pl.load(old_file).dataset
     assert data["step"].values.tolist() == [1, 2]
     assert data["force"].values.tolist() == [1e-6, 2e-6]
-    assert storage.scalars(version_1)["step"].values.tolist() == [1, 2]
+    assert storage.scalars(old_file)["step"].values.tolist() == [1, 2]
 
 
 MESSAGES_OF_VERSION_1 = {
     "converged": "CONVERGED",
-    "converged; the contact area misses the prescribed one by 1.0e-03, and no load brings a nearer "
-    "number of whole cells: more points do": "NEAREST_AREA",
-    "converged, but the cells are too coarse for this contact, which covers 4 of them: force, depth "
-    "and area may be far off; use more points, or a smaller grid.size": "COARSE",
+    "converged; the contact area misses the prescribed one by 1.0e-03, and no load brings a "
+    "nearer number of whole cells: more points do": "NEAREST_AREA",
+    "converged, but the cells are too coarse for this contact, which covers 4 of them: force, "
+    "depth and area may be far off; use more points, or a smaller grid.size": "COARSE",
     "the contact area misses the prescribed one by 1.0e-01, over 0.05; use more points": "AREA",
-    "pressure acts across a gap: complementarity 1.0e-06 is over the tolerance 1.0e-08; no progress "
-    "any more: the tolerance is below round-off here, loosen solver.tolerance": "COMPLEMENTARITY",
+    "pressure acts across a gap: complementarity 1.0e-06 is over the tolerance 1.0e-08; no "
+    "progress any more: the tolerance is below round-off here, loosen "
+    "solver.tolerance": "COMPLEMENTARITY",
     "not run": "NOT_RUN",
     "failed: no space left on device": "FAILED",
     "": "",
@@ -177,18 +178,18 @@ def test_statuses_of_version_1_get_codes() -> None:
     assert completed["step"].values.tolist() == [*range(1, len(MESSAGES_OF_VERSION_1) + 1)]
 
 
-def test_version_1_is_resumed(version_1: Path) -> None:
+def test_version_1_is_resumed(old_file: Path) -> None:
     """The same run goes on in it: the identity of a run is not that of its file's layout."""
-    held = pl.load(version_1)
+    held = pl.load(old_file)
     run = held.configuration | {"title": "old"}
     with pytest.warns(pl.ConvergenceWarning, match="too coarse"):
-        result = pl.run(run, directory=version_1.parent, progress=False, threads=1)
+        result = pl.run(run, directory=old_file.parent, progress=False, threads=1)
     assert result.dataset["step"].values.tolist() == [1, 2, 3]
-    again = pl.load(version_1).dataset
+    again = pl.load(old_file).dataset
     xr.testing.assert_equal(again, result.dataset)
     xr.testing.assert_equal(again.isel(step=[0, 1]), held.dataset)
-    assert storage.attributes(version_1)["identity"] == held.dataset.attrs["identity"]
-    assert checksum.verify(version_1)
+    assert storage.attributes(old_file)["identity"] == held.dataset.attrs["identity"]
+    assert checksum.verify(old_file)
 
 
 def test_steps_count_from_1_everywhere(tmp_path: Path) -> None:
