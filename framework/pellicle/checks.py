@@ -40,12 +40,18 @@ def blamed(component: object) -> Iterator[None]:
     Raises
     ------
     PluginError
-        The component tried to change one of its arguments.
+        The component tried to change one of its arguments, or to end the process.
     """
     try:
         yield
     except (PellicleError, MemoryError):
         raise
+    except SystemExit as error:
+        name, place = component_name(component), _place(component, error)
+        raise PluginError(
+            f"{name} calls sys.exit({error.code!r}){place}; it has to raise an error that says "
+            "what is wrong"
+        ) from None
     except Exception as error:
         if getattr(error, "__notes__", ()):
             raise
@@ -59,7 +65,7 @@ def blamed(component: object) -> Iterator[None]:
         raise
 
 
-def _place(component: object, error: Exception) -> str:
+def _place(component: object, error: BaseException) -> str:
     """Return the file of a component's class and the line in it that an error comes from."""
     home = inspect.getsourcefile(type(component))
     inside = [frame for frame in extract_tb(error.__traceback__) if frame.filename == home]

@@ -163,9 +163,11 @@ def execute(
                 # What has been solved with makes room.
                 problems.clear()
                 result = Result(steps.joined())
-                view = Result(read_only_dataset(result.dataset))
                 files = left_by(
-                    outputs, "close()", lambda output: output.close(place, view), run.outputs
+                    outputs,
+                    "close()",
+                    lambda output: output.close(place, Result(read_only_dataset(result.dataset))),
+                    run.outputs,
                 )
     return Executed(result, tuple(files), taken)
 

@@ -17,11 +17,11 @@ import os
 import re
 import socket
 import tempfile
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from . import checksum, netcdf, version_1
 from .errors import StorageError, shown
@@ -29,6 +29,8 @@ from .errors import StorageError, shown
 if TYPE_CHECKING:
     import h5py
     import xarray as xr
+
+Read = TypeVar("Read")
 
 SCHEMA_VERSION = 2
 """Version of the layout, in the attribute ``schema_version`` of every file.
@@ -135,7 +137,7 @@ def read(path: Path) -> xr.Dataset:
     StorageError
         No such file, not a result of pellicle, damaged, or of another schema version.
     """
-    return joined([_read_one(part) for part in _parts(path)])
+    return joined(_from_parts(path, _content))
 
 
 def scalars(path: Path) -> xr.Dataset:
@@ -146,11 +148,7 @@ def scalars(path: Path) -> xr.Dataset:
     StorageError
         As for `read`.
     """
-    parts = []
-    for part in _parts(path):
-        with opened(part) as file:
-            parts.append(_content(file, without=["x", "y"]))
-    return joined(parts)
+    return joined(_from_parts(path, partial(_content, without=["x", "y"])))
 
 
 def attributes(path: Path) -> dict[str, Any]:
@@ -304,9 +302,22 @@ def _readable(path: Path) -> Iterator[None]:
         ) from None
 
 
-def _read_one(path: Path) -> xr.Dataset:
-    with opened(path) as file:
-        return _content(file)
+def _from_parts(path: Path, read: Callable[[h5py.File], Read]) -> list[Read]:
+    """Return what ``read`` returns for each file of a result, in order of the steps.
+
+    A run that goes on may join the files while they are read: then they are looked for again.
+    """
+    while True:
+        tails, results = _tails(path), []
+        try:
+            for part in _parts(path):
+                with opened(part) as file:
+                    results.append(read(file))
+        except StorageError:
+            if _tails(path) == tails:
+                raise
+        else:
+            return results
 
 
 def _steps(path: Path) -> int:

@@ -245,11 +245,10 @@ def _carry_out(
             _collect(task, rows)
         files.write(rows, at_once=True)
         made = rows.dataset()
-        view = read_only_dataset(made)
         drawn = left_by(
             outputs,
             "study()",
-            lambda output: output.study(place, view),
+            lambda output: output.study(place, read_only_dataset(made)),
             study.points[0].run.outputs,
         )
     for message in (*doubts, *(f"{message}; see status" for message in coarse(made))):

@@ -322,3 +322,11 @@ def test_fit_reports_what_it_is_at() -> None:
     assert {"interval of tension", "interval of reduced_modulus"} <= set(words)
     with status.status(enabled=True) as report:
         report("shows nothing without a terminal")
+
+
+def test_a_curve_without_noise_has_no_steps() -> None:
+    """Equal forces before contact are no steps of a detector where the others lie anywhere."""
+    position, force = white(4, length=0.3 * RADIUS, noise=0)
+    assert (force == 0).sum() > 50
+    assert resolution(force) == 0
+    assert "steps" not in codes(fit(position, force))

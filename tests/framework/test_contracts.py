@@ -863,6 +863,57 @@ def test_an_output_cannot_change_the_table_of_a_study(change: Any, tmp_path: Pat
         pl.run_study(study(outputs=[Changing()]), tmp_path, progress=False, threads=1)
 
 
+def test_each_output_gets_data_of_its_own(tmp_path: Path) -> None:
+    """What one output leaves out or replaces in its dataset, the next one still has."""
+
+    class Dropping(Output):
+        """Drops the pressure and renames the run."""
+
+        def close(self, place: Any, result: Any) -> Any:
+            """Change the dataset itself, not its arrays."""
+            del result.dataset["pressure"]
+            result.dataset.attrs["title"] = "another"
+            return ()
+
+    class Looking(Output):
+        """Looks at what it is given."""
+
+        type: Literal["looking"] = "looking"
+        seen: ClassVar[list[Any]] = []
+
+        def close(self, place: Any, result: Any) -> Any:
+            """Keep what is there."""
+            self.seen.append(("pressure" in result.dataset, result.dataset.attrs["title"]))
+            return ()
+
+    run(title="ours", outputs=[Dropping(), Looking()])
+    assert Looking.seen == [(True, "ours")]
+
+
+@pytest.mark.parametrize("code", [0, 3])
+def test_a_component_cannot_end_the_process(code: int) -> None:
+    """A component that calls sys.exit() is named; the run does not end as if all were well."""
+
+    class Leaving(Kernel):
+        """Ends the process."""
+
+        def compliance(self, q: Any) -> Any:
+            """Leave."""
+            raise SystemExit(code)
+
+    class LeavingAtTheEnd(Output):
+        """Ends the process when the run is done."""
+
+        def close(self, place: Any, result: Any) -> Any:
+            """Leave."""
+            raise SystemExit(code)
+
+    with pytest.raises(pl.PluginError, match=rf"kernel 'liar' calls sys.exit\({code}\)"):
+        run(kernel=Leaving(reduced_modulus=1e4))
+    with pytest.raises(pl.PluginError, match=rf"output 'liar' calls sys.exit\({code}\)"):
+        run(outputs=[LeavingAtTheEnd()])
+
+
 def test_a_file_system_that_is_read_only_is_no_lie() -> None:
     """What an output raises because it cannot write is not taken for a change of its data."""
 

@@ -236,3 +236,24 @@ def test_lack_of_memory_is_reported(path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(storage.netcdf, "dataset", exhaust)
     with pytest.raises(StorageError, match="does not fit in memory"):
         storage.read(path)
+
+
+def test_tails_that_are_joined_while_they_are_read(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A result is read whole while the run that writes it goes on."""
+    monkeypatch.setattr(storage, "_SMALL", 0)
+    storage.write(steps(1, 2, 3), path)
+    storage.append(steps(4), path)
+    assert len(list(path.parent.iterdir())) == 2
+    plain, calls = storage.opened, []
+
+    def join_first(part: Path, *arguments: object) -> object:
+        calls.append(part)
+        if len(calls) == 2:
+            storage.close(path)
+        return plain(part, *arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(storage, "opened", join_first)
+    assert storage.read(path)["step"].values.tolist() == [1, 2, 3, 4]
+    assert len(calls) == 3

@@ -58,7 +58,8 @@ def examine(likelihood: Likelihood, parameters: Array) -> Examined:
         source = "residuals of the fit"
         messages = (
             f"only {count} points lie before contact, so the noise is taken from the residuals of "
-            "the fit, and drift or adhesion before contact cannot be told; start further out",
+            "the fit, and drift or adhesion before contact cannot be told; start further out, or "
+            "fit the baseline too if the force out there is not 0",
         )
         whole = _check_whole(residuals)
     else:

@@ -18,8 +18,8 @@ FEWEST = 8
 _FEW = 30
 _ALIKE = 1e6
 """Stiffness of a cantilever over that of a curve, or the reverse, that is fitted at most."""
-_SMALLEST = 1e-30
-"""Largest position [m] or force [N] of a curve, and one over the largest, that is fitted."""
+LARGEST = 1e30
+"""Largest number in SI units that is fitted, and one over the smallest."""
 _PASS = 0.5
 """A change of direction counts if the position then moves by this share of its range."""
 _SEEN = 4.0
@@ -122,10 +122,10 @@ def _base(z: Array, f: Array, stiffness: float) -> Array:
 def _in_si(values: Array, name: str, unit: str) -> None:
     """Raise if values are so large or small that they cannot be what they are called."""
     largest = float(np.max(np.abs(values)))
-    if largest and not _SMALLEST <= largest <= 1 / _SMALLEST:
+    if largest and not 1 / LARGEST <= largest <= LARGEST:
         raise ConfigError(
-            f"reaches {largest:.3g} {unit}, and must reach between {_SMALLEST:g} and "
-            f"{1 / _SMALLEST:g} {unit}: give SI values",
+            f"reaches {largest:.3g} {unit}, and must reach between {1 / LARGEST:g} and "
+            f"{LARGEST:g} {unit}: give SI values",
             name,
         )
 

@@ -10,6 +10,8 @@ from pellicle.operators import Array
 
 _TIES = 0.9
 """Different values per row below which values are taken to be steps of a detector."""
+_OFF_STEP = 0.05
+"""Share of a step by which values of a detector may lie beside it, after conversion."""
 _EQUAL = 1e-9
 """Values closer than this, over the range, differ by rounding only."""
 _RANK = 1e-6
@@ -38,10 +40,15 @@ def neighbour_noise(values: Array) -> float:
 
 
 def resolution(values: Array) -> float:
-    """Return the least step between values of which many are equal, 0 for any others."""
+    """Return the step of values that all lie a whole number of steps apart, 0 for any others."""
     steps = np.diff(np.unique(values))
     steps = steps[steps > _EQUAL * float(np.ptp(values))]
-    return float(steps.min()) if 0 < steps.size < _TIES * values.size else 0.0
+    if not 0 < steps.size < _TIES * values.size:
+        return 0.0
+    step = float(steps.min())
+    # Equal values alone are no steps: a curve without noise is 0 before contact.
+    counts = steps / step
+    return step if np.all(np.abs(counts - np.round(counts)) < _OFF_STEP) else 0.0
 
 
 def binned_noise(residuals: Array, jacobian: Array, bins: Array) -> BinnedNoise | None:

@@ -15,16 +15,16 @@ from pellicle.operators import Array
 from pellicle.plugins import registry
 from pellicle.units import Quantity
 
-from .curve import Segment
+from .curve import LARGEST, Segment
 from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
 from .solid import DEFAULT_KERNEL, Solid, solid
 
 Baseline = Literal["none", "offset", "slope"]
 
 _NAMES = {
-    "contact_point": (POINT, Quantity("m")),
-    "reduced_modulus": (MODULUS, Quantity("Pa", above=0)),
-    "tension": (TENSION, Quantity("N/m", at_least=0)),
+    "contact_point": (POINT, Quantity("m", at_least=-LARGEST, at_most=LARGEST)),
+    "reduced_modulus": (MODULUS, Quantity("Pa", at_least=1 / LARGEST, at_most=LARGEST)),
+    "tension": (TENSION, Quantity("N/m", at_least=0, at_most=LARGEST)),
 }
 _BASELINES: dict[str, tuple[int, ...]] = {
     "none": (),
