@@ -168,8 +168,8 @@ def _drift_or_offset(
             )
         ]
     mean = float(np.mean(force))
-    told = 10 * residuals.likelihood.accuracy * float(np.max(np.abs(residuals.likelihood.force)))
-    if residuals.baseline or abs(mean) <= max(_OFF * noise / np.sqrt(force.size), told):
+    least = 10 * residuals.likelihood.accuracy * float(np.max(np.abs(residuals.likelihood.force)))
+    if residuals.baseline or abs(mean) <= max(_OFF * noise / np.sqrt(force.size), least):
         return []
     return [
         FailedCheck(

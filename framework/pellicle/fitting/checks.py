@@ -147,8 +147,8 @@ def _contact_bins(residuals: Residuals) -> Array:
 def _model(residuals: Residuals) -> str:
     """Return what the model takes for granted."""
     point = residuals.parameters[POINT]
-    held = "" if residuals.is_free(POINT) else f", contact from {point:g} m on"
-    return f"the model (this indenter, this elastic solid, no adhesion{held})"
+    fixed = "" if residuals.is_free(POINT) else f", contact from {point:g} m on"
+    return f"the model (this indenter, this elastic solid, no adhesion{fixed})"
 
 
 def _misfit(residuals: Residuals, factor: float) -> FailedCheck:

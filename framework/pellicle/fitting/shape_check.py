@@ -98,7 +98,7 @@ def _words(likelihood: Likelihood, parameters: Array, shape: HasForceCurve, othe
     limit = likelihood.indenter
     assert isinstance(limit, IsShallowLimit)
     share = float(likelihood.position[-1] - parameters[POINT]) / limit.radius
-    name, whole = (getattr(each, "type", type(each).__name__) for each in (limit, shape))
+    name, whole = (getattr(it, "type", type(it).__name__) for it in (limit, shape))
     return (
         f"the depth is {share:.2g} of the radius, and beyond {SHALLOW:g} of it a {name} is not the "
         f"{whole} that it stands for: with indenter {whole!r} the reduced modulus is "
