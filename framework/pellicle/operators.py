@@ -147,7 +147,8 @@ class Operator(ABC):
         ConfigError
             The kernel cannot work on the coarser grid.
         """
-        return make_operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
+        # The kernel itself was checked for the finest grid.
+        return _operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] of the kernel, as `scaled` as the operator."""
@@ -297,6 +298,15 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
         real numbers of the argument's shape, grows for ever shorter waves, or its closed form
         contradicts its compliance.
     """
+    # A table is made of the compliance.
+    is_table = isinstance(kernel, Tabulated)
+    if grid.boundary == "free" and isinstance(kernel, HasClosedForm) and not is_table:
+        with np.errstate(all="ignore"):
+            _refuse_contradiction(kernel, grid)
+    return _operator(kernel, grid)
+
+
+def _operator(kernel: HasCompliance, grid: Grid) -> Operator:
     # Overflow of a formula shows in its values, which are looked at.
     with np.errstate(all="ignore"):
         if grid.boundary == "periodic":
@@ -309,17 +319,14 @@ def _in_real_space(kernel: HasCompliance, grid: Grid) -> HasClosedForm:
     radii = 0.2 * min(grid.spacing), 3 * math.hypot(*grid.size)
     if isinstance(kernel, Tabulated):
         return kernel if kernel.covers(*radii) else Tabulated(kernel.compliance, *radii)
-    compliance = checked_call(kernel, "compliance")
-    if not isinstance(kernel, HasClosedForm):
-        return Tabulated(compliance, *radii)
-    _refuse_contradiction(kernel, compliance, grid)
-    return kernel
+    if isinstance(kernel, HasClosedForm):
+        return kernel
+    return Tabulated(checked_call(kernel, "compliance"), *radii)
 
 
-def _refuse_contradiction(
-    kernel: HasClosedForm, compliance: Callable[[Array], Array], grid: Grid
-) -> None:
+def _refuse_contradiction(kernel: HasClosedForm, grid: Grid) -> None:
     """Refuse a kernel whose closed form is not the transform of its compliance."""
+    compliance = checked_call(kernel, "compliance")
 
     def positive(q: Array) -> Array:
         with np.errstate(all="ignore"):

@@ -77,21 +77,20 @@ def append(dataset: xr.Dataset, path: Path) -> None:
     first, *tails = _parts(path)
     with opened(first) as file:
         version, identity = _version(file), _attributes(file).get("identity")
+        own = file["step"][:].tolist()
+    waiting = [number for tail in tails for number in _step_numbers(tail)]
+    # Version 1 counted from 0.
+    _require_continued(path, (own + waiting)[-1] + (version == 1), identity, dataset)
     if version != SCHEMA_VERSION:
         write(joined([read(path), dataset]), path)
-        return
-    _require_continued(path, [first, *tails][-1], identity, dataset)
-    own, waiting = _steps(first), sum(map(_steps, tails))
-    if waiting + dataset.sizes["step"] >= own or path.stat().st_size < _SMALL:
+    elif len(waiting) + dataset.sizes["step"] >= len(own) or path.stat().st_size < _SMALL:
         _join(path, tails, dataset)
     else:
-        write(dataset, path.with_name(f".{path.name}.{own + waiting:08d}.tail"))
+        write(dataset, path.with_name(f".{path.name}.{len(own) + len(waiting):08d}.tail"))
 
 
-def _require_continued(path: Path, last: Path, identity: object, dataset: xr.Dataset) -> None:
-    """Refuse steps of another run, or those that do not follow the last step of the file."""
-    with _readable(last), _parsed(last) as file:
-        step = int(file["step"][-1])
+def _require_continued(path: Path, step: int, identity: object, dataset: xr.Dataset) -> None:
+    """Refuse steps of another run, or those that do not follow ``step``, the last of the file."""
     following = int(dataset["step"].values[0])
     if dataset.attrs.get("identity") != identity or following != step + 1:
         raise StorageError(
@@ -320,10 +319,10 @@ def _from_parts(path: Path, read: Callable[[h5py.File], Read]) -> list[Read]:
             return results
 
 
-def _steps(path: Path) -> int:
-    """Return how many steps a file of its own holds."""
+def _step_numbers(path: Path) -> list[int]:
+    """Return the numbers of the steps that a file of its own holds, as they stand there."""
     with _readable(path), _parsed(path) as file:
-        return int(file["step"].size)
+        return file["step"][:].tolist()  # type: ignore[no-any-return]
 
 
 def _tails(path: Path) -> list[Path]:
@@ -337,11 +336,11 @@ def _parts(path: Path) -> list[Path]:
     """
     parts = [path]
     if tails := _tails(path):
-        held = _steps(path)
+        held = len(_step_numbers(path))
         for tail in tails:
             if int(tail.name.split(".")[-2]) == held:
                 parts.append(tail)
-                held += _steps(tail)
+                held += len(_step_numbers(tail))
     return parts
 
 

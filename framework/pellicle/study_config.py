@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Self
 
@@ -291,12 +291,11 @@ class Study(Model):
 
         Values are as they were given; paths of files to read are absolute, or as they were given.
         """
-        path_text = path_as_given if as_given else str
         run = self.points[0].run
         vary, *zipped = (
             {
                 key: [
-                    _said(value, _reach(of, key), path_text)
+                    _said(value, _reach(of, key), as_given)
                     for value, of in self._along(key, values)
                 ]
                 for key, values in table.items()
@@ -307,7 +306,7 @@ class Study(Model):
         kept = {name: value for name, value in study.items() if value}
         executor = self.executor.model_dump(mode="json", exclude_none=True)
         said = {
-            key: _said(value, getattr(run, key, None), path_text) for key, value in self.run.items()
+            key: _said(value, getattr(run, key, None), as_given) for key, value in self.run.items()
         }
         return json.dumps({**said, "study": {"executor": executor, **kept}}, ensure_ascii=False)
 
@@ -460,18 +459,18 @@ def _reach(at: Any, key: str) -> Any:
     return at
 
 
-def _said(value: Any, made: Any, path_text: Callable[[Path], str] = str) -> Any:
-    """Return a value as JSON has it; ``made`` is what became of it."""
+def _said(value: Any, made: Any, as_given: bool = False) -> Any:
+    """Return a value as JSON has it, paths absolute or as given; ``made`` is what became of it."""
     if isinstance(value, Model):
-        context = AS_GIVEN if path_text is path_as_given else None
+        context = AS_GIVEN if as_given else None
         return value.model_dump(mode="json", exclude_none=True, context=context)
     if isinstance(made, Path):
-        return path_text(made)
+        return path_as_given(made) if as_given else str(made)
     if isinstance(value, Mapping):
-        return {name: _said(inner, _reach(made, name), path_text) for name, inner in value.items()}
+        return {name: _said(inner, _reach(made, name), as_given) for name, inner in value.items()}
     if isinstance(value, (list, tuple)):
         return [
-            _said(inner, _reach(made, str(index)), path_text) for index, inner in enumerate(value)
+            _said(inner, _reach(made, str(index)), as_given) for index, inner in enumerate(value)
         ]
     if hasattr(value, "tolist"):
         return value.tolist()

@@ -192,6 +192,20 @@ def test_version_1_is_resumed(old_file: Path) -> None:
     assert checksum.verify(old_file)
 
 
+def test_only_the_next_step_is_appended_to_version_1(old_file: Path) -> None:
+    """A step that does not continue a file of version 1 is refused as in any other."""
+    steps = pl.load(old_file).dataset
+    before = old_file.read_bytes()
+    for number in (1, 2, 4):
+        step = steps.isel(step=[0]).assign_coords(step=[number])
+        with pytest.raises(pl.StorageError, match="it ends at step 2"):
+            storage.append(step, old_file)
+    another = steps.isel(step=[0]).assign_coords(step=[3]).assign_attrs(identity="another")
+    with pytest.raises(pl.StorageError, match="step 3 does not continue it"):
+        storage.append(another, old_file)
+    assert old_file.read_bytes() == before
+
+
 def test_steps_count_from_1_everywhere(tmp_path: Path) -> None:
     """File, CSV, dataset, console and messages give a step the same number."""
     file = tmp_path / "count.toml"
