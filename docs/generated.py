@@ -11,8 +11,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 import pellicle as pl
-from pellicle.dataset import DESCRIPTIONS
 from pellicle.model import Model
+from pellicle.results.variables import DESCRIPTIONS
 from pellicle.units import Quantity, quantity_of
 
 _HEADINGS = {

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .arrays import Array
 from .errors import ConfigError, PellicleError, PluginError, shown
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Array = NDArray[np.float64]
 
 # In the messages of numpy, Cython, dataclasses and pydantic about an object that must not change.
 _REFUSALS = "read-only", "cannot assign to field", "Instance is frozen"

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from .components import Component, Indenter, Kernel, Solver
+from .components.base import Component
+from .components.indenter import Indenter
+from .components.kernel import Kernel
+from .components.solver import Solver
 from .plugins import registry
 
 AnyComponent = TypeVar("AnyComponent", bound=Component)

@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Annotated, Final, Literal, Self
+from typing import Annotated, Final, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from .arrays import Array
 from .checks import whole_number
 from .errors import ConfigError
-from .model import Model
+from .model.base import Model
 from .units import Length
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 Boundary = Literal["free", "periodic"]
 
@@ -113,7 +110,7 @@ class Grid(Model):
         nx, ny = self.points
         return self.model_copy(update={"points": (-(-nx // 2), -(-ny // 2))})
 
-    def coordinates(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def coordinates(self) -> tuple[Array, Array]:
         """Return x of shape (nx, 1) and y of shape (1, ny) of the cell centres [m]."""
         import numpy as np
 
@@ -123,7 +120,7 @@ class Grid(Model):
         )
         return x[:, None], y[None, :]
 
-    def wavenumbers(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def wavenumbers(self) -> tuple[Array, Array]:
         """Return q_x of shape (nx, 1) and q_y of shape (1, ny//2 + 1) [rad/m].
 
         They are those of ``scipy.fft.rfft2`` over a field of the grid's shape.

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, cast, get_args
 from pydantic import Field, model_validator
 from pydantic_core import core_schema
 
-from .axes import RANGE, SPACINGS, ranged
 from .errors import ConfigError, Problem, shown
-from .model import Model
+from .model.base import Model
+from .model.ranges import RANGE, SPACINGS, ranged
 from .units import Quantity
 
 if TYPE_CHECKING:

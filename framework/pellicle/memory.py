@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
-from .components import HasMemory
+from .components.solver import HasMemory
 from .errors import ConfigError, shown
 from .grid import Grid
 

@@ -22,7 +22,7 @@ from . import hookspecs
 from .components import FAMILIES, Component, Suite
 from .errors import ConfigError, PellicleError, PluginError
 from .foreign_code import diverted_output, noted_interrupts
-from .model import nearest
+from .model.messages import nearest
 from .units import quantity_of
 
 GROUP = "pellicle"

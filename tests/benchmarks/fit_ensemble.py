@@ -14,7 +14,7 @@ import numpy as np
 
 import pellicle as pl
 from pellicle.components import HasForceCurve
-from pellicle.fitting.likelihood import Likelihood
+from pellicle.fitting.statistics.likelihood import Likelihood
 
 NOISE, DEPTH, BEFORE = 0.005, 0.3, 0.3
 """Noise over the largest force; largest depth over R; range before contact over that in it."""

@@ -21,8 +21,8 @@ import scipy.fft
 import pellicle as pl
 from pellicle.operators import Array
 from pellicle.problem import Problem, height_scale
-from pellicle_plugins.solvers.guess import with_force
-from pellicle_plugins.solvers.inner_solve import inner_solve
+from pellicle_plugins.solvers.contact_cg import inner_solve
+from pellicle_plugins.solvers.initial_guess import with_force
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 
 

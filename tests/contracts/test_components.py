@@ -8,7 +8,8 @@ from pydantic import create_model
 
 import pellicle as pl
 from pellicle.components import FAMILIES, Component
-from pellicle.fields import FromRegistry, json_schema
+from pellicle.config.component_field import FromRegistry
+from pellicle.config.json_schema import json_schema
 from pellicle.plugins import registry
 
 

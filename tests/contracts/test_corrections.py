@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pellicle import AreaCorrection, Run
-from pellicle.orchestrator import solve
+from pellicle.runs.runner import solve
 
 
 def test_correction_takes_area_off(correction: AreaCorrection) -> None:

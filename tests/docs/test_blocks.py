@@ -20,9 +20,9 @@ from blocks import PAGES, ROOT, Block, blocks
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle import axes
 from pellicle.cli import app
 from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
+from pellicle.model import ranges as axes
 
 LANGUAGES = {"python", "pycon", "toml", "console", "sh"}
 DIRECTIVES = {"{eval-rst}", "{toctree}"}

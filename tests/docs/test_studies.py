@@ -13,7 +13,7 @@ from blocks import ROOT
 from typer.testing import CliRunner
 
 from pellicle.cli import app
-from pellicle.study_config import Study, from_toml
+from pellicle.config.study import Study, from_toml
 from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.analytic.axisymmetric_indenters import Paraboloid
 from pellicle_plugins.outputs.compliance import of_cells_along_x

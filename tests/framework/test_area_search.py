@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.area_search import reach_area
 from pellicle.components import Solver
 from pellicle.operators import make_operator
 from pellicle.problem import Problem
+from pellicle.runs.target_search import reach_area
 
 GRID = pl.Grid(points=11, size=11.0, boundary="periodic")
 

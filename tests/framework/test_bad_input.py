@@ -440,7 +440,7 @@ def test_memory_that_runs_out_all_the_same(
     def fail(*arguments: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("pellicle.orchestrator.make_operator", fail)
+    monkeypatch.setattr("pellicle.runs.compose.make_operator", fail)
     says(refuse(), "grid.points: (16, 16) cells do not fit in memory; use fewer points")
 
 
@@ -636,7 +636,7 @@ def test_output_folder_that_cannot_be_written(
     def fail(*arguments: object) -> None:
         raise AssertionError("solved in vain")
 
-    monkeypatch.setattr("pellicle.orchestrator._solve", fail)
+    monkeypatch.setattr("pellicle.runs.steps.solve", fail)
     outputs = f"outputs=[{{type='{type_}'}}]"
     outcome = cli("run", "start.toml", "-o", "out", "--set", outputs)
     assert outcome.exit_code == 2

@@ -7,8 +7,8 @@ from typing import Any, Literal
 import pytest
 
 import pellicle as pl
-from pellicle.clashes import matches, refuse_clashes
 from pellicle.components import Output
+from pellicle.config.output_conflicts import matches, refuse_clashes
 from pellicle.plugins import registry
 
 RUN: dict[str, Any] = {

@@ -14,8 +14,8 @@ import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle import checksum
 from pellicle.cli import app
+from pellicle.results import checksum
 
 RUN: dict[str, Any] = {
     "grid": {"points": 8, "size": "0.4 mm"},

@@ -7,7 +7,7 @@ import os
 import pytest
 
 import pellicle as pl
-from pellicle.orchestrator import default_threads
+from pellicle.runs.runner import default_threads
 
 
 @pytest.mark.parametrize(

@@ -13,9 +13,9 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli import app
 from pellicle.cli.encoding import encode_readably
-from pellicle.fitting.read import read as read_curves
-from pellicle.text_files import read_text
-from pellicle.toml import read_toml
+from pellicle.files import read_text
+from pellicle.fitting.curves.readers import read as read_curves
+from pellicle.model.toml import read_toml
 
 RUN = """
 title = "Δτ₀ ≤ 3 µm² ☺"

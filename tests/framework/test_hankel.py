@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from pellicle import ConfigError, Grid, displacement
-from pellicle.hankel import ACCURACY, Tabulated
-from pellicle.influence import cell_coefficients
+from pellicle.numerics.hankel import ACCURACY, Tabulated
+from pellicle.numerics.influence import cell_coefficients
 from pellicle.operators import make_operator
 from pellicle.problem import Problem
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane

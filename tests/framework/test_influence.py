@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pellicle.influence import cell_coefficients
+from pellicle.numerics.influence import cell_coefficients
 from pellicle_plugins.kernels.struve import struve_minus_bessel, struve_minus_bessel_primitive
 
 Array = NDArray[np.float64]

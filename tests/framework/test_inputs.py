@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import pellicle as pl
-from pellicle.inputs import Input, in_words, inputs
+from pellicle.config.describe import Input, in_words, inputs
 
 CONFIGURATION: dict[str, Any] = {
     "title": "µ",

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli import app
-from pellicle.lock import locked
+from pellicle.runs.lock import locked
 
 RUN = """
 [grid]
@@ -44,7 +44,7 @@ kernel.reduced_modulus = ["10 kPa", "20 kPa"]
 def another_process(folder: Path, name: str) -> Iterator[subprocess.Popen[bytes]]:
     """Have another process lock files."""
     code = (
-        "import sys, pathlib\nfrom pellicle.lock import locked\n"
+        "import sys, pathlib\nfrom pellicle.runs.lock import locked\n"
         "with locked(pathlib.Path(sys.argv[1]), sys.argv[2]):\n"
         "    print('locked', flush=True)\n    sys.stdin.read()"
     )

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 import xarray as xr
 
-from pellicle import netcdf
+from pellicle.results import netcdf
 
 
 def sample() -> xr.Dataset:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from pellicle import Grid
-from pellicle.page import (
+from pellicle.report.page import (
     Cell,
     Code,
     Column,

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import pytest
 import rich.console
 
-from pellicle.progress import Progress
+from pellicle.runs.progress import Progress
 
 
 def _iterate(progress: Progress) -> None:
@@ -33,7 +33,7 @@ def test_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     screen = io.StringIO()
     console = rich.console.Console(file=screen, force_terminal=True, width=200)
     monkeypatch.setattr("rich.console.Console", lambda **options: console)
-    monkeypatch.setattr("pellicle.progress._BETWEEN_UPDATES", 0.0)
+    monkeypatch.setattr("pellicle.runs.progress._BETWEEN_UPDATES", 0.0)
     _iterate(Progress(2, enabled=True))
     shown = screen.getvalue()
     for words in ("step 2/2", "iteration 2", "residual 5.0e-01 × tolerance", "left"):
@@ -46,7 +46,7 @@ def test_silent_on_a_terminal_when_not_enabled(monkeypatch: pytest.MonkeyPatch) 
     def fail() -> None:
         raise AssertionError("made a bar")
 
-    monkeypatch.setattr("pellicle.progress._make_bar", fail)
+    monkeypatch.setattr("pellicle.runs.progress._make_bar", fail)
     _iterate(Progress(2, enabled=False))
 
 
@@ -55,7 +55,7 @@ def test_odd_residuals(excess: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """A residual of zero, NaN or infinity does not end the run."""
     console = rich.console.Console(file=io.StringIO(), force_terminal=True)
     monkeypatch.setattr("rich.console.Console", lambda **options: console)
-    monkeypatch.setattr("pellicle.progress._BETWEEN_UPDATES", 0.0)
+    monkeypatch.setattr("pellicle.runs.progress._BETWEEN_UPDATES", 0.0)
     progress = Progress(1, enabled=True)
     with progress:
         monitor = progress.step(0)

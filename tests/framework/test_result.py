@@ -63,7 +63,7 @@ def test_provenance_of_components_within_components(monkeypatch: pytest.MonkeyPa
     foreign = replace(inner, origin=Origin("kernel.half_space", "other-package", "9.9"))
     kernels = {**own.components["kernel"], "half_space": foreign}
     theirs = replace(own, components={**own.components, "kernel": kernels})
-    monkeypatch.setattr("pellicle.provenance.registry", lambda: theirs)
+    monkeypatch.setattr("pellicle.config.provenance.registry", lambda: theirs)
     substrate = {"type": "half_space", "reduced_modulus": "10 kPa"}
     coated = CONFIGURATION | {"kernel": {"type": "coated", "substrate": substrate}, "outputs": []}
     versions = pl.run(coated, progress=False).dataset.attrs["versions"]

@@ -7,8 +7,8 @@ from typer.testing import CliRunner
 
 from pellicle import ConfigError, StorageError
 from pellicle.cli import app
+from pellicle.cli.scaffold import write_plugin
 from pellicle.components import FAMILIES
-from pellicle.scaffold import write_plugin
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -18,10 +18,10 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle import storage
-from pellicle import study as study_module
 from pellicle.cli import app
 from pellicle.components import Monitor
 from pellicle.operators import Array
+from pellicle.studies import runner as study_module
 
 RUN: dict[str, Any] = {
     "title": "Study",

@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 
 import pellicle as pl
 from pellicle import memory
+from pellicle.config.study import Study
 from pellicle.model import replaced
-from pellicle.study_config import Study
 
 RUN: dict[str, Any] = {
     "grid": {"points": 16, "size": "0.4 mm"},

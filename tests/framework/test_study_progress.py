@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import pytest
 from rich.console import Console
 
-from pellicle.progress import Said, StudyProgress
+from pellicle.runs.progress import Said, StudyProgress
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from pellicle.cli.scaffold import write_plugin
 from pellicle.components import FAMILIES
-from pellicle.scaffold import write_plugin
 
 
 @pytest.fixture(scope="module")

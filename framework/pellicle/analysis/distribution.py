@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pellicle.operators import Array
+from pellicle.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from math import atan2, nan, pi
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pellicle.arrays import Array
 from pellicle.grid import Grid
-from pellicle.operators import Array
 
 _NO_CENTRE = 1e-6
 

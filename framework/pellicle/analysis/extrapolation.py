@@ -8,7 +8,7 @@ from math import nan
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pellicle.operators import Array
+from pellicle.arrays import Array
 
 _EXPONENTS = 0.1, 8.0
 

@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pellicle.arrays import Array, Mask
 from pellicle.grid import Boundary, Grid
 
 Labels = NDArray[np.int64]
@@ -19,7 +20,7 @@ class Patches:
 
     labels: Labels
     """Number of the patch of each cell, of the grid's shape; 0 where there is no contact."""
-    area: NDArray[np.float64]
+    area: Array
     """[m²], one for each patch."""
 
     @property
@@ -100,9 +101,7 @@ def _pairs(labels: Labels, axis: int, periodic: bool) -> Labels:
     return np.stack([here[differ], there[differ]])
 
 
-def _label(
-    contact: NDArray[np.bool_], boundary: Boundary, connectivity: Literal[4, 8]
-) -> tuple[Labels, int]:
+def _label(contact: Mask, boundary: Boundary, connectivity: Literal[4, 8]) -> tuple[Labels, int]:
     from scipy import ndimage
 
     structure = ndimage.generate_binary_structure(2, 1 if connectivity == 4 else 2)

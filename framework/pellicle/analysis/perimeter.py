@@ -5,8 +5,9 @@ from __future__ import annotations
 from math import atan2, hypot, pi
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from pellicle.arrays import Mask
 from pellicle.grid import Grid
 
 
@@ -52,7 +53,7 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
     return total
 
 
-def _switches(inside: NDArray[np.bool_], step: tuple[int, int]) -> int:
+def _switches(inside: Mask, step: tuple[int, int]) -> int:
     """Return how often contact begins or ends from a cell to the one that is a step away."""
     # What has no contact around it may be taken as periodic too.
     return int(np.count_nonzero(inside != np.roll(inside, step, (0, 1))))

@@ -8,8 +8,8 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pellicle.arrays import Array
 from pellicle.grid import Grid
-from pellicle.operators import Array
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import typer
 from pellicle.errors import ConfigError
 
 from .exits import INTERRUPTED, NOT_CONVERGED
-from .fits import print_fit, print_fits
+from .print_fits import print_fit, print_fits
 from .printing import print_json
 
 if TYPE_CHECKING:
@@ -102,12 +102,12 @@ def fit(
 
     Exit code 0 only if every curve was fitted.
     """
+    from pellicle.config.study import DEFAULT_EXECUTOR
+    from pellicle.fitting.curves.sources import gather
     from pellicle.fitting.fit import fit_source
     from pellicle.fitting.many import carry_out
+    from pellicle.fitting.models.simulation import GRID_POINTS
     from pellicle.fitting.pooled import pool_sources
-    from pellicle.fitting.simulation import GRID_POINTS
-    from pellicle.fitting.sources import gather
-    from pellicle.study_config import DEFAULT_EXECUTOR
 
     fields = {
         "radius": radius[0] if radius and len(radius) == 1 else radius,
@@ -171,9 +171,9 @@ class _Wanted(NamedTuple):
 
 def _leave(made: Fit | PooledFit, name: str, title: str, wanted: _Wanted) -> None:
     """Print a fit, and leave its files."""
-    from pellicle.fitting import drawing, pooled_drawing
     from pellicle.fitting.pooled import PooledFit
-    from pellicle.fitting.report import save_report
+    from pellicle.fitting.report import drawing, pooled_drawing
+    from pellicle.fitting.report.page import save_report
 
     if wanted.json:
         print_json(made.to_dict())
@@ -196,7 +196,7 @@ def _leave(made: Fit | PooledFit, name: str, title: str, wanted: _Wanted) -> Non
 
 def _leave_table(done: Fitted, wanted: _Wanted) -> None:
     """Print many fits, and leave their page."""
-    from pellicle.fitting.many_report import save_report
+    from pellicle.fitting.report.many_page import save_report
 
     count, files = len(done.rows), list(done.files)
     if wanted.json:
@@ -216,8 +216,9 @@ def _leave_table(done: Fitted, wanted: _Wanted) -> None:
 
 def _tables(tables: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
     """Return tables of components with what ``--set`` says put in."""
-    from pellicle.model import nearest, replaced
-    from pellicle.toml import parse_override
+    from pellicle.model.messages import nearest
+    from pellicle.model.paths import replaced
+    from pellicle.model.toml import parse_override
 
     for text in overrides:
         key, value = parse_override(text)

@@ -28,7 +28,7 @@ def new(
     if plugin is None:
         _write_starter(path or Path("indent.toml"))
         return
-    from pellicle.scaffold import write_plugin
+    from .scaffold import write_plugin
 
     if path is None:
         raise ConfigError(f"is missing; for example: pellicle new --plugin {plugin} mine", "NAME")
@@ -39,10 +39,10 @@ def new(
 def _write_starter(path: Path) -> None:
     from importlib.resources import files
 
-    from pellicle.storage import reported
+    from pellicle.files import storage_errors
 
-    text = files("pellicle").joinpath("starter.toml").read_text(encoding="utf-8")
-    with reported(path):
+    text = files("pellicle.cli").joinpath("starter.toml").read_text(encoding="utf-8")
+    with storage_errors(path):
         try:
             with path.open("x", encoding="utf-8") as file:
                 file.write(text)

@@ -29,9 +29,9 @@ def plot(
     ] = None,
 ) -> None:
     """Draw the figures of a result or of a study."""
-    from pellicle.plotting import save_figures, save_study_figures
-    from pellicle.result import load
-    from pellicle.study import is_table, read
+    from pellicle.report.plotting import save_figures, save_study_figures
+    from pellicle.results.result import load
+    from pellicle.studies.runner import is_table, read
 
     chosen = [str(format_) for format_ in formats or [Format.PNG]]
     if is_table(results):

@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from pellicle.text_files import for_document
+from pellicle.files import for_document
 
 
 def print_table(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from pellicle.text_files import for_document
+from pellicle.files import for_document
 
 from .exits import NOT_CONVERGED
 from .printing import print_table, print_warning
@@ -14,7 +14,7 @@ from .printing import print_table, print_warning
 if TYPE_CHECKING:
     import xarray as xr
 
-    from pellicle.result import Result
+    from pellicle.results.result import Result
 
 
 def print_origin(data: xr.Dataset) -> None:
@@ -50,7 +50,7 @@ def print_steps(result: Result) -> None:
 
 def print_contact(result: Result) -> None:
     """Print a second table, of the shape of the contact."""
-    from pellicle.dataset import OF_THE_CONTACT
+    from pellicle.results.variables import OF_THE_CONTACT
 
     data = result.dataset
     # Files of earlier versions do not say it.
@@ -66,14 +66,14 @@ def print_contact(result: Result) -> None:
 
 
 def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
-    from pellicle.dataset import header
+    from pellicle.results.variables import header
 
     return {name: header(name, data[name]) for name in names}
 
 
 def print_runs(table: xr.Dataset) -> None:
     """Print a row for each run of a study: its parameters, its last step and how it ended."""
-    from pellicle.study import rows
+    from pellicle.studies.summary import rows
 
     found = rows(table)
     names = list(found[0])
@@ -84,7 +84,7 @@ def print_runs(table: xr.Dataset) -> None:
 
 def exit_by_convergence(result: Result) -> None:
     """Exit unless all steps of a run converged, and say which did not or are too coarse."""
-    from pellicle.result import said_of_steps
+    from pellicle.results.result import said_of_steps
 
     for step, message in result.failures():
         typer.echo(f"step {step} did not converge: {for_document(message)}", err=True)
@@ -96,7 +96,7 @@ def exit_by_convergence(result: Result) -> None:
 
 def exit_by_status(table: xr.Dataset) -> None:
     """Exit unless all runs of a study converged, and say which did not."""
-    from pellicle.study import failures, reasons
+    from pellicle.studies.summary import failures, reasons
 
     if message := failures(table):
         for reason in reasons(table):

@@ -12,8 +12,8 @@ from .printing import print_table
 from .results import exit_by_convergence, exit_by_status, print_runs, print_steps
 
 if TYPE_CHECKING:
-    from pellicle.config import Run
-    from pellicle.study_config import Study
+    from pellicle.config.run import Run
+    from pellicle.config.study import Study
 
 
 def run(
@@ -46,7 +46,7 @@ def run(
 
     Exit code 0 only if every step converged.
     """
-    from pellicle.study_config import Study, from_toml
+    from pellicle.config.study import Study, from_toml
 
     made = from_toml(file, set_ or ())
     folder = directory or Path(file.stem)
@@ -60,8 +60,8 @@ def run(
 
 def _print_plan(made: Run | Study, folder: Path, name: str, overwrite: bool) -> None:
     from pellicle.components import Place
-    from pellicle.study import RunTask, plan, tasks
-    from pellicle.study_config import Study
+    from pellicle.config.study import Study
+    from pellicle.studies.runner import RunTask, plan, tasks
 
     if isinstance(made, Study):
         planned = list(plan(tasks(made, folder, overwrite=overwrite)))
@@ -95,8 +95,8 @@ def _run_one(
     made: Run, folder: Path, name: str, *, quiet: bool, threads: int | None, overwrite: bool
 ) -> None:
     from pellicle.components import Place
-    from pellicle.orchestrator import execute, standard_outputs
-    from pellicle.progress import Progress
+    from pellicle.runs.progress import Progress
+    from pellicle.runs.runner import execute, standard_outputs
 
     place = Place(folder, name, made.to_json(as_given=True), made.identity, overwrite)
     bar = Progress(len(made.loading.values), not quiet)
@@ -118,7 +118,7 @@ def _run_one(
 def _run_study(
     made: Study, folder: Path, *, quiet: bool, threads: int | None, overwrite: bool
 ) -> None:
-    from pellicle.study import carry_out
+    from pellicle.studies.runner import carry_out
 
     try:
         done = carry_out(made, folder, progress=not quiet, overwrite=overwrite, threads=threads)

@@ -18,7 +18,7 @@ from .results import (
 )
 
 if TYPE_CHECKING:
-    from pellicle.result import Result
+    from pellicle.results.result import Result
 
 
 def show(
@@ -27,8 +27,8 @@ def show(
     ],
 ) -> None:
     """Print the steps of a result, or the runs of a study, and where it comes from."""
-    from pellicle.result import load
-    from pellicle.study import is_table, read
+    from pellicle.results.result import load
+    from pellicle.studies.runner import is_table, read
 
     if is_table(results):
         table, _ = read(results)

@@ -11,7 +11,7 @@ from .printing import print_table
 
 def validate() -> None:
     """Solve the shipped problems of known solution; exit code 0 only if all agree."""
-    from pellicle.validation import validate as verdicts
+    from pellicle.runs.validation import validate as verdicts
 
     rows, passed = [], True
     for verdict in verdicts():

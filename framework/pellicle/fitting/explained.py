@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle.operators import Array
 
-from .checks import examine
-from .likelihood import Likelihood, best_minimum
 from .posed import Posed
-from .residuals import FailedCheck
-from .shape_check import check_shape
-from .start import starts
+from .statistics.checks import examine
+from .statistics.initial_guess import starts
+from .statistics.likelihood import Likelihood, best_minimum
+from .statistics.residuals import FailedCheck
+from .statistics.shape_check import check_shape
 
 
 @dataclass(frozen=True)

@@ -13,22 +13,31 @@ from numpy.typing import ArrayLike
 from pellicle.components import Executor, HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 
-from .answer import Answer, doubt
-from .curve import Segment
-from .design import advice, undecided
-from .estimate import Estimate
+from .curves.columns import Calibration, Measured
+from .curves.curve import Segment
+from .curves.sources import Source
 from .explained import explain
-from .interval import allowed_rise
-from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood, Minimum, best_minimum
-from .measured import Calibration, Measured
+from .models.interpolated import described
+from .models.simulation import GRID_POINTS
 from .plausible import plausible
 from .posed import Posed, posed
-from .profiled import profiled
-from .question import Baseline
-from .simulated import described
-from .simulation import GRID_POINTS
-from .sources import Source
-from .start import starts
+from .problem import Baseline
+from .result import Answer, doubt
+from .statistics.design import advice, undecided
+from .statistics.estimate import Estimate
+from .statistics.initial_guess import starts
+from .statistics.interval import allowed_rise
+from .statistics.likelihood import (
+    MODULUS,
+    OFFSET,
+    POINT,
+    SLOPE,
+    TENSION,
+    Likelihood,
+    Minimum,
+    best_minimum,
+)
+from .statistics.profile import profiled
 from .status import Report, ignore, status
 
 

@@ -13,19 +13,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pellicle.components import Component, Executor, HasForceCurve, Indenter, Say
-from pellicle.contracts import outcomes_of
+from pellicle.components.calls import outcomes_of
 from pellicle.errors import PellicleError
+from pellicle.files import check_writable
 from pellicle.plugins import registry
-from pellicle.progress import StudyProgress
-from pellicle.storage import check_writable
+from pellicle.runs.progress import StudyProgress
 
-from .curve import Segment
+from .curves.curve import Segment
+from .curves.sources import Curves, Source, gather
 from .fit import fitted
+from .models.simulation import GRID_POINTS
 from .posed import Posed, posed
-from .question import Baseline
-from .rows import FAILED, FITTED, NOT_RUN, table, write
-from .simulation import GRID_POINTS
-from .sources import Curves, Source, gather
+from .problem import Baseline
+from .table import FAILED, FITTED, NOT_RUN, table, write
 from .written import write_json
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ from typing import Any
 from pellicle.components import Component
 from pellicle.errors import ConfigError
 
+from .models.interpolated import SimulatedCurve
+from .models.solid import lengths
 from .posed import Posed
-from .simulated import SimulatedCurve
-from .solid import lengths
 
 _PLAUSIBLE_DEPTH = (1e-3, 1.0)
 _PLAUSIBLE_MODULUS = (1.0, 1e12)

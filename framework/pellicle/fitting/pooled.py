@@ -14,24 +14,24 @@ from scipy.special import bdtrc, chdtrc
 from pellicle.components import Executor, HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 
-from .answer import Answer, doubt
-from .curve import Segment
-from .design import percent
-from .estimate import Estimate
+from .curves.curve import Segment
+from .curves.sources import Curves, Source, gather
 from .explained import Explained, explain
-from .interval import allowed_rise
-from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
+from .models.interpolated import described
+from .models.simulation import GRID_POINTS
 from .plausible import plausible
-from .pool import SHARED, Pool
-from .pool_minima import alone, begin, without_tension
 from .posed import posed
-from .profiled import profiled
-from .question import Baseline
-from .residuals import FailedCheck
-from .shape_check import check_pooled_shape
-from .simulated import described
-from .simulation import GRID_POINTS
-from .sources import Curves, Source, gather
+from .problem import Baseline
+from .result import Answer, doubt
+from .statistics.design import percent
+from .statistics.estimate import Estimate
+from .statistics.interval import allowed_rise
+from .statistics.likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
+from .statistics.pool_minima import alone, begin, without_tension
+from .statistics.pooled_likelihood import SHARED, Pool
+from .statistics.profile import profiled
+from .statistics.residuals import FailedCheck
+from .statistics.shape_check import check_pooled_shape
 from .status import Report, status
 
 _CHANCE = 1e-3

@@ -11,13 +11,13 @@ import numpy as np
 from pellicle.components import HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 
-from .curve import Curve, Segment, clean
-from .likelihood import POINT
-from .measured import Measured
-from .question import Question, question
-from .simulation import simulate
-from .sources import Source
-from .start import BEFORE
+from .curves.columns import Measured
+from .curves.curve import Curve, Segment, clean
+from .curves.sources import Source
+from .models.simulation import simulate
+from .problem import Question, question
+from .statistics.initial_guess import BEFORE
+from .statistics.likelihood import POINT
 
 
 @dataclass(frozen=True)

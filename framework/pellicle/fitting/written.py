@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from pellicle.storage import aside
+from pellicle.files import atomic_write
 
 
 def as_json(value: object) -> str:
@@ -21,6 +21,6 @@ def write_json(value: object, path: Path) -> Path:
     StorageError
         The file cannot be written.
     """
-    with aside(path) as part:
+    with atomic_write(path) as part:
         part.write_text(as_json(value), encoding="utf-8")
     return path

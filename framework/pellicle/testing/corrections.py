@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pellicle.arrays import Mask
 from pellicle.checks import real_number
 from pellicle.components import AreaCorrection
 
@@ -33,10 +33,10 @@ def check_correction(correction: AreaCorrection) -> None:
     check(correction, "correction", RULES)
 
 
-def _islands() -> NDArray[np.bool_]:
+def _islands() -> Mask:
     """Return contact in half of the cells, in patches, none at the edge of the domain."""
     x, y = np.mgrid[0:40, 0:30]
-    contact: NDArray[np.bool_] = np.sin(x / 3) * np.cos(y / 4) + 0.3 * np.sin(x / 5 + y) > 0
+    contact: Mask = np.sin(x / 3) * np.cos(y / 4) + 0.3 * np.sin(x / 5 + y) > 0
     contact[[0, 1, -2, -1]] = contact[:, [0, 1, -2, -1]] = False
     return contact
 

@@ -6,10 +6,10 @@ from typing import get_args
 
 import numpy as np
 
+from pellicle.arrays import Array
 from pellicle.components import Footprint, HasForceCurve, Indenter
-from pellicle.contracts import force_curve_of
+from pellicle.components.calls import force_curve_of
 from pellicle.grid import Grid
-from pellicle.operators import Array
 
 from .component import check
 from .rules import Rule, require, require_close

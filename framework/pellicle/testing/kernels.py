@@ -6,9 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from pellicle.arrays import Array
 from pellicle.components import Kernel
 from pellicle.grid import Grid
-from pellicle.operators import Array, HasClosedForm, displacement, mean_compliance
+from pellicle.numerics.operators import HasClosedForm, displacement, mean_compliance
 
 from .component import check
 from .rules import Rule, require, require_close

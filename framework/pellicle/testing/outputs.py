@@ -9,14 +9,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from pellicle.clashes import matches
 from pellicle.components import Output, Place
-from pellicle.config import Run
-from pellicle.contracts import files_of
+from pellicle.components.calls import files_of
+from pellicle.config.output_conflicts import matches
+from pellicle.config.run import Run
 from pellicle.errors import StorageError
-from pellicle.orchestrator import execute, solve
-from pellicle.progress import Progress
-from pellicle.result import Result
+from pellicle.results.result import Result
+from pellicle.runs.progress import Progress
+from pellicle.runs.runner import execute, solve
 
 from .component import check
 from .rules import Rule, require

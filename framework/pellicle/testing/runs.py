@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pellicle.config import Run
-from pellicle.orchestrator import solve
+from pellicle.config.run import Run
+from pellicle.runs.runner import solve
 
 from .rules import require
 

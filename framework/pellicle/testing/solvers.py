@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.components import Solver
-from pellicle.config import Run
-from pellicle.contracts import solution_of
-from pellicle.operators import make_operator
-from pellicle.problem import Problem, measure, measure_stiffness
-from pellicle.result import Stop
+from pellicle.components.calls import solution_of
+from pellicle.config.run import Run
+from pellicle.numerics.operators import make_operator
+from pellicle.numerics.problem import Problem, measure, measure_stiffness
+from pellicle.numerics.solution import Stop
 
 from .component import check
 from .rules import Rule, require, require_close

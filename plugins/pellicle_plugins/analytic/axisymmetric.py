@@ -9,15 +9,18 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from pellicle.arrays import Array
 from pellicle.errors import ConfigError, ConvergenceError
-
-from .axisymmetric_equation import LEVELS, Solution, solve, without_negligible
-from .axisymmetric_indenters import Indenter, classical_radius
-from .checks import exactly_one, not_negative, positive
-
-Array = NDArray[np.float64]
+from pellicle_plugins.analytic.axisymmetric_equation import (
+    LEVELS,
+    Solution,
+    solve,
+    without_negligible,
+)
+from pellicle_plugins.analytic.axisymmetric_indenters import Indenter, classical_radius
+from pellicle_plugins.analytic.checks import exactly_one, not_negative, positive
 
 TOLERANCE = 1e-10
 EDGE_TOLERANCE = 1e-6

@@ -16,14 +16,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .axisymmetric_indenters import Indenter
-from .panels import Panel, Points, graded, joined, points_at
-from .product_integration import clustering, collocation, weights
-from .tension_kernel import auxiliary_g, primitive
-
-Array = NDArray[np.float64]
+from pellicle.arrays import Array
+from pellicle_plugins.analytic.axisymmetric_indenters import Indenter
+from pellicle_plugins.analytic.panels import Panel, Points, graded, joined, points_at
+from pellicle_plugins.analytic.product_integration import clustering, collocation, weights
+from pellicle_plugins.analytic.tension_kernel import auxiliary_g, primitive
 
 LEVELS = ((12, 1e-3), (16, 3e-4), (22, 1e-4))
 """Gauss points to a panel, and size of the finest panel over that of the layer."""

@@ -14,13 +14,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-
-from .checks import positive
-
-Array = NDArray[np.float64]
+from pellicle_plugins.analytic.checks import positive
 
 
 class Indenter(Protocol):

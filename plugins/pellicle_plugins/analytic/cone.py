@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-
-from .checks import exactly_one, not_negative, positive
+from pellicle_plugins.analytic.checks import exactly_one, not_negative, positive
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class ConeContact:
     mean_pressure: float
     """F / πa² = E* cot(α) / 2 [Pa], whatever the depth."""
 
-    def pressure(self, r: ArrayLike) -> NDArray[np.float64]:
+    def pressure(self, r: ArrayLike) -> Array:
         """Return p = (E* cot α / 2) arcosh(a / r) [Pa] at r ≥ 0 [m]; infinite at 0."""
         r = np.asarray(r, dtype=float)
         inside = (r > 0) & (r < self.contact_radius)

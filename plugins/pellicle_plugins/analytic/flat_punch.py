@@ -8,9 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .checks import exactly_one, not_negative, positive
+from pellicle.arrays import Array
+from pellicle_plugins.analytic.checks import exactly_one, not_negative, positive
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class FlatPunchContact:
     force: float
     """F [N]."""
 
-    def pressure(self, r: ArrayLike) -> NDArray[np.float64]:
+    def pressure(self, r: ArrayLike) -> Array:
         """Return p = F / (2πa sqrt(a² − r²)) [Pa] at r ≥ 0 [m]; infinite at a, 0 beyond."""
         ratio = np.asarray(r, dtype=float) / self.contact_radius
         inside = ratio < 1

@@ -9,11 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 from scipy.special import elliprd, elliprf
 
-from .checks import exactly_one, not_negative, positive
+from pellicle.arrays import Array
+from pellicle_plugins.analytic.checks import exactly_one, not_negative, positive
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class HertzContact:
     peak_pressure: float
     """Pressure at the centre [Pa]."""
 
-    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> NDArray[np.float64]:
+    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Return the pressure [Pa] at x, y [m] of broadcastable shapes; 0 outside."""
         across = np.asarray(x, dtype=float) / self.semi_x if self.semi_x else np.inf
         along = np.asarray(y, dtype=float) / self.semi_y if self.semi_y else np.inf

@@ -23,12 +23,11 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
+from pellicle.arrays import Array, Mask
 from pellicle.components import ForceCurve
 
-Array = NDArray[np.float64]
 Correction = Callable[[Array], tuple[Array, Array]]
 """log(P/P₀) and its derivative in x, at x ≥ 0 of shape (n,)."""
 
@@ -127,14 +126,14 @@ def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
     return _spread(touching, force, by_depth, by_length)
 
 
-def _touching(depth: Array) -> tuple[NDArray[np.bool_], Array]:
+def _touching(depth: Array) -> tuple[Mask, Array]:
     """Return where there is contact, and the depths there."""
     touching = depth > 0
     # Powers of a depth at the end of the range of floats would overflow.
     return touching, np.maximum(depth[touching], 1e-60)
 
 
-def _spread(touching: NDArray[np.bool_], *values: Array) -> ForceCurve:
+def _spread(touching: Mask, *values: Array) -> ForceCurve:
     """Return values known in contact as a curve that is 0 elsewhere."""
     out = np.zeros((3, touching.size))
     out[:, touching] = values

@@ -13,9 +13,8 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pellicle.arrays import Array, Mask
 
 
 @dataclass(frozen=True)
@@ -42,7 +41,7 @@ class Points:
         """Return the points with one more, trailing, axis."""
         return Points(self.psi[..., None], self.eta[..., None])
 
-    def __getitem__(self, index: slice | NDArray[np.bool_]) -> Points:
+    def __getitem__(self, index: slice | Mask) -> Points:
         """Return some of the points."""
         return Points(self.psi[index], self.eta[index])
 

@@ -7,11 +7,10 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
-from numpy.typing import NDArray
 
-from .panels import Panel, Points, gauss, joined
+from pellicle.arrays import Array
+from pellicle_plugins.analytic.panels import Panel, Points, gauss, joined
 
-Array = NDArray[np.float64]
 Kernel = Callable[[Array, Points, Points], Array]
 
 

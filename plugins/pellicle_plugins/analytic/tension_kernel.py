@@ -9,10 +9,9 @@ K = g(y) / s, where g is the auxiliary function of the sine and cosine integrals
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import sici
 
-Array = NDArray[np.float64]
+from pellicle.arrays import Array
 
 _FAR = 50.0
 _TERMS = 14

@@ -10,10 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .checks import exactly_one, not_negative, positive
-from .full_contact import pressure_amplitude
+from pellicle.arrays import Array
+from pellicle_plugins.analytic.checks import exactly_one, not_negative, positive
+from pellicle_plugins.analytic.full_contact import pressure_amplitude
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class WavyContact:
     full_pressure: float
     """p* = π E* Δ / λ [Pa], the mean pressure at which contact becomes full."""
 
-    def pressure(self, x: ArrayLike) -> NDArray[np.float64]:
+    def pressure(self, x: ArrayLike) -> Array:
         """Return the pressure [Pa] at x [m], of any shape.
 
         2 p̄ cos ψ sqrt(sin² ψ_a − sin² ψ) / sin² ψ_a with ψ = πx/λ, and p̄ + p* cos 2ψ

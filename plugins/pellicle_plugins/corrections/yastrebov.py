@@ -7,9 +7,9 @@ from math import log, pi
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pellicle import hookimpl
+from pellicle.arrays import Mask
 from pellicle.components import AreaCorrection
 
 
@@ -18,7 +18,7 @@ class Yastrebov(AreaCorrection):
 
     type: Literal["yastrebov"] = "yastrebov"
 
-    def area(self, contact: NDArray[np.bool_], spacing: tuple[float, float]) -> float:
+    def area(self, contact: Mask, spacing: tuple[float, float]) -> float:
         """Return A − (π − 1 + ln 2)/24 · S·Δ [m²].
 
         S·Δ sums, over all switches between contact and no contact along x and y, the switched
@@ -28,7 +28,7 @@ class Yastrebov(AreaCorrection):
         along_y = np.count_nonzero(contact[:, 1:] != contact[:, :-1])
         return _area(contact, int(along_x + along_y), spacing)
 
-    def periodic_area(self, contact: NDArray[np.bool_], spacing: tuple[float, float]) -> float:
+    def periodic_area(self, contact: Mask, spacing: tuple[float, float]) -> float:
         """Return the same with the switches across the edges of the domain [m²]."""
         along_x, along_y = (
             np.count_nonzero(contact != np.roll(contact, 1, axis)) for axis in (0, 1)
@@ -36,7 +36,7 @@ class Yastrebov(AreaCorrection):
         return _area(contact, int(along_x + along_y), spacing)
 
 
-def _area(contact: NDArray[np.bool_], switches: int, spacing: tuple[float, float]) -> float:
+def _area(contact: Mask, switches: int, spacing: tuple[float, float]) -> float:
     covered = np.count_nonzero(contact)
     return spacing[0] * spacing[1] * (covered - (pi - 1 + log(2)) / 24 * switches)
 

@@ -8,8 +8,7 @@ from typing import Literal
 
 from pellicle import hookimpl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
-
-from .attempt import attempt
+from pellicle_plugins.executors.execution import attempt
 
 
 class Serial(Executor):

@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import ForceCurve, Indenter
-from pellicle.operators import Array
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
 

@@ -11,16 +11,15 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Indenter
 from pellicle.errors import ConfigError
+from pellicle.files import read_text
 from pellicle.grid import shape_of_run
-from pellicle.model import InputPath
-from pellicle.operators import Array
-from pellicle.text_files import read_text
+from pellicle.model.input_path import InputPath
 from pellicle.units import Length
-
-from .measured import Measured
-from .scan import require_content, require_memory
+from pellicle_plugins.indenters.from_heights import Measured
+from pellicle_plugins.indenters.topography_reader import require_content, require_memory
 
 # Peak while an array is read and checked, in bytes for each value beside its own.
 _BYTES = 10

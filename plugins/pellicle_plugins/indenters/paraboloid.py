@@ -8,12 +8,11 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import ForceCurve, Indenter
-from pellicle.operators import Array
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
-
-from .sphere import Sphere
+from pellicle_plugins.indenters.sphere import Sphere
 
 
 class Paraboloid(Indenter):

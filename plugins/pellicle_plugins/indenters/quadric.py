@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Indenter
-from pellicle.operators import Array
 from pellicle.units import Length
 
 

@@ -9,11 +9,10 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Indenter
-from pellicle.operators import Array
 from pellicle.units import Quantity
-
-from .part import Altered, profile_of
+from pellicle_plugins.indenters.transformed import Altered, profile_of
 
 
 class Scaled(Altered):

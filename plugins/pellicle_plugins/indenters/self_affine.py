@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Footprint, Indenter
 from pellicle.errors import ConfigError
-from pellicle.operators import Array
 from pellicle.units import Length, Quantity
-
-from .axis import Axis
+from pellicle_plugins.indenters.sampling import Axis
 
 # Wavelengths that fit the domain exactly must not be lost to rounding.
 _ROUNDING = 1e-9

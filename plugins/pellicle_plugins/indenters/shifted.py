@@ -8,11 +8,10 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Indenter
-from pellicle.operators import Array
 from pellicle.units import Quantity
-
-from .part import Moved, profile_of
+from pellicle_plugins.indenters.transformed import Moved, profile_of
 
 
 class Shifted(Moved):

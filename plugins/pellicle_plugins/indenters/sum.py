@@ -10,12 +10,11 @@ import scipy.optimize
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Footprint, Indenter
+from pellicle.config.component_field import FromRegistry
 from pellicle.errors import ConfigError
-from pellicle.fields import FromRegistry
-from pellicle.operators import Array
-
-from .part import profile_of
+from pellicle_plugins.indenters.transformed import profile_of
 
 
 class Sum(Indenter):

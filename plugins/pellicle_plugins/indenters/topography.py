@@ -9,21 +9,19 @@ from typing import Annotated, ClassVar, Literal, Self, get_args
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 from scipy.interpolate import make_interp_spline
 
 from pellicle import hookimpl
+from pellicle.arrays import Array, Mask
 from pellicle.components import Indenter
 from pellicle.errors import ConfigError
 from pellicle.grid import pair
-from pellicle.model import InputPath
-from pellicle.operators import Array
+from pellicle.model.input_path import InputPath
 from pellicle.units import Length, Quantity
-
-from .axis import Axis
-from .measured import Measured
-from .scan import Scan, library, read_scan, require_memory
+from pellicle_plugins.indenters.from_heights import Measured
+from pellicle_plugins.indenters.sampling import Axis
+from pellicle_plugins.indenters.topography_reader import Scan, library, read_scan, require_memory
 
 _Position = Annotated[float, Quantity("m", at_least=0)]
 _Level = Literal["none", "mean", "tilt", "curvature"]
@@ -219,7 +217,7 @@ def _rms(values: Array) -> float:
     return largest * float(np.sqrt(np.mean((finite / largest) ** 2))) if largest else 0.0
 
 
-def _filled(heights: Array, missing: NDArray[np.bool_]) -> Array:
+def _filled(heights: Array, missing: Mask) -> Array:
     """Return heights whose missing ones solve Laplace's equation among the others."""
     known = np.ma.masked_array(np.where(missing, 0.0, heights), mask=missing)
     scan = library().Topography(known, heights.shape)

@@ -8,12 +8,11 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle.operators import Array
 from pellicle.units import BendingStiffness
-
-from .elastic_solid import ElasticSolid
-from .skin import Skin
+from pellicle_plugins.kernels.reduced_modulus import ElasticSolid
+from pellicle_plugins.kernels.skin import Skin
 
 
 class BendingSkin(Skin, ElasticSolid):

@@ -8,11 +8,11 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle.fields import FromRegistry
-from pellicle.operators import Array, mean_compliance
-
-from .skin import Skin
+from pellicle.config.component_field import FromRegistry
+from pellicle.numerics.operators import mean_compliance
+from pellicle_plugins.kernels.skin import Skin
 
 
 class Coated(Skin):

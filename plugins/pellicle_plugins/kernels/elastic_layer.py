@@ -7,10 +7,9 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from pellicle.operators import Array
+from pellicle.arrays import Array
 from pellicle.units import Length
-
-from .isotropic_solid import IsotropicSolid
+from pellicle_plugins.kernels.elastic_constants import IsotropicSolid
 
 # Where exp(−2qh) is beyond the digits of a double, and a layer is a half-space.
 _DEEP = 100.0

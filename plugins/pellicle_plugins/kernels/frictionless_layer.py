@@ -8,10 +8,9 @@ from typing import Literal
 import numpy as np
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle.operators import Array
-
-from .elastic_layer import ElasticLayer
+from pellicle_plugins.kernels.elastic_layer import ElasticLayer
 
 
 class FrictionlessLayer(ElasticLayer):

@@ -8,12 +8,11 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle.operators import Array
 from pellicle.units import Tension
-
-from .isotropic_solid import IsotropicSolid
-from .skin import Skin
+from pellicle_plugins.kernels.elastic_constants import IsotropicSolid
+from pellicle_plugins.kernels.skin import Skin
 
 
 class GurtinMurdoch(Skin, IsotropicSolid):

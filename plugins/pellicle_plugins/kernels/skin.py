@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import Field
 
+from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle.operators import Array
 from pellicle.units import BendingStiffness, Tension
 
 

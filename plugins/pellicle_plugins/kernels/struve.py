@@ -18,9 +18,8 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pellicle.arrays import Array
 
 _SPLIT = 4.0
 _SERIES_TERMS = 16

@@ -9,12 +9,11 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle.operators import Array
 from pellicle.units import Tension
-
-from .elastic_solid import ElasticSolid
-from .struve import struve_minus_bessel, struve_minus_bessel_primitive
+from pellicle_plugins.kernels.reduced_modulus import ElasticSolid
+from pellicle_plugins.kernels.struve import struve_minus_bessel, struve_minus_bessel_primitive
 
 
 class TensedMembrane(ElasticSolid):

@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle.operators import Array
 from pellicle.units import FoundationStiffness
 
 

@@ -10,13 +10,12 @@ import scipy.fft
 from pydantic import Field
 
 from pellicle import Run, displacement, hookimpl
-from pellicle.columns import Runs, names
+from pellicle.arrays import Array
 from pellicle.components import Output
 from pellicle.errors import StorageError
-from pellicle.expression import evaluate
-from pellicle.operators import Array
-
-from .drawing import Graph, set_scales
+from pellicle.model.expression import evaluate
+from pellicle.results.derived import Runs, names
+from pellicle_plugins.outputs.base import Graph, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,10 +8,11 @@ from os import SEEK_END
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from pellicle import hookimpl, storage
+from pellicle import hookimpl
 from pellicle.components import Output, Place
-from pellicle.dataset import header
-from pellicle.result import Result
+from pellicle.files import storage_errors
+from pellicle.results.result import Result
+from pellicle.results.variables import header
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,7 +38,7 @@ class Csv(Output):
             if variable.dims == ("step",)
         }
         number = step["step"].item()
-        with storage.reported(path), path.open("a+" if number > 1 else "w+", **_TEXT) as file:
+        with storage_errors(path), path.open("a+" if number > 1 else "w+", **_TEXT) as file:
             file.seek(0)
             # Steps that an earlier version solved may have fewer columns.
             heads = next(csv.reader(file), ["step", *row])

@@ -12,15 +12,14 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle import hookimpl
 from pellicle.analysis import Extrapolation, extrapolate
-from pellicle.columns import Runs
+from pellicle.arrays import Array
 from pellicle.components import Output, Place
 from pellicle.errors import ConfigError
-from pellicle.expression import names_in
-from pellicle.model import Model
-from pellicle.operators import Array
-from pellicle_plugins.analytic.twin import exact
-
-from .drawing import (
+from pellicle.model.base import Model
+from pellicle.model.expression import names_in
+from pellicle.results.derived import Runs
+from pellicle_plugins.analytic.reference import exact
+from pellicle_plugins.outputs.base import (
     Graph,
     Log,
     Reference,

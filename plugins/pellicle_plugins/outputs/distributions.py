@@ -11,11 +11,10 @@ from pydantic import Field
 
 from pellicle import hookimpl
 from pellicle.analysis import Distribution, distribution
-from pellicle.columns import Runs
 from pellicle.components import Output
-from pellicle.plotting import axis_unit, save_figure
-
-from .drawing import Drawing, Log, set_scales, write_csv
+from pellicle.report.plotting import axis_unit, save_figure
+from pellicle.results.derived import Runs
+from pellicle_plugins.outputs.base import Drawing, Log, set_scales, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr

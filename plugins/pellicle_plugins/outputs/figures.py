@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Literal
 
 from pellicle import hookimpl
 from pellicle.components import Output, Place
-from pellicle.plotting import FIGURES, STUDY_FIGURES, save_figures, save_study_figures
-from pellicle.result import Result
-
-from .drawing import Formats
+from pellicle.report.plotting import FIGURES, STUDY_FIGURES, save_figures, save_study_figures
+from pellicle.results.result import Result
+from pellicle_plugins.outputs.base import Formats
 
 if TYPE_CHECKING:
     import xarray as xr

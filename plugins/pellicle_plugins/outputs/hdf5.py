@@ -6,10 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from pellicle import hookimpl, storage
+from pellicle import hookimpl
 from pellicle.components import Output, Place
 from pellicle.errors import StorageError
-from pellicle.result import Result, load
+from pellicle.results import storage
+from pellicle.results.result import Result, load
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid, Loading, hookimpl, storage
-from pellicle.columns import FIRST_RUN
+from pellicle import Grid, Loading, hookimpl
 from pellicle.components import Output, Place
-from pellicle.dataset import OF_THE_CONTACT
+from pellicle.config.describe import Input, in_words, inputs
 from pellicle.errors import StorageError
-from pellicle.inputs import Input, in_words, inputs
-from pellicle.page import (
+from pellicle.files import atomic_write
+from pellicle.report.page import (
     Cell,
     Code,
     Column,
@@ -32,8 +31,8 @@ from pellicle.page import (
     page,
     side,
 )
-from pellicle.page import Field as Shown
-from pellicle.plotting import (
+from pellicle.report.page import Field as Shown
+from pellicle.report.plotting import (
     FIGURES,
     STUDY_FIGURES,
     axis_unit,
@@ -41,9 +40,12 @@ from pellicle.plotting import (
     svg,
     without_round_off,
 )
-from pellicle.result import Result
-from pellicle.status import Status
-from pellicle.study import coarse, each_run, failures, reasons, standing
+from pellicle.results import storage
+from pellicle.results.derived import FIRST_RUN
+from pellicle.results.result import Result
+from pellicle.results.status import Status
+from pellicle.results.variables import OF_THE_CONTACT
+from pellicle.studies.summary import coarse, each_run, failures, reasons, standing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -194,7 +196,7 @@ def _write(
         sections,
         f"{what} of pellicle, {attributes['date'].replace('T', ' ').replace('+00:00', ' UTC')}",
     )
-    with storage.aside(path) as part:
+    with atomic_write(path) as part:
         part.write_text(made, encoding="utf-8")
     return (path,)
 

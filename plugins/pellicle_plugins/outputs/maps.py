@@ -11,11 +11,10 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.columns import Runs, as_array
 from pellicle.components import Output
-from pellicle.plotting import axis_unit, extent, save_figure
-
-from .drawing import Drawing, scaled
+from pellicle.report.plotting import axis_unit, extent, save_figure
+from pellicle.results.derived import Runs, as_array
+from pellicle_plugins.outputs.base import Drawing, scaled
 
 if TYPE_CHECKING:
     import xarray as xr

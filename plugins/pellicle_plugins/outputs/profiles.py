@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.columns import Runs, as_array
 from pellicle.components import Output
-from pellicle_plugins.analytic.twin import exact_line
-
-from .drawing import Graph, Reference, scaled, set_scales
+from pellicle.results.derived import Runs, as_array
+from pellicle_plugins.analytic.reference import exact_line
+from pellicle_plugins.outputs.base import Graph, Reference, scaled, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,12 +10,11 @@ import numpy as np
 
 from pellicle import hookimpl
 from pellicle.analysis import Spectrum, spectrum
-from pellicle.columns import Runs
 from pellicle.components import Output
-from pellicle.plotting import save_figure
-from pellicle.result import Result
-
-from .drawing import Drawing, write_csv
+from pellicle.report.plotting import save_figure
+from pellicle.results.derived import Runs
+from pellicle.results.result import Result
+from pellicle_plugins.outputs.base import Drawing, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr

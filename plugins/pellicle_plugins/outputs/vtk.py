@@ -14,12 +14,13 @@ from xml.sax.saxutils import XMLGenerator
 from xml.sax.xmlreader import AttributesImpl
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pellicle import hookimpl, storage
-from pellicle.columns import FIELDS
+from pellicle import hookimpl
+from pellicle.arrays import Array
 from pellicle.components import Output, Place
-from pellicle.result import Result
+from pellicle.files import atomic_write
+from pellicle.results.derived import FIELDS
+from pellicle.results.result import Result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,7 +70,7 @@ def _write_step(step: xr.Dataset, path: Path) -> None:
         if variable.ndim == 0 and variable.dtype.kind in "fib"
     }
 
-    def points(rows: slice) -> NDArray[np.float64]:
+    def points(rows: slice) -> Array:
         return np.stack(
             np.broadcast_arrays(x, y[rows, None], -fields["displacement"][rows]), axis=-1
         )
@@ -100,7 +101,7 @@ def _write_list(steps: Mapping[int, str], path: Path) -> None:
 @contextmanager
 def _written(path: Path) -> Iterator[XMLGenerator]:
     """Yield what writes the elements of a file."""
-    with storage.aside(path) as part, part.open("wb") as file:
+    with atomic_write(path) as part, part.open("wb") as file:
         xml = XMLGenerator(file, "utf-8", short_empty_elements=True)
         xml.startDocument()
         yield xml

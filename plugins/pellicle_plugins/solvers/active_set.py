@@ -7,20 +7,18 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pellicle import hookimpl
+from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor, Solver
 from pellicle.errors import ConfigError
-from pellicle.operators import Array
-from pellicle.problem import Problem
-from pellicle.transfer import highest, prolong
-
-from .guess import first_guess, with_force
-from .inner_solve import Inner, inner_solve
-from .preconditioner import OnContact, Preconditioner
-from .relaxation import relaxed
-from .scaling import ScaledSolver
+from pellicle.numerics.grid_transfer import highest, prolong
+from pellicle.numerics.problem import Problem
+from pellicle_plugins.solvers.contact_cg import Inner, inner_solve
+from pellicle_plugins.solvers.initial_guess import first_guess, with_force
+from pellicle_plugins.solvers.preconditioner import OnContact, Preconditioner
+from pellicle_plugins.solvers.relaxation import relaxed
+from pellicle_plugins.solvers.scaling import ScaledSolver
 
 # Coarse grids are solved to this share of the height range: with tension a smaller error than that
 # of the grid itself still moves the edge of the contact by several cells.
@@ -66,7 +64,7 @@ class History:
         """Whether the last look found fewer wrong cells than any before."""
         return len(self.contacts) <= 1 and self.returns == 0
 
-    def after(self, contact: NDArray[np.bool_], wrong: int) -> History:
+    def after(self, contact: Mask, wrong: int) -> History:
         """Return it after an inner solve on a contact that found so many cells wrong."""
         packed = np.packbits(contact).tobytes()
         if wrong < self.fewest:
@@ -190,9 +188,7 @@ class ActiveSet(ScaledSolver):
         """
         return (state.history.fewest,)
 
-    def punch_pressure(
-        self, problem: Problem, contact: NDArray[np.bool_], monitor: Monitor
-    ) -> Array:
+    def punch_pressure(self, problem: Problem, contact: Mask, monitor: Monitor) -> Array:
         """Return the pressure per depth [Pa/m] under a flat punch, by the same inner solves."""
         profile = np.where(contact, 0.0, -np.inf)
         unit = 1 / problem.operator.unit

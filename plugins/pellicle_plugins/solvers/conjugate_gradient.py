@@ -7,17 +7,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pellicle import hookimpl
+from pellicle.arrays import Array, Mask
 from pellicle.components import Solver
 from pellicle.grid import Grid
-from pellicle.operators import Array
-from pellicle.problem import Problem
-
-from .guess import first_guess, with_force
-from .products import dot
-from .scaling import ScaledSolver
+from pellicle.numerics.problem import Problem
+from pellicle_plugins.solvers.initial_guess import first_guess, with_force
+from pellicle_plugins.solvers.products import dot
+from pellicle_plugins.solvers.scaling import ScaledSolver
 
 # Contact is added only where penetration is at least this share of the error inside.
 _PROPORTION = 0.3
@@ -35,7 +33,7 @@ class _State:
     """A p, by recurrence or afresh."""
     fresh: bool
     """Whether the displacement was just computed and not updated."""
-    contact: NDArray[np.bool_]
+    contact: Mask
     direction: Array
     energy: float = 0.0
     """Σ gap² over the contact at the last step; 0 starts from steepest descent."""

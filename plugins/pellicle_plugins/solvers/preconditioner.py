@@ -11,11 +11,11 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
+from pellicle.arrays import Array, Mask
 from pellicle.grid import Grid
-from pellicle.operators import Array, Operator
-
-from .extension import Extension, bends, stretch_of
-from .stiffness import Field, Stiffness
+from pellicle.numerics.operators import Operator
+from pellicle_plugins.solvers.circulant_stiffness import Field, Stiffness
+from pellicle_plugins.solvers.multilevel_extension import Extension, bends, stretch_of
 
 Cells = NDArray[np.int64]
 
@@ -65,7 +65,7 @@ class Preconditioner:
         here = self._plane == self._shape
         return self._stiffness if here else Stiffness(self._operator, self._shape)
 
-    def on(self, contact: NDArray[np.bool_]) -> OnContact:
+    def on(self, contact: Mask) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""
         cells = np.flatnonzero(contact)
         places, copied = cells, np.empty(0, dtype=np.int64)
@@ -116,7 +116,7 @@ class OnContact:
 
     def __init__(
         self,
-        contact: NDArray[np.bool_],
+        contact: Mask,
         cells: Cells,
         places: Cells,
         copied: Cells,

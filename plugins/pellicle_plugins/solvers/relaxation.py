@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pellicle.operators import Array
-from pellicle.problem import Problem
-
-from .inner_solve import Inner
-from .preconditioner import OnContact
-from .stiffness import Stiffness
+from pellicle.arrays import Array, Mask
+from pellicle.numerics.problem import Problem
+from pellicle_plugins.solvers.circulant_stiffness import Stiffness
+from pellicle_plugins.solvers.contact_cg import Inner
+from pellicle_plugins.solvers.preconditioner import OnContact
 
 # Waves of up to about twenty cells settle; the longer ones are for the inner solves.
 _STEPS: Final = 160
@@ -20,7 +18,7 @@ _STEPS: Final = 160
 
 def relaxed(
     problem: Problem, stiffness: Stiffness, on_contact: OnContact, found: Inner, margin: float
-) -> tuple[NDArray[np.bool_], Array]:
+) -> tuple[Mask, Array]:
     """Return the contact and forces [Pa] once the cells that are wrong have moved others.
 
     What bends presses along its edge in a pattern of single cells: one that lets go is made up for

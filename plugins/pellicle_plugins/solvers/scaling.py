@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from pellicle.arrays import Array
 from pellicle.components import IterativeSolver, Monitor
-from pellicle.operators import Array
-from pellicle.problem import Problem
-from pellicle.result import Solution
+from pellicle.numerics.problem import Problem
+from pellicle.numerics.solution import Solution
 
 # Greatest exponent of a unit: what is greater than that by 2^100 is still a number.
 _LARGEST = 900

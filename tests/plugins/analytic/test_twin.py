@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
-from pellicle_plugins.analytic.twin import contact
+from pellicle_plugins.analytic.reference import contact
 
 
 @pytest.mark.parametrize(

@@ -16,8 +16,8 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli import app
-from pellicle.page import Section, Text, page
 from pellicle.plotting import save_figure, svg, without_round_off
+from pellicle.report.page import Section, Text, page
 
 RUN: dict[str, Any] = {
     "grid": {"points": 16, "size": "1 mm", "boundary": "periodic"},

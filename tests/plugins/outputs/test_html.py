@@ -20,7 +20,7 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
-from pellicle import orchestrator
+from pellicle.runs import runner as orchestrator
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome

@@ -69,7 +69,7 @@ def test_csv_goes_on_below_the_header_that_is_there(tmp_path: Path) -> None:
 
 def test_csv_holds_every_finished_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run that is interrupted leaves the rows of the steps before."""
-    from pellicle import orchestrator
+    from pellicle.runs import runner as orchestrator
 
     _interrupt_in_step(2, monkeypatch, orchestrator)
     with pytest.raises(KeyboardInterrupt):
@@ -147,7 +147,7 @@ def test_hdf5(tmp_path: Path) -> None:
 
 def test_hdf5_is_whole_after_each_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """While a step is solved, the file with those before it can be read."""
-    from pellicle import orchestrator
+    from pellicle.runs import runner as orchestrator
 
     found: list[int] = []
     solve = orchestrator._solve

@@ -21,7 +21,7 @@ from pellicle_plugins.indenters.self_affine import SelfAffine
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 from pellicle_plugins.solvers.active_set import ActiveSet, History
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
-from pellicle_plugins.solvers.inner_solve import inner_solve
+from pellicle_plugins.solvers.contact_cg import inner_solve
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 
 Boundary = Literal["free", "periodic"]

@@ -12,8 +12,12 @@ from pellicle import Grid, Kernel
 from pellicle.operators import make_operator
 from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
-from pellicle_plugins.solvers import extension
-from pellicle_plugins.solvers.extension import Extension, _interpolate, _transposed_interpolate
+from pellicle_plugins.solvers import multilevel_extension as extension
+from pellicle_plugins.solvers.multilevel_extension import (
+    Extension,
+    _interpolate,
+    _transposed_interpolate,
+)
 from pellicle_plugins.solvers.preconditioner import OnContact, Preconditioner
 
 SINGLE = float(np.finfo(np.float32).eps)

@@ -10,10 +10,10 @@ from pellicle import Grid, Problem
 from pellicle.operators import make_operator
 from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.solvers import relaxation
-from pellicle_plugins.solvers.inner_solve import Inner
+from pellicle_plugins.solvers.circulant_stiffness import Stiffness
+from pellicle_plugins.solvers.contact_cg import Inner
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 from pellicle_plugins.solvers.relaxation import relaxed
-from pellicle_plugins.solvers.stiffness import Stiffness
 
 Array = NDArray[np.float64]
 SHAPE = (16, 12)

@@ -1,0 +1,87 @@
+"""Writes the package of a plugin: what ``pellicle new --plugin`` leaves."""
+
+from __future__ import annotations
+
+import re
+from importlib.resources import files
+from importlib.util import find_spec
+from keyword import iskeyword
+from pathlib import Path
+from string import Template
+
+from pellicle.components import FAMILIES
+from pellicle.errors import ConfigError, StorageError
+from pellicle.files import storage_errors
+from pellicle.plugins import registry
+
+_NAME = re.compile(r"[a-z][a-z0-9]*([-_][a-z0-9]+)*")
+
+
+def write_plugin(family: str, name: str, parent: Path) -> Path:
+    """Write a complete package that adds a component, and return its folder.
+
+    Parameters
+    ----------
+    family
+        One of ``kernel``, ``indenter``, ``solver``, ``correction``, ``output``, ``executor``.
+    name
+        The component's type, such as ``graded`` or ``graded-solid``.
+    parent
+        Folder in which that of the package is made.
+
+    Raises
+    ------
+    ConfigError
+        No such family, or a name that cannot be used.
+    StorageError
+        The folder exists already, or cannot be written.
+    """
+    if family not in FAMILIES:
+        raise ConfigError(f"{family!r} is no family; give one of {', '.join(FAMILIES)}", "--plugin")
+    names = _names(family, name)
+    folder = parent / names["distribution"]
+    templates = files("pellicle.cli") / "templates"
+    sources = {
+        "pyproject.toml": templates / "package" / "pyproject.toml",
+        "README.md": templates / "package" / "README.md",
+        f"{names['module']}.py": templates / family / "module",
+        f"test_{names['module']}.py": templates / family / "test",
+        f"{names['type']}.toml": templates / family / "example",
+    }
+    with storage_errors(folder):
+        try:
+            folder.mkdir()
+        except FileExistsError:
+            raise StorageError(f"{folder} exists already; give another name") from None
+        for file, source in sources.items():
+            text = Template(source.read_text(encoding="utf-8")).substitute(names)
+            (folder / file).write_text(text, encoding="utf-8")
+    return folder
+
+
+def _names(family: str, name: str) -> dict[str, str]:
+    """Return all that is named after the component."""
+    type_ = name.replace("-", "_")
+    class_name = "".join(word.capitalize() for word in type_.split("_"))
+    if not _NAME.fullmatch(name) or iskeyword(type_) or iskeyword(class_name):
+        raise ConfigError(
+            f"{name!r} cannot be the name of a component; give lower-case words of letters a to z "
+            "and digits, joined by - or _, such as 'graded-solid'",
+            "NAME",
+        )
+    found = registry()
+    if owner := found.components[family].get(type_):
+        what = f"{'an' if family[0] in 'aeiou' else 'a'} {family}"
+        raise ConfigError(
+            f"{type_!r} is the type of {what} already, of {owner.origin}; give another", "NAME"
+        )
+    module = f"pellicle_{type_}"
+    if find_spec(module):
+        raise ConfigError(f"a module {module} is installed already; give another name", "NAME")
+    return {
+        "family": family,
+        "type": type_,
+        "class_name": class_name,
+        "module": module,
+        "distribution": module.replace("_", "-"),
+    }

@@ -1,0 +1,36 @@
+"""The contracts of the families of components.
+
+A component is a frozen model: its fields are its parameters in SI, each with a description, its
+methods are pure. The same object is configuration, code, JSON schema and provenance, and it
+pickles to workers. A concrete component declares ``type: Literal["name"] = "name"``.
+"""
+
+from .base import Component as Component
+from .correction import AreaCorrection as AreaCorrection
+from .executor import AnyTask as AnyTask
+from .executor import Executor as Executor
+from .executor import Outcome as Outcome
+from .executor import Report as Report
+from .executor import Say as Say
+from .executor import Task as Task
+from .executor import Threads as Threads
+from .executor import Workers as Workers
+from .indenter import Footprint as Footprint
+from .indenter import ForceCurve as ForceCurve
+from .indenter import HasForceCurve as HasForceCurve
+from .indenter import Indenter as Indenter
+from .indenter import IsShallowLimit as IsShallowLimit
+from .kernel import Kernel as Kernel
+from .output import Output as Output
+from .output import Place as Place
+from .solver import HasMemory as HasMemory
+from .solver import IterativeSolver as IterativeSolver
+from .solver import Monitor as Monitor
+from .solver import Solver as Solver
+from .validation import Case as Case
+from .validation import Suite as Suite
+
+FAMILIES: dict[str, type[Component]] = {
+    family.family: family for family in (Kernel, Indenter, Solver, AreaCorrection, Output, Executor)
+}
+"""The base class of each family, by name."""

@@ -1,0 +1,376 @@
+"""Calls of components: one function for each method that the framework calls.
+
+What a component is given is read-only; what it returns is checked against its contract, at a cost
+far below that of the call. A kernel is called by `pellicle.operators` in the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing
+from dataclasses import replace
+from numbers import Integral
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast, get_args
+
+import numpy as np
+
+from pellicle.arrays import Array, Mask
+from pellicle.checks import (
+    blamed,
+    component_name,
+    read_only,
+    read_only_dataset,
+    real_array,
+    real_number,
+)
+from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.grid import LARGEST, Grid
+from pellicle.numerics.problem import Problem
+from pellicle.numerics.solution import Solution, Stop
+
+from .correction import AreaCorrection
+from .executor import AnyTask, Executor, Outcome, Report, Say
+from .indenter import Footprint, ForceCurve, HasForceCurve, Indenter
+from .output import Output, Place
+from .solver import Monitor, Solver
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# Rounding of heights over the size of the domain, and of areas over their own size.
+_ROUNDING = 1e-12
+
+
+def profile_of(indenter: Indenter, grid: Grid) -> Array:
+    """Return the profile f ≤ 0 [m] of an indenter on a grid, read-only.
+
+    Raises
+    ------
+    ConfigError
+        The indenter cannot be put on this grid, or has heights that are positive or NaN.
+    PluginError
+        The profile is not an array of the grid's shape, or nowhere near 0.
+    """
+    x, y = (read_only(points) for points in grid.coordinates())
+    try:
+        with blamed(indenter), np.errstate(over="raise"):
+            value = indenter.profile(x, y)
+            footprint = indenter.footprint
+    except ConfigError as error:
+        raise error.within("indenter") from None
+    except (OverflowError, FloatingPointError):
+        raise _beyond_numbers("overflow") from None
+    profile = real_array(indenter, "profile(x, y)", value, grid.shape)
+    name = component_name(indenter)
+    if footprint not in get_args(Footprint):
+        raise PluginError(
+            f"{name}: footprint is {shown(footprint)}; it has to be 'unbounded' or 'domain'"
+        )
+    if not (profile <= 0).all() or not np.isfinite(profile).any():
+        raise ConfigError(
+            f"the profile of {name} has values that are positive or NaN, or none that is finite; "
+            "it must be ≤ 0 everywhere and 0 at the lowest point",
+            "indenter",
+        )
+    height = -float(profile.min(where=np.isfinite(profile), initial=0.0))
+    if height and not 1 / LARGEST < height < LARGEST:
+        raise _beyond_numbers(f"reach {height:g} m")
+    highest = float(profile.max())
+    rounding = _ROUNDING * max(grid.size)
+    if highest < -rounding and highest < -(hidden := _hidden_height(profile, footprint)):
+        raise PluginError(
+            f"{name}: the highest value of profile(x, y) is {highest:.3g} m, further below 0 than "
+            f"the {hidden:.3g} m by which neighbouring cells differ; it has to be 0 at the lowest "
+            "point"
+        )
+    return read_only(profile)
+
+
+def _beyond_numbers(what: str) -> ConfigError:
+    return ConfigError(
+        f"its heights on this grid {what}, and squares of them are beyond the numbers that a "
+        "computer has; check the units of its lengths",
+        "indenter",
+    )
+
+
+def _hidden_height(profile: Array, footprint: Footprint) -> float:
+    """Return how far [m] the lowest point of an indenter may lie below its lowest cell.
+
+    Where a body falls away from an apex between the cells, it falls further to the cells around its
+    lowest one. A rough surface may have its apex elsewhere: there the largest step between any two
+    neighbours counts. The apex of an unbounded body may also lie beyond the edge of the domain.
+    """
+    if footprint == "domain":
+        with np.errstate(invalid="ignore"):
+            steps = [np.abs(np.diff(profile, axis=axis)) for axis in (0, 1)]
+        return max(
+            float(np.nan_to_num(step, nan=0.0, posinf=np.inf).max(initial=0)) for step in steps
+        )
+    top = float(profile.max())
+    i, j = np.nonzero(profile[1:-1, 1:-1] == top)
+    if not i.size:
+        return np.inf
+    lowest_around = np.min([profile[i + a, j + b] for a in range(3) for b in range(3)], axis=0)
+    return top - float(lowest_around.max())
+
+
+def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> ForceCurve:
+    """Return force over reduced modulus and its sensitivities at depths of shape (n,) [m].
+
+    Raises
+    ------
+    PluginError
+        They are not three arrays of that shape, finite at every finite depth.
+    """
+    with blamed(indenter):
+        value = indenter.force_curve(read_only(depth), length)
+    if not isinstance(value, ForceCurve):
+        raise PluginError(
+            f"{component_name(indenter)}: force_curve(depth, length) returned {shown(value)}; "
+            "it has to return a pellicle.ForceCurve"
+        )
+    curve = ForceCurve(
+        *(
+            real_array(indenter, f"force_curve(depth, length).{name}", values, depth.shape)
+            for name, values in value._asdict().items()
+        )
+    )
+    for name, values in curve._asdict().items():
+        if not np.isfinite(values[np.isfinite(depth)]).all():
+            raise PluginError(
+                f"{component_name(indenter)}: force_curve(depth, length).{name} has values that "
+                f"are NaN or infinite, for length = {length:.3g} m; it has to be finite"
+            )
+    return curve
+
+
+def solution_of(
+    solver: Solver, problem: Problem, start: Array | None, monitor: Monitor
+) -> Solution:
+    """Return the solution of a load step, its pressure in an array of its own.
+
+    A pressure that is negative or not finite is kept: the status of the step says so.
+
+    Raises
+    ------
+    PluginError
+        It is not a `Solution` of the grid's shape, or the solver changed the problem.
+    """
+    view = _read_only_problem(problem)
+    fields, parts = dict(vars(view)), problem.operator.parts()
+    with blamed(solver):
+        value = solver.solve(view, None if start is None else read_only(start), monitor)
+    _require_unchanged(solver, "solve()", fields, dict(vars(view)), "problem")
+    _require_unchanged(solver, "solve()", parts, problem.operator.parts(), "problem.operator")
+    name = component_name(solver)
+    if not isinstance(value, Solution):
+        raise PluginError(
+            f"{name}: solve() returned {shown(value)}; it has to return a pellicle.Solution"
+        )
+    pressure = real_array(solver, "solve().pressure", value.pressure, problem.grid.shape)
+    if not isinstance(value.iterations, Integral) or not isinstance(value.stop, Stop):
+        raise PluginError(
+            f"{name}: solve() returned iterations {shown(value.iterations)} and stop "
+            f"{shown(value.stop)}; they have to be a whole number and a pellicle.Stop"
+        )
+    # The solver may use the memory of what it returned again.
+    return replace(value, pressure=pressure.copy(), iterations=int(value.iterations))
+
+
+def punch_pressure_of(solver: Solver, problem: Problem, contact: Mask, monitor: Monitor) -> Array:
+    """Return the pressure per depth [Pa/m] under a flat punch whose footprint is ``contact``.
+
+    Raises
+    ------
+    PluginError
+        It is not an array of the grid's shape, or not 0 off the contact.
+    """
+    view, parts = _read_only_problem(problem), problem.operator.parts()
+    with blamed(solver):
+        value = solver.punch_pressure(view, read_only(contact), monitor)
+    _require_unchanged(
+        solver, "punch_pressure()", parts, problem.operator.parts(), "problem.operator"
+    )
+    pressure = real_array(solver, "punch_pressure()", value, problem.grid.shape)
+    if pressure[~contact].any():
+        raise PluginError(
+            f"{component_name(solver)}: punch_pressure() returned a pressure off the contact; it "
+            "has to be 0 there"
+        )
+    return pressure
+
+
+def _read_only_problem(problem: Problem) -> Problem:
+    return replace(problem, profile=read_only(problem.profile))
+
+
+def _require_unchanged(
+    solver: Solver, call: str, before: dict[str, object], after: dict[str, object], what: str
+) -> None:
+    differences = [key for key in before | after if before.get(key) is not after.get(key)]
+    if differences:
+        raise PluginError(
+            f"{component_name(solver)}: {call} changes {what}.{differences[0]}; a solver has to "
+            "leave its problem as it is"
+        )
+
+
+def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> float:
+    """Return the corrected area of contact [m²].
+
+    Raises
+    ------
+    PluginError
+        It is not a number between 0 and the area of the domain, 0 without contact.
+    """
+    method = correction.periodic_area if grid.boundary == "periodic" else correction.area
+    call = f"{method.__name__}(contact, spacing)"
+    with blamed(correction):
+        value = method(read_only(contact), grid.spacing)
+    area = real_number(correction, call, value)
+    largest = grid.area if contact.any() else 0.0
+    if not 0 <= area <= largest * (1 + _ROUNDING):
+        raise PluginError(
+            f"{component_name(correction)}: {call} returned {area:g} m²; it has to be between 0 "
+            f"and {largest:g} m², {'the area of the domain' if largest else 'without contact'}"
+        )
+    return area
+
+
+def endings_of(output: Output) -> tuple[str, ...]:
+    """Return the endings of the files that an output leaves.
+
+    Raises
+    ------
+    PluginError
+        They are not a tuple of text: the letters of one text would stand for endings of their own.
+    """
+    with blamed(output):
+        value = output.endings()
+    if not isinstance(value, (tuple, list)) or not all(isinstance(e, str) for e in value):
+        raise PluginError(
+            f"{component_name(output)}: endings() returned {shown(value)}; it has to return a "
+            'tuple of text, such as (".txt",)'
+        )
+    return tuple(value)
+
+
+def earlier_steps(output: Output, place: Place, steps: int) -> xr.Dataset | None:
+    """Return the steps that an output has from an earlier process, if any.
+
+    Raises
+    ------
+    PluginError
+        It is not a dataset of at most so many steps.
+    """
+    import xarray as xr
+
+    with blamed(output):
+        value = output.resume(place)
+    if value is None:
+        return None
+    number = value.sizes.get("step", 0) if isinstance(value, xr.Dataset) else 0
+    if not 0 < number <= steps:
+        raise PluginError(
+            f"{component_name(output)}: resume() returned {type(value).__name__} of {number} "
+            f"steps; it has to return None, or an xarray.Dataset of 1 to {steps} steps"
+        )
+    return value
+
+
+def hand_over(outputs: Sequence[Output], place: Place, step: xr.Dataset) -> None:
+    """Give a finished step to every output, even where one of them fails; none can change it.
+
+    Raises
+    ------
+    Exception
+        What the first that failed raised.
+    """
+    errors: list[Exception] = []
+    for output in outputs:
+        try:
+            with blamed(output):
+                output.step(place, read_only_dataset(step))
+        except Exception as error:
+            errors.append(error)
+    if errors:
+        raise errors[0]
+
+
+def files_of(output: Output, call: str, leave: Callable[[Output], object]) -> tuple[Path, ...]:
+    """Return the files that an output left behind.
+
+    Raises
+    ------
+    PluginError
+        They are not a tuple of paths.
+    """
+    with blamed(output):
+        value = leave(output)
+    if not isinstance(value, (tuple, list)) or not all(isinstance(path, Path) for path in value):
+        raise PluginError(
+            f"{component_name(output)}: {call} returned {shown(value)}; it has to return a "
+            "tuple of pathlib.Path, empty if there is none"
+        )
+    return tuple(value)
+
+
+def outcomes_of(
+    executor: Executor,
+    work: Callable[[AnyTask, Say], Outcome],
+    tasks: Sequence[AnyTask],
+    report: Report[AnyTask],
+    kind: type[Outcome],
+) -> Generator[tuple[AnyTask, Outcome | Exception], None, None]:
+    """Yield each task once with what its work returned, of the given ``kind``, or raised.
+
+    Raises
+    ------
+    PluginError
+        The executor yields a task twice, never, or one that it was not given; or an outcome that
+        the work of a task cannot have.
+    """
+    name = component_name(executor)
+    known = {id(task) for task in tasks}
+    remaining = {id(task): task for task in tasks}
+    with blamed(executor):
+        pairs: Any = executor.map(work, tasks, report)
+    if not isinstance(pairs, Iterator) or not hasattr(pairs, "close"):
+        raise PluginError(f"{name}: map() returned {shown(pairs)}; it has to be written with yield")
+    with closing(cast("Generator[Any]", pairs)):
+        for pair in _items(executor, pairs):
+            if not isinstance(pair, tuple) or len(pair) != 2 or id(pair[0]) not in known:
+                raise PluginError(
+                    f"{name}: map() yields {shown(pair)}; it has to yield each of the tasks that "
+                    "it was given, the object itself, with its outcome"
+                )
+            task, outcome = pair
+            if remaining.pop(id(task), None) is None:
+                raise PluginError(
+                    f"{name}: map() yields {task.name} twice; it has to yield each task once"
+                )
+            if not isinstance(outcome, (kind, Exception)):
+                raise PluginError(
+                    f"{name}: map() yields {task.name} with {shown(outcome)}; it has to yield it "
+                    "with what its work returned or raised"
+                )
+            yield task, outcome
+    if remaining:
+        first = next(iter(remaining.values()))
+        raise PluginError(
+            f"{name}: map() ended without {len(remaining)} of {len(tasks)} tasks, such as "
+            f"{first.name}; it has to yield each task once"
+        )
+
+
+def _items(executor: Executor, pairs: Iterator[Any]) -> Iterator[Any]:
+    """Yield what an executor yields; what it raises of its own is noted to be its fault."""
+    while True:
+        with blamed(executor):
+            try:
+                pair = next(pairs)
+            except StopIteration:
+                return
+        yield pair

@@ -1,0 +1,49 @@
+"""The JSON schema of models whose fields hold components."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.json_schema import models_json_schema
+
+from pellicle.plugins import registry
+
+from .component_field import _FAMILY
+
+
+def json_schema(model: type[BaseModel]) -> dict[str, Any]:
+    """Return the JSON schema of a model whose fields take any component that is installed.
+
+    Where such a field is the model's own the components are written out; within components, which
+    may hold others of their own family without end, they are referred to.
+    """
+    families = registry().components
+    installed = [each for found in families.values() for each in found.values()]
+    models = [model, *(registered.component for registered in installed)]
+    refs, made = models_json_schema([(each, "validation") for each in models])
+    names = {each: refs[each, "validation"]["$ref"].rpartition("/")[2] for each in models}
+    definitions: dict[str, Any] = made["$defs"]
+    referred: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
+    written: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
+    for registered in installed:
+        component = registered.component
+        required = {"required": ["type", *_required(component)]}
+        referred[component.family].append(refs[component, "validation"] | required)
+        written[component.family].append(definitions[names[component]] | required)
+    top = _filled(_filled(definitions.pop(names[model]), written), referred)
+    return {"$defs": _filled(definitions, referred), **top}
+
+
+def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
+    """Return ``schema`` with the choices of a family wherever a field holds one of them."""
+    if isinstance(schema, list):
+        return [_filled(each, choices) for each in schema]
+    if not isinstance(schema, dict):
+        return schema
+    filled = {name: _filled(each, choices) for name, each in schema.items() if name != _FAMILY}
+    return filled | {"oneOf": choices[schema[_FAMILY]]} if _FAMILY in schema else filled
+
+
+def _required(model: type[BaseModel]) -> list[str]:
+    return [name for name, info in model.model_fields.items() if info.is_required()]

@@ -1,0 +1,224 @@
+"""The configuration of a run: frozen models whose components come from the registry.
+
+The configuration *is* the objects that compute; TOML, JSON and keyword arguments all make the
+same `Run`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Collection, Iterable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+import tomli_w
+from pydantic import (
+    Field,
+    ValidationInfo,
+    ValidatorFunctionWrapHandler,
+    field_validator,
+    model_validator,
+)
+
+from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
+from pellicle.errors import ConfigError
+from pellicle.grid import Grid, grid_of_run
+from pellicle.loading import Loading
+from pellicle.model.base import Model
+from pellicle.model.input_path import AS_GIVEN, paths_relative_to
+from pellicle.model.paths import replaced
+from pellicle.model.toml import parse_override, read_toml
+from pellicle.plugins import registry
+
+from .component_field import FromRegistry
+from .output_conflicts import refuse_clashes
+
+DEFAULT_SOLVER = "active_set"
+# Raised when equal configurations begin to give other numbers, not with the layout of files.
+_NUMBERS_VERSION = 1
+
+
+class Run(Model):
+    """One contact problem with its load steps."""
+
+    title: Annotated[str, Field(description="a line for figures and listings")] = ""
+    grid: Annotated[Grid, Field(description="the domain and its cells")]
+    kernel: Annotated[Kernel, FromRegistry(), Field(description="how the surface yields")]
+    indenter: Annotated[Indenter, FromRegistry(), Field(description="what is pressed in")]
+    loading: Annotated[Loading, Field(description="the load steps")]
+    solver: Annotated[
+        Solver,
+        FromRegistry(),
+        Field(
+            description="how it is solved",
+            default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER}),
+        ),
+    ]
+    corrections: Annotated[
+        tuple[Annotated[AreaCorrection, FromRegistry()], ...],
+        Field(description="corrections of the contact area"),
+    ] = ()
+    outputs: Annotated[
+        tuple[Annotated[Output, FromRegistry()], ...] | None,
+        Field(description="what the run leaves behind; all the standard outputs if not given"),
+    ] = None
+
+    @field_validator("indenter", mode="wrap")
+    @classmethod
+    def _made_for_the_grid(
+        cls, given: object, make: ValidatorFunctionWrapHandler, info: ValidationInfo
+    ) -> Any:
+        with grid_of_run(info.data.get("grid")):
+            return make(given)
+
+    @model_validator(mode="after")
+    def _pressure_needs_period(self) -> Self:
+        if self.loading.prescribed == "mean_pressure" and self.grid.boundary == "free":
+            raise ConfigError(
+                'is not defined on an infinite surface (grid.boundary = "free"); prescribe force '
+                'or depth, or set grid.boundary = "periodic"',
+                "loading.mean_pressure",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _each_correction_once(self) -> Self:
+        types = [getattr(correction, "type", "") for correction in self.corrections]
+        for index, type_ in enumerate(types):
+            if type_ in types[:index]:
+                raise ConfigError(
+                    f"{type_!r} is there already, and both would be contact_area_{type_}; leave "
+                    "one out",
+                    f"corrections.{index}.type",
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _each_file_once(self) -> Self:
+        refuse_clashes(self.outputs or ())
+        return self
+
+    @classmethod
+    def from_toml(cls, path: str | Path, overrides: Iterable[str] = ()) -> Self:
+        """Return the run that a TOML file describes.
+
+        Parameters
+        ----------
+        path
+            The file; relative paths in it are seen from its folder.
+        overrides
+            Texts such as ``'kernel.tension="5 mN/m"'`` that replace what the file says.
+
+        Raises
+        ------
+        ConfigError
+            The file cannot be read or used; all its problems are named at once.
+        PluginError
+            A component that it asks for is broken.
+        """
+        data = read(path, overrides)
+        refuse_study(data)
+        with paths_relative_to(Path(path).parent):
+            return cls(**data)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Return the run that a JSON text describes, such as `to_json` gives.
+
+        Raises
+        ------
+        ConfigError
+            The text is not JSON, or not a run.
+        """
+        try:
+            data = json.loads(text)
+        except json.JSONDecodeError as error:
+            raise ConfigError(f"not JSON: {error}") from None
+        if not isinstance(data, dict):
+            raise ConfigError("a run is a JSON object with the keys grid, kernel, …")
+        return cls(**data)
+
+    @property
+    def identity(self) -> str:
+        """Hash of all that decides the numbers: equal for runs whose results are equal.
+
+        Of the configuration, defaults included, `title` and `outputs` are left out; a file that it
+        names counts by its content.
+        """
+        said = _identifying(self, without=("title", "outputs")) | {"schema": _NUMBERS_VERSION}
+        text = json.dumps(said, sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def to_json(self, *, as_given: bool = False) -> str:
+        """Return the whole configuration as JSON, defaults included, SI floats.
+
+        Paths of files to read are absolute, or as the run's own file has them: such a text can be
+        given away with the files, and does not say where they lay.
+        """
+        return self.model_dump_json(exclude_none=True, context=AS_GIVEN if as_given else None)
+
+    def to_toml(self) -> str:
+        """Return the whole configuration as TOML, defaults included, SI floats."""
+        return tomli_w.dumps(json.loads(self.to_json()))
+
+
+def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
+    """Return the content of a run or study file, with what ``--set`` replaces.
+
+    Raises
+    ------
+    ConfigError
+        It cannot be read, or an override cannot be applied.
+    """
+    data = read_toml(Path(path))
+    for text in overrides:
+        key, value = parse_override(text)
+        try:
+            data = replaced(data, key, value)
+        except ConfigError as error:
+            raise ConfigError(f"--set {text!r}: {error}") from None
+    return data
+
+
+def refuse_study(data: Mapping[str, Any]) -> None:
+    """Refuse what is a study where a run is wanted.
+
+    Raises
+    ------
+    ConfigError
+        There is a table ``study``.
+    """
+    if "study" in data:
+        raise ConfigError(
+            "makes this a study: use run_study, or Study, in place of run, or leave the table out",
+            "study",
+        )
+
+
+def _identifying(model: Model, without: Collection[str] = ()) -> dict[str, Any]:
+    """Return what tells ``model`` from others: its JSON, with a hash in place of each file."""
+    said = model.model_dump(mode="json", exclude_none=True)
+    return {
+        name: _identified(getattr(model, name), value)
+        for name, value in said.items()
+        if name not in without
+    }
+
+
+def _identified(value: object, said: Any) -> Any:
+    if isinstance(value, Model):
+        return _identifying(value)
+    if isinstance(value, Path) and value.is_file():
+        stat = value.stat()
+        return _digest(value.absolute(), stat.st_mtime_ns, stat.st_size)
+    if isinstance(value, tuple):
+        return [_identified(*pair) for pair in zip(value, said, strict=True)]
+    return said
+
+
+@cache
+def _digest(path: Path, changed: int, size: int) -> str:
+    """Return the hash of a file; the runs of a study may all name the same large one."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,0 +1,1 @@
+"""Measured curves and the files that hold them."""

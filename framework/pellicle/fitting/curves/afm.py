@@ -1,0 +1,134 @@
+"""Curves in the formats of instruments, through afmformats (extra ``afm``)."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pellicle.errors import ConfigError, PellicleError, StorageError
+
+from .columns import Calibration, Measured
+
+SUFFIXES = (
+    ".jpk-force",
+    ".jpk-force-map",
+    ".jpk-qi-data",
+    ".jpk-qi-series",
+    ".ibw",
+    ".tab",
+    ".zip",
+)
+"""Endings that nothing else reads; .h5, .csv and .txt may be an instrument's as well."""
+INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
+_SPRING, _TIP = "spring constant", "tip position"
+_HEIGHTS = ("height (measured)", "height (piezo)")
+
+
+def installed() -> bool:
+    """Return whether afmformats is there."""
+    return find_spec("afmformats") is not None
+
+
+def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Measured | PellicleError]:
+    """Return the ``segment`` of each curve of a file, by its number; that of an only one is empty.
+
+    Raises
+    ------
+    ConfigError
+        The file holds no calibration and none is given, or holds one beside the given one.
+    StorageError
+        The file cannot be read, or afmformats is not installed.
+    """
+    if not installed():
+        raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
+    from afmformats.formats import get_recipe
+
+    given = {
+        name: value
+        for name, value in (
+            (_SPRING, calibration.spring_constant),
+            ("sensitivity", calibration.sensitivity),
+        )
+        if value is not None
+    }
+    if not path.is_file():
+        raise StorageError(f"{path}: cannot be read (no such file)")
+    curves: dict[str, Measured | PellicleError] = {}
+    with warnings.catch_warnings(record=True) as strange:
+        warnings.simplefilter("always")
+        with _explained(path):
+            loader = get_recipe(path).loader
+            try:
+                found = loader(path, meta_override=given)
+            except NotImplementedError:
+                # A format with a calibration of its own.
+                found = loader(path)
+        for each in found:
+            label = "" if len(found) == 1 else str(each["metadata"]["enum"])
+            try:
+                with _explained(path):
+                    curves[label] = _curve(path, each, given, segment)
+            except PellicleError as error:
+                curves[label] = error
+    messages = tuple(dict.fromkeys(f"afmformats: {each.message}" for each in strange))
+    return {
+        label: replace(curve, messages=messages) if isinstance(curve, Measured) else curve
+        for label, curve in curves.items()
+    }
+
+
+@contextmanager
+def _explained(path: Path) -> Iterator[None]:
+    """Turn what afmformats raises, some of it no Exception, into errors of ours."""
+    from afmformats import errors, meta
+
+    try:
+        yield
+    except PellicleError:
+        raise
+    except errors.MissingMetaDataError as error:
+        raise ConfigError(
+            f"{path}: holds no {' and '.join(error.meta_keys)}; give spring_constant and "
+            "sensitivity with their units (--spring-constant and --sensitivity on the command line)"
+        ) from None
+    except (Exception, errors.AFMFileFormatError, meta.MetaDataMissingError) as error:
+        said = " ".join(str(error).split()) or type(error).__name__
+        raise StorageError(f"{path}: afmformats cannot read it ({said})") from None
+
+
+def _curve(
+    path: Path, found: Mapping[str, Any], given: Mapping[str, float], segment: str
+) -> Measured:
+    """Return one segment of one curve in SI."""
+    data, metadata = found["data"], found["metadata"]
+    for name, value in given.items():
+        if not np.isclose(metadata.get(name, value), value, rtol=1e-6):
+            raise ConfigError(
+                f"{path}: holds a {name} of {metadata[name]:g} already, and this format takes no "
+                "other; leave it out",
+                name.replace(" ", "_"),
+            )
+    force = np.asarray(data["force"], dtype=float)
+    stiffness = metadata.get(_SPRING, given.get(_SPRING))
+    if _TIP in data:
+        tip = np.asarray(data[_TIP], dtype=float)
+    else:
+        height = next((name for name in _HEIGHTS if name in data), None)
+        if height is None:
+            raise ConfigError(f"{path}: has no height over the sample (has {', '.join(data)})")
+        bending = force / Calibration(stiffness).stiffness()
+        tip = np.asarray(data[height], dtype=float) + bending
+    rows = _rows(np.asarray(data["segment"]), segment) if "segment" in data else slice(None)
+    return Measured(force[rows], -tip[rows], stiffness=stiffness)
+
+
+def _rows(segments: Any, segment: str) -> Any:
+    """Return which rows are the first segment, or the last; all where there is one only."""
+    return segments == (segments.min() if segment == "approach" else segments.max())

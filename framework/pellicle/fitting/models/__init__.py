@@ -1,0 +1,1 @@
+"""What force a material gives at a depth."""

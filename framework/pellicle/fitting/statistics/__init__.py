@@ -1,0 +1,1 @@
+"""What a curve can tell: likelihoods, intervals, checks."""

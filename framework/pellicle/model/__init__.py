@@ -1,0 +1,9 @@
+"""The frozen model that every part of a configuration is, and its fields."""
+
+from .base import Model as Model
+from .input_path import AS_GIVEN as AS_GIVEN
+from .input_path import InputPath as InputPath
+from .input_path import as_given as as_given
+from .input_path import paths_relative_to as paths_relative_to
+from .messages import nearest as nearest
+from .paths import replaced as replaced

@@ -1,0 +1,120 @@
+"""Arithmetic over dotted names, as study files and figures state it.
+
+``kernel.tension / kernel.reduced_modulus`` is a number, a numpy array or an xarray variable,
+whatever the names stand for. Python's parser reads it, and nothing but arithmetic is evaluated.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from pellicle.errors import ConfigError, shown
+
+from .messages import nearest
+
+FUNCTIONS: dict[str, Callable[[Any], Any]] = {
+    "sqrt": np.sqrt,
+    "log": np.log,
+    "log10": np.log10,
+    "exp": np.exp,
+    "abs": np.abs,
+}
+"""What may be called, each with one argument."""
+CONSTANTS = {"pi": np.pi}
+"""Names that are there without being given."""
+
+_OPERATORS: dict[type[ast.AST], Callable[..., Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+    ast.UAdd: operator.pos,
+    ast.USub: operator.neg,
+}
+_NAME = re.compile(r"(?<![\w.])[^\W\d]\w*(?:\.\w+)*")
+_ALLOWED = f"+ - * / ** ( ), {', '.join(FUNCTIONS)} and {', '.join(CONSTANTS)}"
+
+
+def names_in(text: str) -> set[str]:
+    """Return the dotted names that ``text`` needs: all but functions and constants."""
+    return set(_NAME.findall(text)) - FUNCTIONS.keys() - CONSTANTS.keys()
+
+
+def evaluate(
+    text: str,
+    names: Mapping[str, Any],
+    functions: Mapping[str, Callable[[Any], Any]] | None = None,
+) -> Any:
+    """Return the value of ``text``: arithmetic over ``names``.
+
+    Parameters
+    ----------
+    text
+        Numbers, dotted names, ``+ - * / **``, parentheses and `FUNCTIONS`.
+    names
+        Value of each dotted name: a number or anything that does arithmetic like one.
+    functions
+        More functions of one argument.
+
+    Returns
+    -------
+    What the operations make of the values. Where they are not defined it is NaN or infinite.
+
+    Raises
+    ------
+    ConfigError
+        Anything else than arithmetic, or a name that is not there.
+    """
+    known = {**CONSTANTS, **names}
+    callable_ = {**FUNCTIONS, **(functions or {})}
+    # A dotted name may have parts that Python does not allow, such as the 0 of grid.size.0.
+    dotted: list[str] = _NAME.findall(text)
+    count = iter(range(len(dotted)))
+    try:
+        tree = ast.parse(_NAME.sub(lambda _: f"_{next(count)}", text).strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise ConfigError(f"{shown(text)} is not arithmetic; write it with {_ALLOWED}") from None
+
+    def name_of(node: ast.Name) -> str:
+        return dotted[int(node.id[1:])]
+
+    def value(node: ast.AST) -> Any:
+        match node:
+            case ast.Expression(body=body):
+                return value(body)
+            case ast.Constant(value=bool() | complex() | str() | bytes() | None):
+                pass
+            case ast.Constant(value=int() | float() as number):
+                return np.float64(number)
+            case ast.Name():
+                if (name := name_of(node)) not in known:
+                    raise ConfigError(f"{shown(name)} in {shown(text)}: {nearest(name, known)}")
+                return known[name]
+            case ast.UnaryOp(op=op, operand=operand) if type(op) in _OPERATORS:
+                return _OPERATORS[type(op)](value(operand))
+            case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
+                return _OPERATORS[type(op)](value(left), value(right))
+            case ast.Call(func=ast.Name() as called, args=[argument], keywords=[]):
+                if (name := name_of(called)) not in callable_:
+                    hint = nearest(name, callable_)
+                    raise ConfigError(f"{shown(name)} in {shown(text)} is no function; {hint}")
+                return callable_[name](value(argument))
+        piece = re.sub(r"\b_(\d+)\b", lambda found: dotted[int(found[1])], ast.unparse(node))
+        raise ConfigError(f"{shown(piece)} in {shown(text)} is not allowed; write {_ALLOWED}")
+
+    try:
+        with np.errstate(all="ignore"):
+            return value(tree)
+    except ConfigError:
+        raise
+    except RecursionError:
+        raise ConfigError(f"{shown(text)} is nested too deeply; make it shorter") from None
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ConfigError(f"{shown(text)} cannot be worked out: {error}") from None

@@ -1,0 +1,122 @@
+"""The axes of a study: dotted parameters, each with the values that it takes in turn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from pellicle.errors import ConfigError, Problem, shown
+from pellicle.units import Quantity, ramp, split
+
+Values = tuple[Any, ...]
+RANGE = {"start", "stop", "num"}
+_MOST = 1_000_000
+SPACINGS = ("linear", "log")
+
+
+def expand(given: object) -> dict[str, Values]:
+    """Return the values of each axis of a table: lists as they are, ranges expanded.
+
+    Raises
+    ------
+    ConfigError
+        An axis is empty or no axis at all; all such are named.
+    """
+    if not isinstance(given, Mapping):
+        raise ConfigError(f'{shown(given)} is not a table; give one: "kernel.tension" = […]')
+    axes: dict[str, Values] = {}
+    problems: list[Problem] = []
+    for key, values in _flat(given, ""):
+        try:
+            if key in axes:
+                raise ConfigError("is there twice; leave one out")
+            axes[key] = _values(values)
+        except ConfigError as error:
+            problems.extend(error.within(key).problems)
+    if problems:
+        raise ConfigError(problems)
+    return axes
+
+
+def _flat(given: Mapping[str, Any], path: str) -> Iterator[tuple[str, object]]:
+    """Yield each axis with its dotted key: in TOML a key without quotes makes nested tables."""
+    for name, value in given.items():
+        if isinstance(value, Mapping) and value and not RANGE & value.keys():
+            yield from _flat(value, f"{path}{name}.")
+        else:
+            yield f"{path}{name}", value
+
+
+def _values(given: object) -> Values:
+    if isinstance(given, Mapping):
+        return ranged(given)
+    if hasattr(given, "tolist"):
+        given = given.tolist()
+    if not isinstance(given, (list, tuple)):
+        raise ConfigError(
+            f"{shown(given)} is not allowed; give a list of values, or {{start, stop, num}}"
+        )
+    if not given:
+        raise ConfigError("is empty; give at least one value, or leave the axis out")
+    return tuple(each.item() if hasattr(each, "item") else each for each in given)
+
+
+def ranged(
+    given: Mapping[str, Any], what: str = "range", options: str = 'spacing = "log"'
+) -> Values:
+    """Return the values of ``{start, stop, num}``, with ``spacing`` if need be.
+
+    Messages call it ``what``, and say that it may have the ``options`` besides.
+
+    Raises
+    ------
+    ConfigError
+        It is none.
+    """
+    if not given.keys() >= RANGE or not given.keys() <= RANGE | {"spacing"}:
+        has = ", ".join(map(str, given)) or "nothing"
+        raise ConfigError(
+            f"a {what} that has {has} is not allowed; give start, stop and num, and {options} if "
+            "need be"
+        )
+    num, spacing = given["num"], given.get("spacing", "linear")
+    if not isinstance(num, int) or isinstance(num, bool) or not 2 <= num <= _MOST:
+        raise ConfigError(
+            f"{shown(num)} is not allowed; give a whole number of values, 2 to {_MOST}", "num"
+        )
+    if spacing not in SPACINGS:
+        raise ConfigError(f'{shown(spacing)} is not allowed; give "linear" or "log"', "spacing")
+    (start, unit), (stop, stop_unit) = (_end(given, end) for end in ("start", "stop"))
+    if (stop_unit or unit) != (unit or stop_unit) or bool(unit) != bool(stop_unit):
+        if not unit or not stop_unit:
+            raise ConfigError("give start and stop both with a unit, or both without")
+        try:
+            stop = Quantity(unit)(given["stop"])
+        except ValueError as error:
+            raise ConfigError(str(error), "stop") from None
+    if start == stop:
+        raise ConfigError("starts where it stops; give two ends, or a list of one value")
+    log = spacing == "log"
+    if log and (start == 0 or stop / start <= 0):
+        raise ConfigError('spacing = "log" needs start and stop ≠ 0 of the same sign')
+    values: list[Any] = list(ramp(start, stop, num, log=log))
+    whole = all(isinstance(given[end], int) for end in ("start", "stop"))
+    if whole and all(value.is_integer() for value in values):
+        return tuple(map(int, values))
+    return tuple(f"{value:.15g} {unit}" for value in values) if unit else tuple(values)
+
+
+def _end(given: Mapping[str, Any], end: str) -> tuple[float, str]:
+    """Return number and unit of one end of a range."""
+    value = given[end]
+    if hasattr(value, "magnitude") and hasattr(value, "units"):
+        value = f"{float(value.magnitude)!r} {value.units}"
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        value = f"{value:.17g}" if abs(value) < 1e300 else "inf"
+    found = split(value) if isinstance(value, str) else None
+    if found is None or not math.isfinite(found[0]):
+        raise ConfigError(
+            f"{shown(given[end])} is not allowed; give a finite number, with a unit or without", end
+        )
+    return found

@@ -1,0 +1,1 @@
+"""The elastic response of the surface and the problem of one load step."""

@@ -1,0 +1,52 @@
+"""Fields between a grid and a coarser one of the same domain, whatever their numbers of cells."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pellicle.arrays import Array
+
+
+def restrict(profile: Array, shape: tuple[int, int]) -> Array:
+    """Return a profile [m] on a coarser grid: the mean of the cells that fall into each.
+
+    A cell half of which has no indenter (−inf) has none.
+    """
+    finite = np.isfinite(profile)
+    total = _gather(np.where(finite, profile, 0.0), shape)
+    share = _gather(finite.astype(np.float64), shape)
+    cells = _gather(np.ones_like(profile), shape)
+    there = 2 * share > cells
+    return np.where(there, total / np.maximum(share, 1.0), -np.inf)
+
+
+def highest(profile: Array, shape: tuple[int, int]) -> Array:
+    """Return a profile [m] on a coarser grid: the highest of the cells that fall into each."""
+    for axis, coarse in enumerate(shape):
+        profile = np.maximum.reduceat(profile, _starts(profile.shape[axis], coarse), axis=axis)
+    return profile
+
+
+def prolong(pressure: Array, shape: tuple[int, int]) -> Array:
+    """Return a pressure [Pa] on a finer grid: that of the cell in which each centre lies."""
+    rows, columns = (
+        _parents(fine, coarse) for fine, coarse in zip(shape, pressure.shape, strict=True)
+    )
+    return pressure[rows[:, None], columns]
+
+
+def _gather(field: Array, shape: tuple[int, int]) -> Array:
+    for axis, coarse in enumerate(shape):
+        field = np.add.reduceat(field, _starts(field.shape[axis], coarse), axis=axis)
+    return field
+
+
+def _starts(fine: int, coarse: int) -> NDArray[np.int64]:
+    """Return the first fine cell of each coarse one."""
+    return np.flatnonzero(np.diff(_parents(fine, coarse), prepend=-1))
+
+
+def _parents(fine: int, coarse: int) -> NDArray[np.int64]:
+    """Return the coarse cell in which each fine cell's centre lies."""
+    return ((2 * np.arange(fine) + 1) * coarse) // (2 * fine)

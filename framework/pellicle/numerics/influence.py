@@ -1,0 +1,165 @@
+"""Influence coefficients: integrals of a radial Green's function over rectangular cells.
+
+Three ways of integrating meet, by the distance from the loaded cell in units of the longer
+side D of a cell:
+
+- up to 8 D in x and in y: exact, as a signed sum of corner integrals of the radial primitive;
+- up to a radius of about 32 D: 4 x 4 Gauss-Legendre points of the Green's function in each cell;
+- beyond: the mean over a cell from the Green's function at the centres of the cell and of its
+  neighbours, by central differences, so that each cell costs one evaluation.
+
+Each keeps the relative error of a coefficient below 1e-10 (typically 3e-12) for kernels that vary
+on the scale of r itself, between log(1/r) and 1/r, such as the half-space (Love 1929, Phil. Trans.
+R. Soc. A 228) and the tensed membrane (Hajji 1978, J. Appl. Mech. 45).  Rounding in the corner sums
+grows with the aspect ratio a of the cells, about as 64 a times the machine precision.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from pellicle.arrays import Array
+
+Radial = Callable[[Array], Array]
+Spacing = tuple[float, float]
+Shape = tuple[int, int]
+
+_EXACT_REACH = 8
+_GAUSS_REACH = 32.1  # no whole number, so that rounding decides no cell's way of integrating
+_GAUSS_POINTS = 4
+_BLOCK_ELEMENTS = 32768  # keeps the temporaries of a block of rows in the cache
+
+# Mean over a unit cell = f + d2/24 - 17 d4/5760 + 367 d6/967680 with central differences d2,
+# d4, d6, from the operator delta / (2 asinh(delta/2)); written out per neighbour 0, 1, 2, 3.
+_D2, _D4, _D6 = 1 / 24, -17 / 5760, 367 / 967680
+_MEAN_WEIGHTS = (
+    1 - 2 * _D2 + 6 * _D4 - 20 * _D6,
+    _D2 - 4 * _D4 + 15 * _D6,
+    _D4 - 6 * _D6,
+    _D6,
+)
+_HALO = len(_MEAN_WEIGHTS) - 1
+
+
+def cell_coefficients(
+    greens_function: Radial, radial_primitive: Radial, shape: Shape, spacing: Spacing
+) -> Array:
+    """Integrals of the Green's function over cells at all offsets (i, j) of a grid.
+
+    Parameters
+    ----------
+    greens_function:
+        G(r) in m/N for an array of distances r > 0 in m.
+    radial_primitive:
+        P(R) = int_0^R G(r) r dr in m/Pa for an array of distances R >= 0 in m.
+    shape:
+        (nx, ny), the number of offsets i = 0..nx-1 and j = 0..ny-1.
+    spacing:
+        (dx, dy), the sides of a cell in m.
+
+    Returns
+    -------
+    Array of shape (nx, ny) in m/Pa: the displacement at the centre of a cell under unit
+    pressure on the cell that lies i dx and j dy away.
+    """
+    nx, ny = shape
+    dx, dy = spacing = float(spacing[0]), float(spacing[1])
+    if nx < 1 or ny < 1:
+        raise ValueError(f"shape must be positive in both directions, got {shape}")
+    if not (dx > 0 and dy > 0):
+        raise ValueError(f"spacing must be positive in both directions, got {spacing}")
+    if dx == dy and nx < ny:
+        flipped = cell_coefficients(greens_function, radial_primitive, (ny, nx), spacing)
+        return np.ascontiguousarray(flipped.T)
+    coefficients = _far_cells(greens_function, shape, spacing)
+    _overwrite_middle(coefficients, greens_function, spacing)
+    _overwrite_near(coefficients, radial_primitive, spacing)
+    return coefficients
+
+
+def _far_cells(greens_function: Radial, shape: Shape, spacing: Spacing) -> Array:
+    """Coefficients from lattice values, valid far from the origin; square cells use i >= j only."""
+    nx, ny = shape
+    symmetric = spacing[0] == spacing[1]
+    result = np.empty(shape)
+    rows = max(8 * _HALO, _BLOCK_ELEMENTS // ny)
+    for start in range(0, nx, rows):
+        stop = min(start + rows, nx)
+        columns = min(stop, ny) if symmetric else ny
+        lattice = _lattice_values(greens_function, (start, stop), columns, spacing)
+        result[start:stop, :columns] = _mean_along_rows(_mean_along_rows(lattice).T).T
+        if symmetric and start < ny:
+            result[:start, start:columns] = result[start:columns, :start].T
+    result *= spacing[0] * spacing[1]
+    return result
+
+
+def _lattice_values(
+    greens_function: Radial, rows: tuple[int, int], columns: int, spacing: Spacing
+) -> Array:
+    """G at the centres of the given rows and columns and of a margin of neighbours around them."""
+    x = np.arange(rows[0] - _HALO, rows[1] + _HALO) * spacing[0]
+    y = np.arange(-_HALO, columns + _HALO) * spacing[1]
+    square = (x * x)[:, None] + y * y
+    # The centre itself is singular; any finite value does, as near cells are overwritten.
+    np.maximum(square, min(spacing) ** 2, out=square)
+    return greens_function(np.sqrt(square, out=square))
+
+
+def _mean_along_rows(values: Array) -> Array:
+    """Cell means along the first axis, (n + 2 halo, m) -> (n, m), exact for degree 7."""
+    size = values.shape[0] - 2 * _HALO
+    mean = values[_HALO : _HALO + size] * _MEAN_WEIGHTS[0]
+    for k, weight in enumerate(_MEAN_WEIGHTS[1:], start=1):
+        pair = values[_HALO - k : _HALO - k + size] + values[_HALO + k : _HALO + k + size]
+        pair *= weight
+        mean += pair
+    return mean
+
+
+def _overwrite_middle(coefficients: Array, greens_function: Radial, spacing: Spacing) -> None:
+    """Replace the coefficients within the Gauss reach by Gauss-Legendre integrals."""
+    reach = _GAUSS_REACH * max(spacing)
+    nx, ny = (int(min(n, reach / d + 1)) for n, d in zip(coefficients.shape, spacing, strict=True))
+    x, y = np.arange(nx) * spacing[0], np.arange(ny) * spacing[1]
+    i, j = np.nonzero((x * x)[:, None] + y * y < reach**2)
+    nodes, weights = np.polynomial.legendre.leggauss(_GAUSS_POINTS)
+    x_points = x[i] + nodes[:, None] * (spacing[0] / 2)
+    y_points = y[j] + nodes[:, None] * (spacing[1] / 2)
+    values = greens_function(np.sqrt(x_points[:, None] ** 2 + y_points[None] ** 2))
+    area = spacing[0] * spacing[1]
+    coefficients[i, j] = np.einsum("p,q,pqn->n", weights, weights, values) * (area / 4)
+
+
+def _overwrite_near(coefficients: Array, radial_primitive: Radial, spacing: Spacing) -> None:
+    """Replace the coefficients near the origin by exact sums of corner integrals."""
+    nx, ny = (
+        min(n, round(_EXACT_REACH * max(spacing) / d) + 1)
+        for n, d in zip(coefficients.shape, spacing, strict=True)
+    )
+    x = (np.arange(nx) + 0.5) * spacing[0]
+    y = (np.arange(ny) + 0.5) * spacing[1]
+    corners = _corner_integrals(radial_primitive, x[:, None], y[None, :])
+    # F is odd in x and in y, which gives the corners at -1/2 of the cells on the axes.
+    corners = np.concatenate((-corners[:1], corners), axis=0)
+    corners = np.concatenate((-corners[:, :1], corners), axis=1)
+    coefficients[:nx, :ny] = np.diff(np.diff(corners, axis=0), axis=1)
+
+
+def _corner_integrals(radial_primitive: Radial, x: Array, y: Array) -> Array:
+    """F(x, y) = int_0^x int_0^y G for broadcastable x, y > 0: two triangles make the rectangle."""
+    return _triangle(radial_primitive, x, y) + _triangle(radial_primitive, y, x)
+
+
+def _triangle(radial_primitive: Radial, x: Array, y: Array) -> Array:
+    """Integral of G over the triangle (0, 0), (x, 0), (x, y).
+
+    In polar co-ordinates it is int P(x / cos t) dt over 0 < t < atan(y/x); tan t = sinh u gives
+    int P(x cosh u) / cosh u du over 0 < u < asinh(y/x), smooth even for slender triangles.
+    """
+    length = np.arcsinh(y / x)
+    # The strip of analyticity |Im u| < pi/2 is fixed, so the order grows with the length.
+    nodes, weights = np.polynomial.legendre.leggauss(16 + int(6 * length.max()))
+    cosh = np.cosh(length[..., None] * (nodes + 1) / 2)
+    values = radial_primitive(x[..., None] * cosh) / cosh
+    return np.asarray(values @ weights * length / 2, dtype=np.float64)

@@ -1,0 +1,434 @@
+"""Pressure to displacement by FFT, on a periodic or on a free boundary.
+
+Convention: û(q) = G(q) p̂(q), displacement u positive into the solid, transforms as in scipy.fft.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any, Protocol, Self, TypeVar, runtime_checkable
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+
+from pellicle.arrays import Array
+from pellicle.checks import blamed, component_name, read_only, real_array, real_number
+from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.grid import Grid
+
+from .closed_form import disagreement
+from .grid_checks import warn_of_cells
+from .hankel import Tabulated
+from .influence import cell_coefficients
+
+Float = TypeVar("Float", np.float32, np.float64)
+
+# Padded cells whose rows are transformed at a time: a block of them stays in the cache.
+_BLOCK = 2**17
+
+# A cell's displacement under its own pressure over that of the finest wave, at least.
+_LEAST_OWN = 0.25
+# Waves up to this many times shorter than the grid's shortest tell whether G(q) grows for good.
+_SHORTER = np.geomspace(1.0, 1e12, 13)
+_GROWTH = 1e-6  # relative; less is rounding
+
+
+class HasCompliance(Protocol):
+    """What an operator needs of a kernel."""
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) [m/Pa] for wavenumbers q > 0 [rad/m]."""
+        ...
+
+
+@runtime_checkable
+class HasClosedForm(HasCompliance, Protocol):
+    """What an operator on a free boundary uses, and tabulates for a kernel that lacks it."""
+
+    def greens_function(self, r: Array) -> Array:
+        """Return the displacement at distances r > 0 [m] from a unit force [m/N]."""
+        ...
+
+    def radial_primitive(self, r: Array) -> Array:
+        """Return ∫₀^r G(r') r' dr' [m²/N] for r ≥ 0 [m]."""
+        ...
+
+
+@runtime_checkable
+class HasMeanCompliance(HasCompliance, Protocol):
+    """What a kernel has whose surface does not sink without bound under a uniform pressure."""
+
+    def mean_compliance(self) -> float:
+        """Return G(0) [m/Pa]: the displacement by a uniform pressure over a periodic domain.
+
+        ∞ if there is no finite one: then the mean displacement is set to 0, and depths are
+        measured from the mean plane.
+        """
+        ...
+
+
+def mean_compliance(kernel: HasCompliance) -> float:
+    """Return G(0) [m/Pa] of a kernel, ∞ if it says nothing, as a half-space does."""
+    if not isinstance(kernel, HasMeanCompliance):
+        return math.inf
+    with blamed(kernel):
+        value = kernel.mean_compliance()
+    return real_number(kernel, "mean_compliance()", value)
+
+
+def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
+    """Return a method of a kernel that cannot change its argument and whose values are checked.
+
+    It raises PluginError where the kernel returns anything but an array of real numbers of the
+    shape of its argument.
+    """
+    method = getattr(kernel, name)
+    text = f"{name}({'q' if name == 'compliance' else 'r'})"
+
+    def call(argument: Array) -> Array:
+        with blamed(kernel):
+            values = method(read_only(argument))
+        return real_array(kernel, text, values, argument.shape)
+
+    return call
+
+
+class Operator(ABC):
+    """The linear map from pressure [Pa] to displacement [m], both of the grid's shape.
+
+    Linear, symmetric and positive; ``applications`` counts its uses.
+    """
+
+    fixes_mean: bool
+    """Whether a uniform pressure has a displacement; if not, the mean displacement is zero."""
+    _symbol: _Symbol
+
+    def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
+        self.kernel = kernel
+        self.grid = grid
+        # `scaled` operators count together.
+        self._count = [0]
+        # Powers of two, so that no digit changes.
+        self._factor = 1.0
+
+    @property
+    def applications(self) -> int:
+        """Number of times that it has been applied, `scaled` or not."""
+        return self._count[0]
+
+    @property
+    def greatest(self) -> float:
+        """Greatest compliance of any wave [m/Pa]."""
+        return self._symbol.greatest * self._factor
+
+    @property
+    def unit(self) -> float:
+        """The power of two next below `greatest` [m/Pa]; 1 if that is 0."""
+        return self._symbol.unit * self._factor
+
+    def scaled(self, factor: float) -> Self:
+        """Return the operator times ``factor``, a power of two; it shares all arrays with this one.
+
+        With 1/`unit` it is near 1, which single precision cannot do without: a compliance in m/Pa
+        may be below the numbers that it has.
+        """
+        scaled = copy.copy(self)
+        scaled._factor = self._factor * factor
+        return scaled
+
+    def coarsened(self) -> Operator:
+        """Return the operator of the same kernel on `Grid.coarsened`, as `scaled` as this one.
+
+        Raises
+        ------
+        ConfigError
+            The kernel cannot work on the coarser grid.
+        """
+        # The kernel itself was checked for the finest grid.
+        return _operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) [m/Pa] of the kernel, as `scaled` as the operator."""
+        return np.asarray(self.kernel.compliance(q) * self._factor, dtype=np.float64)
+
+    def parts(self) -> dict[str, object]:
+        """Return what it consists of, by which a change is noticed."""
+        return {**vars(self), "class": type(self), "symbol": self._symbol["D"]}
+
+    def __call__(self, pressure: NDArray[Float]) -> NDArray[Float]:
+        """Return the displacement [m], a new array, for a pressure [Pa].
+
+        A pressure in single precision is worked on in single precision, in half of the time.
+        """
+        self._count[0] += 1
+        displacement = np.asarray(self._apply(pressure), dtype=pressure.dtype)
+        if (unit := self.unit) != 1:
+            displacement *= unit
+        return displacement
+
+    @abstractmethod
+    def _apply(self, pressure: NDArray[Any]) -> object:
+        """Return the displacement over `unit`, a new array."""
+
+
+class _Symbol:
+    """The transform of an operator, which is real, over its unit, in both precisions."""
+
+    def __init__(self, values: Array) -> None:
+        self.greatest = float(np.abs(values).max())
+        self.unit = 2.0 ** (math.frexp(self.greatest)[1] - 1) if self.greatest else 1.0
+        values /= self.unit
+        self.double = read_only(values)
+        self._single: NDArray[np.float32] | None = None
+
+    def __getitem__(self, kind: str) -> NDArray[Any]:
+        """Return it for transforms of this kind of complex number; single only if asked for."""
+        if kind == "D":
+            return self.double
+        if self._single is None:
+            self._single = read_only(self.double.astype(np.float32))
+        return self._single
+
+
+class PeriodicOperator(Operator):
+    """G(q) sampled on the wavenumbers of the FFT.
+
+    The mean displacement is zero if a uniform pressure has no finite one.
+    """
+
+    def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
+        super().__init__(kernel, grid)
+        qx, qy = grid.wavenumbers()
+        q = np.hypot(qx, qy)
+        mean = mean_compliance(kernel)
+        # An incompressible layer has no mean displacement either.
+        self.fixes_mean = 0 < mean < math.inf
+        symbol = np.empty(q.shape)
+        # The first wavenumber is 0.
+        symbol.ravel()[0] = 0.0 if mean == math.inf else mean
+        compliance = checked_call(kernel, "compliance")
+        symbol.ravel()[1:] = _positive(kernel, q.ravel()[1:], compliance(q.ravel()[1:]))
+        if not mean >= 0:
+            raise ConfigError(
+                f"mean_compliance() of {component_name(kernel)} is {mean:g} m/Pa; it has to be 0, "
+                "positive or infinite; check the parameters, or the formula if the kernel is yours",
+                "kernel",
+            )
+        _refuse_growth(kernel, compliance, float(q.max()))
+        self._symbol = _Symbol(symbol)
+
+    def _apply(self, pressure: NDArray[Any]) -> object:
+        transform = scipy.fft.rfft2(pressure)
+        transform *= self._symbol[transform.dtype.char]
+        return scipy.fft.irfft2(transform, s=self.grid.shape, overwrite_x=True)
+
+
+class FreeOperator(Operator):
+    """Discrete convolution with influence coefficients, zero-padded: no periodic image.
+
+    Exact for a pressure that is uniform in each cell, at the cell centres (Liu, Wang & Liu 2000).
+    """
+
+    fixes_mean = True
+
+    def __init__(self, kernel: HasClosedForm, grid: Grid) -> None:
+        super().__init__(kernel, grid)
+        cells = cell_coefficients(
+            checked_call(kernel, "greens_function"),
+            checked_call(kernel, "radial_primitive"),
+            grid.shape,
+            grid.spacing,
+        )
+        if not (np.isfinite(cells).all() and cells[0, 0] > 0):
+            raise ConfigError(
+                "displacements are NaN, infinite or nowhere positive, maybe beyond the numbers "
+                "that a computer has; check the parameters, or the formula if the kernel is yours",
+                "kernel",
+            )
+        compliance = checked_call(kernel, "compliance")
+        finest = float(compliance(np.array([np.pi / min(grid.spacing)]))[0])
+        if not cells[0, 0] > _LEAST_OWN * finest:
+            raise ConfigError(
+                f"a pressed cell sinks by {cells[0, 0]:.2g} m/Pa at its centre, the finest wave by "
+                f"{finest:.2g}: the cells are much wider than an incompressible layer is thick; "
+                "use more points",
+                "grid.points",
+            )
+        self._padded = tuple(scipy.fft.next_fast_len(2 * n - 1, real=True) for n in grid.shape)
+        # Even in both directions, so the transform of the wrapped coefficients is real.
+        self._symbol = _Symbol(scipy.fft.rfft2(_wrap(cells, self._padded)).real.copy())
+        # Fresh memory of this size costs more than the transforms themselves.
+        self._work = np.empty((self._padded[0], self._padded[1] // 2 + 1), dtype=np.complex128)
+
+    def _apply(self, pressure: NDArray[Any]) -> object:
+        (nx, ny), py = self.grid.shape, self._padded[1]
+        rows = max(1, _BLOCK // py)
+        blocks = [slice(start, start + rows) for start in range(0, nx, rows)]
+        transform = self._room(np.result_type(pressure, np.complex64))
+        # Row by row, so that the rows of zeros are never transformed along y.
+        for block in blocks:
+            transform[:nx][block] = scipy.fft.rfft(pressure[block], n=py, axis=1)
+        transform[nx:] = 0
+        transform = scipy.fft.fft(transform, axis=0, overwrite_x=True)
+        transform *= self._symbol[transform.dtype.char]
+        columns = scipy.fft.ifft(transform, axis=0, overwrite_x=True)[:nx]
+        displacement = np.empty(self.grid.shape, columns.real.dtype)
+        for block in blocks:
+            displacement[block] = scipy.fft.irfft(columns[block], n=py, axis=1)[:, :ny]
+        return displacement
+
+    def _room(self, kind: np.dtype[Any]) -> NDArray[Any]:
+        """Return the work space, or half of it for single precision."""
+        number = self._work.size
+        return self._work.reshape(-1).view(kind)[:number].reshape(self._work.shape)
+
+
+def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
+    """Return the operator of ``kernel`` on ``grid``.
+
+    Raises
+    ------
+    ConfigError
+        The kernel cannot work on this boundary, or its values are not finite and positive.
+    PluginError
+        The kernel breaks its contract: it changes its argument, returns anything but an array of
+        real numbers of the argument's shape, grows for ever shorter waves, or its closed form
+        contradicts its compliance.
+    """
+    # A table is made of the compliance.
+    is_table = isinstance(kernel, Tabulated)
+    if grid.boundary == "free" and isinstance(kernel, HasClosedForm) and not is_table:
+        with np.errstate(all="ignore"):
+            _refuse_contradiction(kernel, grid)
+    return _operator(kernel, grid)
+
+
+def _operator(kernel: HasCompliance, grid: Grid) -> Operator:
+    # Overflow of a formula shows in its values, which are looked at.
+    with np.errstate(all="ignore"):
+        if grid.boundary == "periodic":
+            return PeriodicOperator(kernel, grid)
+        return FreeOperator(_in_real_space(kernel, grid), grid)
+
+
+def _in_real_space(kernel: HasCompliance, grid: Grid) -> HasClosedForm:
+    # Wide enough for all coarser grids of the same domain, which are given the table made here.
+    radii = 0.2 * min(grid.spacing), 3 * math.hypot(*grid.size)
+    if isinstance(kernel, Tabulated):
+        return kernel if kernel.covers(*radii) else Tabulated(kernel.compliance, *radii)
+    if isinstance(kernel, HasClosedForm):
+        return kernel
+    return Tabulated(checked_call(kernel, "compliance"), *radii)
+
+
+def _refuse_contradiction(kernel: HasClosedForm, grid: Grid) -> None:
+    """Refuse a kernel whose closed form is not the transform of its compliance."""
+    compliance = checked_call(kernel, "compliance")
+
+    def positive(q: Array) -> Array:
+        with np.errstate(all="ignore"):
+            values = compliance(q)
+        # A formula may cancel for waves far longer than the domain, which hardly count.
+        near = q > 1e-3 / math.hypot(*grid.size)
+        _positive(kernel, q[near], values[near])
+        return np.where(np.isfinite(values), values, 0.0)
+
+    message = disagreement(
+        positive,
+        checked_call(kernel, "greens_function"),
+        checked_call(kernel, "radial_primitive"),
+        min(grid.spacing),
+        math.hypot(*grid.size),
+    )
+    if message:
+        raise PluginError(f"{component_name(kernel)}: {message}")
+
+
+def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array:
+    """Return the surface displacement [m] of shape (nx, ny) under a pressure [Pa] of that shape.
+
+    One application of the operator; on a periodic grid the mean displacement is zero, unless the
+    kernel says what a uniform pressure does (`HasMeanCompliance`).
+
+    Raises
+    ------
+    ConfigError
+        The pressure is not a finite real array of the grid's shape, or the kernel or the grid is
+        none.
+
+    Warns
+    -----
+    UserWarning
+        The cells are too wide for the kernel.
+    """
+    if not hasattr(kernel, "compliance"):
+        raise ConfigError(f"{shown(kernel)} is no kernel; make one by pellicle.kernel(…)", "kernel")
+    if not isinstance(grid, Grid):
+        raise ConfigError(f"{shown(grid)} is no grid; make one by pellicle.Grid(…)", "grid")
+    given = np.asarray(pressure)
+    if given.shape != grid.shape or given.dtype.kind not in "fiu":
+        raise ConfigError(
+            f"is of shape {given.shape} and type {given.dtype}; give a real array of shape "
+            f"{grid.shape}, the grid's",
+            "pressure",
+        )
+    if not np.isfinite(given).all():
+        raise ConfigError("holds NaN or infinite values; give finite ones in Pa", "pressure")
+    operator = make_operator(kernel, grid)
+    warn_of_cells(kernel.compliance, grid)
+    return operator(given.astype(np.float64))
+
+
+def _wrap(cells: Array, padded: tuple[int, ...]) -> Array:
+    """Return coefficients at offsets 0 … n−1 in wrap-around order on the padded grid."""
+    (nx, ny), (px, py) = cells.shape, padded
+    wrapped = np.zeros((px, py))
+    wrapped[:nx, :ny] = cells
+    wrapped[px - nx + 1 :, :ny] = cells[:0:-1]
+    wrapped[:, py - ny + 1 :] = wrapped[:, ny - 1 : 0 : -1]
+    return wrapped
+
+
+def _positive(kernel: HasCompliance, q: Array, values: Array) -> Array:
+    """Return G(q) [m/Pa] if every value is positive and finite, or refuse the kernel."""
+    wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
+    if wrong.size:
+        raise ConfigError(
+            f"compliance(q) of {component_name(kernel)} is {values[wrong[0]]:.3g} m/Pa at q = "
+            f"{q[wrong[0]]:.3g} rad/m; it has to be positive and finite, and may be beyond the "
+            "numbers that a computer has; check the parameters, or the formula if the kernel is "
+            "yours",
+            "kernel",
+        )
+    return values
+
+
+def _refuse_growth(
+    kernel: HasCompliance, compliance: Callable[[Array], Array], shortest: float
+) -> None:
+    """Refuse a kernel whose G(q) grows with q at the grid's shortest waves and does not stop.
+
+    To short waves a solid is a half-space, whose G(q) falls as 1/q; a bed of springs answers all
+    waves alike. G(q) of an incompressible layer grows too, up to waves about as long as the layer
+    is thick, which may be shorter than the grid's: therefore shorter waves decide.
+    """
+    if not shortest > 0:
+        return
+    with np.errstate(all="ignore"):
+        half, last = compliance(shortest * np.array([0.5, 1.0]))
+        if not last > half * (1 + _GROWTH):
+            return
+        q: Array = shortest * _SHORTER
+        values = compliance(q)
+    # A formula may overflow far beyond the grid.
+    known = int(np.argmin(np.append(np.isfinite(values), False)))
+    if known < 2 or values[known - 1] > values[known - 2] * (1 + _GROWTH):
+        raise PluginError(
+            f"{component_name(kernel)}: compliance(q) grows with q, from {half:.3g} m/Pa at "
+            f"{shortest / 2:.3g} rad/m to {values[known - 1]:.3g} m/Pa at {q[known - 1]:.3g} "
+            "rad/m; for short waves it has to fall, or to tend to a constant"
+        )

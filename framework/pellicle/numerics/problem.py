@@ -1,0 +1,209 @@
+"""The problem of one load step: all that a solver may see, and how well it is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import isfinite
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from pellicle.arrays import Array, Mask
+from pellicle.grid import Grid
+
+from .grid_transfer import restrict
+from .operators import Operator
+
+# An indenter that is flat over the contact has no height range there to measure by.
+_FLAT = 1e-3
+# Heights below this share of a displacement are lost in its rounding.
+_ROUNDING = 1e-13
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Find p ≥ 0 with gap = u − δ − f ≥ 0 and p·gap = 0, for a given depth or force."""
+
+    grid: Grid
+    """The cells that pressure, displacement and profile live on."""
+    operator: Operator
+    """From pressure [Pa] to displacement [m]; counts its applications."""
+    profile: Array
+    """Indenter profile f ≤ 0 [m] of the grid's shape; −inf where there is no indenter."""
+    prescribed: Literal["depth", "force"]
+    """A mean pressure is the force that it makes on the domain."""
+    value: float
+    """Depth δ [m] or force [N]."""
+
+    @property
+    def touches(self) -> bool:
+        """Whether anything has to be solved: the undeformed surface is not already the answer."""
+        lowest = float(self.profile.max())
+        # A coarse grid may see nothing of an indenter of single cells.
+        return isfinite(lowest) and self.value > (0 if self.prescribed == "force" else -lowest)
+
+    def depth(self, aloft: Array) -> float:
+        """Return δ [m] from the values of u − f on the contact.
+
+        With a force prescribed it is that of no mean gap there (Polonsky & Keer 1999).
+        """
+        return self.value if self.prescribed == "depth" else float(aloft.mean())
+
+    def is_rigid(self, contact: Mask) -> bool:
+        """Whether no force more on ``contact`` makes it sink: full contact that keeps its mean."""
+        return bool(contact.all()) and not self.operator.fixes_mean
+
+    def height_scale(self, contact: Mask, depth: float, total: float) -> float:
+        """Return the length [m] by which gaps are judged; ``total`` is the sum of pressures [Pa].
+
+        The indenter's height range in contact, or the depth where it is flat there. Neither is more
+        than rounding where a flat indenter fills a periodic domain whose mean stays: then it is the
+        displacement that the mean pressure would have as the most compliant wave.
+        """
+        wave = 0.0
+        if self.is_rigid(contact):
+            wave = self.operator.greatest * total / contact.size
+        return height_scale(self.profile, contact, depth, wave)
+
+    def coarsened(self) -> Problem:
+        """Return the same problem with half as many cells each way.
+
+        Raises
+        ------
+        ConfigError
+            The kernel cannot work on the coarser grid.
+        """
+        operator = self.operator.coarsened()
+        grid = operator.grid
+        return replace(
+            self, grid=grid, operator=operator, profile=restrict(self.profile, grid.shape)
+        )
+
+    def scaled(self, height: float, pressure: float) -> Problem:
+        """Return the same problem with heights in units of ``height`` [m], both powers of two.
+
+        Its pressures are in units of ``pressure`` [Pa]; the lengths of the grid stay in m.
+        """
+        return replace(
+            self,
+            operator=self.operator.scaled(pressure / height),
+            profile=self.profile / height,
+            value=self.value / (height if self.prescribed == "depth" else pressure),
+        )
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A pressure measured against its problem, by one fresh application of the operator."""
+
+    pressure: Array
+    displacement: Array
+    """u [m]."""
+    gap: Array
+    """u − δ − f [m]; +inf where there is no indenter."""
+    depth: float
+    """δ [m]."""
+    force: float
+    """[N]."""
+    residual_contact: float
+    """max |gap| in contact, over the height range of the indenter in contact."""
+    residual_penetration: float
+    """max(0, −min gap) outside the contact, over the same."""
+    residual_complementarity: float
+    """Σ p|gap| / Σ p, over the same."""
+    residual_load: float
+    """|force − prescribed| / prescribed; 0 when the depth is prescribed."""
+
+    @property
+    def contact(self) -> Mask:
+        """Where pressure acts, bool of the grid's shape."""
+        return self.pressure > 0
+
+
+def measure(problem: Problem, pressure: Array) -> Equilibrium:
+    """Return what ``pressure`` [Pa] really achieves."""
+    contact = pressure > 0
+    total = float(pressure.sum())
+    force = total * problem.grid.cell_area
+    displacement = problem.operator(pressure)
+    aloft = displacement - problem.profile
+    # Without pressure the lowest point just touches, wherever between the cells it is.
+    depth = problem.depth(aloft[contact] if total else np.zeros(1))
+    gap = aloft - depth
+    scale = problem.height_scale(contact, depth, total)
+    inside = np.abs(gap[contact])
+    missed = abs(force - problem.value) if problem.prescribed == "force" else 0.0
+    return Equilibrium(
+        pressure=pressure,
+        displacement=displacement,
+        gap=gap,
+        depth=depth,
+        force=force,
+        residual_contact=float(inside.max(initial=0.0)) / scale,
+        residual_penetration=max(0.0, -float(gap.min(initial=0.0, where=~contact))) / scale,
+        residual_complementarity=float((pressure[contact] * inside).sum()) / total / scale
+        if total
+        else 0.0,
+        residual_load=missed / problem.value if missed else 0.0,
+    )
+
+
+def height_scale(
+    profile: Array,
+    contact: Mask,
+    depth: float,
+    wave: float = 0.0,
+) -> float:
+    """Return the length [m] by which gaps are judged: the indenter's height range in contact.
+
+    Where the indenter is flat over the contact (a punch, a single cell) it is the depth, or
+    ``wave`` [m] if that is greater, of which the range and the depth may be the rounding.
+    """
+    heights = profile[contact]
+    in_contact = float(np.ptp(heights)) if heights.size else 0.0
+    if in_contact > max(_FLAT * abs(depth), _ROUNDING * wave):
+        return in_contact
+    indenter = profile[np.isfinite(profile)]
+    return max(abs(depth), wave) or float(np.ptp(indenter)) or 1.0
+
+
+def round_off(problem: Problem, pressure: Array) -> float:
+    """Return the rounding of a displacement over the height scale, by two applications.
+
+    It is what displacements differ by under one third of the pressure, times three: without
+    rounding they would be the same.
+    """
+    contact = pressure > 0
+    displacement = problem.operator(pressure)
+    rounded = float(np.abs(3 * problem.operator(pressure / 3) - displacement).max())
+    aloft = displacement - problem.profile
+    depth = problem.depth(aloft[contact] if contact.any() else np.zeros(1))
+    return rounded / problem.height_scale(contact, depth, float(pressure.sum()))
+
+
+class Stiffness(NamedTuple):
+    """The stiffness of a contact and how well it is known."""
+
+    value: float
+    """dF/dδ [N/m] at the contact as it is."""
+    residual: float
+    """Root mean square of the displacement missed in contact, over that prescribed."""
+
+
+def measure_stiffness(problem: Problem, contact: Mask, pressure: Array) -> Stiffness:
+    """Return the contact stiffness from the pressure per depth [Pa/m] of a flat punch.
+
+    Its footprint is ``contact``: where the contact grows with the depth it does so without
+    pressure, so dF/dδ is that of a flat punch of the same contact (Pharr, Oliver & Brotzen 1992 for
+    axisymmetric indenters). By one fresh application of the operator. The value
+    is 2 Σq − Σq·Aq, which is stationary at the solution: its error is quadratic in that of q.
+    """
+    if not contact.any():
+        return Stiffness(0.0, 0.0)
+    response = problem.operator(pressure)
+    missed = 1.0 - response[contact]
+    total = float(pressure.sum()) + float((pressure[contact] * missed).sum())
+    return Stiffness(
+        value=total * problem.grid.cell_area,
+        residual=float(np.sqrt((missed**2).mean())),
+    )

@@ -1,0 +1,176 @@
+"""One self-contained web page: text, tables, pictures, and maps that can be zoomed.
+
+Whatever it is given as text is shown as text. The page loads nothing: style, script, pictures and
+the values of the maps are in it, and it forbids the browser to fetch anything else.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, ClassVar
+
+from pellicle.files import for_document
+
+from .maps import Field, Frame, Maps, frame, side
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+
+__all__ = [
+    "Cell",
+    "Code",
+    "Column",
+    "Field",
+    "Frame",
+    "Maps",
+    "Notice",
+    "Picture",
+    "Section",
+    "Table",
+    "Text",
+    "frame",
+    "page",
+    "side",
+]
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph."""
+
+    kind: ClassVar[str] = "text"
+    text: str
+
+
+@dataclass(frozen=True)
+class Notice:
+    """What a reader must see first."""
+
+    kind: ClassVar[str] = "notice"
+    text: str
+    good: bool
+    details: Sequence[str] = ()
+    """A line each, below."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """The head of a column."""
+
+    name: str
+    unit: str = ""
+    meaning: str = ""
+    """Shown where the mouse rests on the head."""
+    words: bool = False
+    """Whether it holds words, not numbers."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell of a table that is more than its text."""
+
+    text: str
+    frame: int | None = None
+    """Frame of the first maps of the page that a click shows."""
+    bad: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of texts under heads; a click on a head sorts them."""
+
+    kind: ClassVar[str] = "table"
+    caption: str
+    columns: Sequence[Column]
+    rows: Sequence[Sequence[str | Cell]]
+
+    @property
+    def cells(self) -> list[list[Cell]]:
+        """The rows, every cell a `Cell`."""
+        return [[each if isinstance(each, Cell) else Cell(each) for each in r] for r in self.rows]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A drawing that does not change."""
+
+    kind: ClassVar[str] = "picture"
+    svg: bytes
+    caption: str
+    description: str
+    """What it shows, for those who do not see it."""
+
+    @property
+    def source(self) -> str:
+        """The drawing as a ``data:`` address: its ids are none of the page's."""
+        return f"data:image/svg+xml;base64,{base64.b64encode(self.svg).decode()}"
+
+
+@dataclass(frozen=True)
+class Code:
+    """Text to be typed or saved, as it is."""
+
+    kind: ClassVar[str] = "code"
+    text: str
+    caption: str = ""
+    file: str = ""
+    """Name under which a click saves it."""
+
+    @property
+    def source(self) -> str:
+        """The text as a ``data:`` address."""
+        return (
+            f"data:text/plain;charset=utf-8;base64,{base64.b64encode(self.text.encode()).decode()}"
+        )
+
+
+Block = Text | Notice | Table | Picture | Code | Maps
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading and what is under it."""
+
+    title: str
+    blocks: Sequence[Block]
+
+
+def page(title: str, sections: Sequence[Section], subtitle: str = "") -> str:
+    """Return a page as HTML.
+
+    Parameters
+    ----------
+    title, subtitle
+        Heading, and the line below it.
+    sections
+        In order; a section without blocks is left out.
+    """
+    return _template().render(
+        title=title,
+        subtitle=subtitle,
+        sections=[section for section in sections if section.blocks],
+        style=_part("page.css"),
+        script=_part("page.js"),
+    )
+
+
+def _part(name: str) -> str:
+    return files("pellicle.report").joinpath(name).read_text(encoding="utf-8")
+
+
+@cache
+def _template() -> Template:
+    from jinja2 import Environment, StrictUndefined
+
+    environment = Environment(
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=lambda value: for_document(value) if type(value) is str else value,
+    )
+    return environment.from_string(_part("page.html"))

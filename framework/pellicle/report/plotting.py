@@ -1,0 +1,354 @@
+"""Figures of a result, drawn on matplotlib Axes in real units."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import partial
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.components import Solver
+from pellicle.files import for_document, storage_errors
+from pellicle.numerics.problem import height_scale
+from pellicle.results.result import Result
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_MOST_NAMED = 10
+_PREFIXABLE = re.compile(r"[^\W\d_]+(?:/.*|\*(?!\*).*)?")
+_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f"}
+
+
+def axis_unit(values: Array, unit: str) -> tuple[float, str]:
+    """Return the factor and the name that bring ``values`` (in ``unit``) near 1 … 1000.
+
+    A unit that begins with a power, as m⁴ does, takes no prefix: the power would be of it too. Only
+    areas do, whose prefix is chosen so.
+    """
+    finite = np.abs(np.asarray(values)[np.isfinite(values)])
+    highest = float(finite.max(initial=0.0))
+    if unit in ("m2", "m**2"):
+        # The prefix of a square counts twice: 1 mm² is 1e-6 m²; down to 0.01 mm² reads well.
+        exponent = 3 * int(np.floor(np.log10(10 * np.sqrt(highest)) / 3)) if highest else 0
+        exponent = min(max(exponent, -15), 0)
+        return 10.0 ** (-2 * exponent), f"{_PREFIXES[exponent]}m²"
+    if not _PREFIXABLE.fullmatch(unit):
+        return 1.0, unit
+    exponent = 3 * int(np.floor(np.log10(highest) / 3)) if highest else 0
+    exponent = min(max(exponent, -15), 9)
+    return 10.0**-exponent, f"{_PREFIXES[exponent]}{unit}"
+
+
+def without_round_off(step: xr.Dataset) -> xr.Dataset:
+    """Return the fields of a load step for drawing: gaps that its tolerance allows are 0.
+
+    A gap counts as 0 up to ``solver.tolerance`` times the length by which the residuals of the step
+    are judged, so that full contact is not drawn as a landscape of femtometres.
+    """
+    solver = json.loads(step.attrs.get("configuration", "{}")).get("solver", {})
+    tolerance = float(solver.get("tolerance", Solver.model_fields["tolerance"].default))
+    gap, depth = step["gap"].values, float(step["depth"])
+    # A step that failed may hold infinite numbers of both signs.
+    with np.errstate(invalid="ignore"):
+        profile = step["displacement"].values - depth - gap
+    closed = np.abs(gap) <= tolerance * height_scale(profile, step["contact"].values, depth)
+    return step.assign(gap=(step["gap"].dims, np.where(closed, 0.0, gap), step["gap"].attrs))
+
+
+def pressure_map(result: Result, axes: Axes, step: int = -1) -> None:
+    """Draw the pressure of a load step over the domain."""
+    data = result.dataset.isel(step=step)
+    pressure = data["pressure"].values
+    length, length_name = axis_unit(np.append(data["x"].values, data["y"].values), "m")
+    scale, name = axis_unit(pressure, "Pa")
+    image = axes.imshow(
+        np.ma.masked_equal(pressure.T * scale, 0.0),
+        origin="lower",
+        extent=extent(data["x"].values * length, data["y"].values * length),
+        cmap="viridis",
+        vmin=0.0,
+        interpolation="nearest",
+        # The other stage makes a colour of each cell before it takes those to show.
+        interpolation_stage="data",
+    )
+    axes.set_facecolor("0.93")
+    axes.set(xlabel=f"x [{length_name}]", ylabel=f"y [{length_name}]")
+    axes.set_title(_caption(result, step))
+    figure = axes.get_figure()
+    if figure is not None:
+        figure.colorbar(image, ax=axes, label=f"contact pressure [{name}]", shrink=0.85)
+
+
+def profile(result: Result, axes: Axes, step: int = -1) -> None:
+    """Draw pressure and gap along x through the centre of the domain."""
+    data = without_round_off(result.dataset.isel(step=step))
+    centre = data.sizes["y"] // 2
+    line = data.isel(y=centre)
+    gap = line["gap"].values
+    near = gap <= max(float(data["depth"]), 0.0) * 2
+    length, length_name = axis_unit(line["x"].values, "m")
+    scale, name = axis_unit(line["pressure"].values, "Pa")
+    opens = bool(gap[near].any())
+    # A gap of 0 everywhere has no unit of its own; beside the depth it is seen to be nothing.
+    gap_scale, gap_name = axis_unit(gap[near] if opens else data["depth"].values, "m")
+    x = line["x"].values * length
+    axes.plot(x, line["pressure"].values * scale, color="C0")
+    axes.set(xlabel=f"x [{length_name}] at y = {line['y'].item() * length:.3g} {length_name}")
+    axes.set_ylabel(f"contact pressure [{name}]", color="C0")
+    axes.set_title(_caption(result, step))
+    beside = axes.twinx()
+    beside.plot(x, np.where(near, gap * gap_scale, np.nan), color="C1", linestyle="--")
+    beside.set_ylabel(f"gap [{gap_name}]", color="C1")
+    for side in (axes, beside):
+        side.set_ylim(bottom=0.0)
+    if not opens and float(data["depth"]) > 0:
+        beside.set_ylim(top=float(data["depth"]) * gap_scale)
+
+
+def force_depth(result: Result, axes: Axes) -> None:
+    """Draw force against depth over the load steps."""
+    _curve(result, axes, [("force", "force", "o-")], "force", "N", "depth", "m")
+
+
+def area_force(result: Result, axes: Axes) -> None:
+    """Draw the contact area, as counted and as corrected, against force."""
+    corrected = [
+        (str(name), f"{str(name).removeprefix('contact_area_')} correction", "s--")
+        for name in result.dataset.data_vars
+        if str(name).startswith("contact_area_")
+    ]
+    series = [("contact_area", "cells in contact", "o-"), *corrected]
+    _curve(result, axes, series, "contact area", "m2", "force", "N")
+    axes.legend()
+
+
+FIGURES: dict[str, Callable[[Result, Axes], None]] = {
+    "pressure": pressure_map,
+    "profile": profile,
+    "force_depth": force_depth,
+    "area_force": area_force,
+}
+"""What is drawn of a run, by the ending of the file name."""
+STUDY_FIGURES = "force", "contact_fraction"
+"""Variables that are drawn of a study, by the same."""
+
+
+def save_figures(
+    result: Result, directory: Path, name: str, formats: Iterable[str]
+) -> tuple[Path, ...]:
+    """Write every figure as ``directory/name-figure.format`` and return the files.
+
+    Raises
+    ------
+    StorageError
+        A file cannot be written.
+    """
+    drawings = {ending: partial(draw, result) for ending, draw in FIGURES.items()}
+    return _save(drawings, directory, name, formats)
+
+
+def save_study_figures(
+    table: xr.Dataset, directory: Path, name: str, formats: Iterable[str]
+) -> tuple[Path, ...]:
+    """Write force and contact fraction of a study as ``directory/name-figure.format``.
+
+    Parameters are as for `save_figures`; ``table`` is that of `pellicle.run_study`.
+
+    Raises
+    ------
+    StorageError
+        A file cannot be written.
+    """
+    if "force" not in table:
+        return ()
+    drawings = {what: partial(study_curves, table, variable=what) for what in STUDY_FIGURES}
+    return _save(drawings, directory, name, formats)
+
+
+def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
+    """Draw a variable of a study against the depth, one colour for each value of its first axis.
+
+    Where each run has one step only, it is drawn against the first axis of numbers instead.
+    """
+    dimensions = [str(d) for d in table["status"].dims if d != "step"]
+    numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
+    against = "depth" if table.sizes["step"] > 1 or not numbers else numbers[0]
+    along = "step" if against == "depth" else against
+    # Seeds are repetitions, not what is compared.
+    rest = [d for d in dimensions if d != along]
+    compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
+    scale, name = _unit_near_one(table[variable])
+    x_scale, x_name = _unit_near_one(table[against])
+    stacked = [d for d in table["status"].dims if d not in (along, *compared)]
+    many = table.sizes[compared[0]] if compared else 1
+    for number, part in enumerate(_each(table, compared)):
+        colour = _colour(number, many)
+        # Of many values some are named: the colours go evenly from one to the other.
+        named = compared and number % -(-many // _MOST_NAMED) == 0
+        label = _label(part, compared[0]) if named else ""
+        for line in _each(part, stacked):
+            x, y = line[against].values * x_scale, line[variable].values * scale
+            axes.plot(x, y, "o-", color=colour, label=label, markersize=4, mfc="white")
+            good = line["converged"].values
+            axes.plot(x[~good], y[~good], "x", color="red", markersize=9)
+            label = ""
+    axes.set(
+        xlabel=f"{against} [{x_name}]" if x_name else against,
+        ylabel=f"{variable.replace('_', ' ')} [{name}]" if name else variable.replace("_", " "),
+        title=table.attrs.get("title", ""),
+    )
+    axes.set_ylim(bottom=0.0)
+    axes.grid(alpha=0.3)
+    if compared:
+        # Where there is much to look at, matplotlib takes long to find the best place.
+        axes.legend(fontsize="small", loc="upper left" if many > _MOST_NAMED else "best")
+
+
+def _save(
+    drawings: Mapping[str, Callable[[Axes], None]],
+    directory: Path,
+    name: str,
+    formats: Iterable[str],
+) -> tuple[Path, ...]:
+    files: list[Path] = []
+    for ending, draw in drawings.items():
+
+        def fill(figure: Figure, draw: Callable[[Axes], None] = draw) -> None:
+            draw(figure.add_subplot())
+
+        files += save_figure(fill, directory / f"{name}-{ending}", formats)
+    return tuple(files)
+
+
+def save_figure(
+    draw: Callable[[Figure], None],
+    stem: Path,
+    formats: Iterable[str],
+    size: tuple[float, float] = (5.4, 4.2),
+) -> tuple[Path, ...]:
+    """Let ``draw`` fill a figure of ``size`` [inch], and write it as ``stem.format``.
+
+    Raises
+    ------
+    StorageError
+        A file cannot be written.
+    """
+    files = []
+    with _figure(draw, size) as figure:
+        for format_ in formats:
+            path = stem.with_name(f"{stem.name}.{format_}")
+            with storage_errors(path):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                figure.savefig(path)
+            files.append(path)
+    return tuple(files)
+
+
+def svg(draw: Callable[[Figure], None], size: tuple[float, float] = (5.4, 4.2)) -> bytes:
+    """Let ``draw`` fill a figure of ``size`` [inch], and return it as SVG, the same every time."""
+    import matplotlib as mpl
+
+    with mpl.rc_context(), _figure(draw, size) as figure:
+        mpl.rcParams["svg.hashsalt"] = "pellicle"
+        buffer = BytesIO()
+        figure.savefig(buffer, format="svg", metadata={"Date": None})
+    return buffer.getvalue()
+
+
+@contextmanager
+def _figure(draw: Callable[[Figure], None], size: tuple[float, float]) -> Iterator[Figure]:
+    import matplotlib.style
+    from matplotlib.figure import Figure
+    from matplotlib.text import Text
+
+    with matplotlib.style.context("default"):
+        figure = Figure(figsize=size, dpi=150, layout="constrained")
+        draw(figure)
+        # SVG writes every text into its XML as well, as a comment.
+        for text in figure.findobj(Text):
+            text.set_text(for_document(text.get_text()))
+        yield figure
+
+
+def _each(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Dataset]:
+    """Yield the parts of a table at each combination of places along dimensions."""
+    for index in np.ndindex(*(table.sizes[d] for d in dimensions)):
+        yield table.isel(dict(zip(dimensions, index, strict=True)))
+
+
+def _unit_near_one(values: xr.DataArray) -> tuple[float, str]:
+    unit = values.attrs.get("units", "1")
+    return axis_unit(values.values, unit) if unit != "1" else (1.0, "")
+
+
+def _label(part: xr.Dataset, name: str) -> str:
+    value = part[name]
+    if value.dtype.kind not in "if":
+        return f"{name} = {value.item()}"
+    scale, unit = _unit_near_one(value)
+    return f"{name} = {value.item() * scale:.4g} {unit}".rstrip()
+
+
+def _colour(number: int, count: int) -> str | tuple[float, float, float, float]:
+    if count <= 10:
+        return f"C{number}"
+    import matplotlib
+
+    return matplotlib.colormaps["viridis"](0.9 * number / (count - 1))
+
+
+def _curve(
+    result: Result,
+    axes: Axes,
+    series: list[tuple[str, str, str]],
+    what: str,
+    unit: str,
+    against: str,
+    against_unit: str,
+) -> None:
+    data = result.dataset
+    scale, name = axis_unit(data[series[0][0]].values, unit)
+    x_scale, x_name = axis_unit(data[against].values, against_unit)
+    good = data["converged"].values.astype(bool)
+    for variable, label, style in series:
+        x, y = data[against].values * x_scale, data[variable].values * scale
+        (line,) = axes.plot(x, y, style, label=label, markersize=4)
+        axes.plot(x[~good], y[~good], "x", color="red", markersize=9, label="_not converged")
+        line.set_markerfacecolor("white")
+    axes.set(xlabel=f"{against} [{x_name}]", ylabel=f"{what} [{name}]")
+    axes.set_xlim(left=0.0)
+    axes.set_ylim(bottom=0.0)
+    axes.grid(alpha=0.3)
+    axes.set_title(result.dataset.attrs.get("title", ""))
+    if not good.all():
+        axes.annotate("× not converged", (0.02, 0.95), xycoords="axes fraction", color="red")
+
+
+def _caption(result: Result, step: int) -> str:
+    data = result.dataset.isel(step=step)
+    scale, name = axis_unit(data["depth"].values, "m")
+    caption = f"depth {data['depth'].item() * scale:.4g} {name}"
+    title = result.dataset.attrs.get("title", "")
+    if not bool(data["converged"]):
+        caption += ", NOT CONVERGED"
+    return f"{title}\n{caption}" if title else caption
+
+
+def extent(x: Array, y: Array) -> tuple[float, float, float, float]:
+    """Return the outer edges of cells by their centres, as ``Axes.imshow`` takes them."""
+    return (*_edges(x), *_edges(y))
+
+
+def _edges(centres: Array) -> tuple[float, float]:
+    half = (centres[1] - centres[0]) / 2 if centres.size > 1 else 0.5
+    return float(centres[0] - half), float(centres[-1] + half)

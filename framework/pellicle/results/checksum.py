@@ -1,0 +1,107 @@
+"""A checksum behind the content of an HDF5 file, compared before HDF5 parses the file.
+
+HDF5 takes a changed byte for another number, for a size that no memory has, or ends the process.
+Other readers ignore what follows the end of the HDF5 content. The checksum is that of all bytes
+but the compressed chunks, which zlib checks as they are read (Adler-32), so that the numbers of a
+large file are verified without reading its fields.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+from pellicle.errors import StorageError
+
+if TYPE_CHECKING:
+    import h5py
+
+_MARK = b"pellicle"
+_LENGTH = 16
+_BLOCK = 1 << 20
+
+Ranges = Sequence[tuple[int, int]]
+"""Offset and size [bytes] of parts of a file, in order."""
+
+
+def seal(image: io.BytesIO) -> None:
+    """Append the checksum to a whole HDF5 file in memory."""
+    import h5py
+
+    with h5py.File(image, "r") as file:
+        skipped = _compressed(file)
+    end = image.seek(0, io.SEEK_END)
+    record = {"sha256": _digest(image, end, skipped), "end": end, "skipped": skipped}
+    text = json.dumps(record).encode("ascii")
+    image.seek(end)
+    image.write(text + b"%0*x" % (_LENGTH, len(text)) + _MARK)
+
+
+def verify(path: Path) -> bool:
+    """Return whether a file has a checksum, which is then that of its content.
+
+    Raises
+    ------
+    StorageError
+        The content does not match.
+    OSError
+        The file cannot be read.
+    """
+    with path.open("rb") as file:
+        size = file.seek(0, io.SEEK_END)
+        file.seek(max(0, size - _LENGTH - len(_MARK)))
+        length, mark = file.read(_LENGTH), file.read()
+        if mark != _MARK:
+            return False
+        try:
+            file.seek(size - _LENGTH - len(_MARK) - int(length, 16))
+            end = file.tell()
+            record = json.loads(file.read(int(length, 16)))
+            intact = record["end"] == end and record["sha256"] == _digest(
+                file, end, record["skipped"]
+            )
+        except (ValueError, LookupError, TypeError, OverflowError, RecursionError):
+            intact = False
+    if not intact:
+        raise StorageError(
+            f"{path}: damaged, its content does not match its checksum; restore it from a copy, or "
+            "run it again"
+        )
+    return True
+
+
+def _compressed(file: h5py.File) -> list[tuple[int, int]]:
+    """Return the chunks that zlib compressed, in the order of the file."""
+    chunks: list[tuple[int, int]] = []
+
+    def collect(chunk: h5py.h5d.StoreInfo) -> None:
+        # Where compression did not pay, a chunk is stored as it is and carries no check.
+        if chunk.filter_mask == 0:
+            chunks.append((chunk.byte_offset, chunk.size))
+
+    for stored in file.values():
+        if stored.compression == "gzip":
+            stored.id.chunk_iter(collect)
+    return sorted(chunks)
+
+
+def _digest(file: BinaryIO, end: int, skipped: Ranges) -> str:
+    """Return the SHA-256 of the bytes up to ``end``, of which ``skipped`` are left out."""
+    digest = hashlib.sha256(json.dumps(skipped).encode("ascii"))
+    begin = 0
+    for offset, size in (*skipped, (end, 0)):
+        if not begin <= offset <= end or size < 0:
+            raise ValueError("ranges that are not in order")
+        file.seek(begin)
+        while begin < offset:
+            block = file.read(min(_BLOCK, offset - begin))
+            if not block:
+                raise ValueError("a range beyond the end")
+            digest.update(block)
+            begin += len(block)
+        begin = offset + size
+    return digest.hexdigest()

@@ -1,0 +1,164 @@
+"""Columns worked out of a table of runs, of the fields of its runs, and of their configuration."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellicle.errors import ConfigError, StorageError, shown
+from pellicle.model.expression import evaluate, names_in
+
+from . import storage
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from .result import Result
+
+FIELDS = ("pressure", "displacement", "gap", "contact")
+"""What a result has for each cell, besides the coordinates x and y."""
+_CELLS = ["x", "y"]
+REDUCTIONS: dict[str, Callable[[Any], Any]] = {
+    "mean": lambda field: field.mean(_CELLS),
+    "sum": lambda field: field.sum(_CELLS),
+    "min": lambda field: field.min(_CELLS),
+    "max": lambda field: field.max(_CELLS),
+}
+"""Functions that make one number for each step of a field over the cells."""
+
+
+FIRST_RUN = "first_run"
+"""Attribute of the table of a study: the configuration of its first run, JSON, SI."""
+
+
+def names(data: xr.Dataset) -> dict[str, Any]:
+    """Return what expressions over ``data``, a result or the table of a study, may name.
+
+    These are its numeric variables and coordinates, and the numbers of its configuration by their
+    dotted path, such as ``kernel.tension`` or ``grid.size.0``, where no coordinate varies them.
+    """
+    said = json.loads(data.attrs.get(FIRST_RUN, data.attrs["configuration"]))
+    varied = tuple(f"{name}." for name in data.coords)
+    fixed = {key: value for key, value in constants(said).items() if not key.startswith(varied)}
+    numeric = {str(name): data[name] for name in data.variables if data[name].dtype.kind in "iuf"}
+    # Truth values are numbers here, which numpy would not subtract.
+    truths = {
+        str(name): data[name].astype(float)
+        for name in data.variables
+        if data[name].dtype.kind == "b"
+    }
+    return {**fixed, **numeric, **truths}
+
+
+def derive(table: xr.Dataset, expressions: Mapping[str, str]) -> xr.Dataset:
+    """Return the table of a study with further columns, each of which may name those before.
+
+    Raises
+    ------
+    ConfigError
+        An expression is not arithmetic, or names what is not there.
+    """
+    for name, text in expressions.items():
+        table = table.assign({name: 0.0 * table["converged"] + evaluate(text, names(table))})
+        table[name].attrs = {"long_name": text}
+    return table
+
+
+def constants(configuration: object, path: str = "") -> dict[str, float]:
+    """Return the numbers of a configuration by their dotted path; entries of lists count from 0."""
+    if isinstance(configuration, Mapping):
+        inner: Iterator[tuple[Any, Any]] = iter(configuration.items())
+    elif isinstance(configuration, list):
+        inner = enumerate(configuration)
+    elif isinstance(configuration, (int, float)) and not isinstance(configuration, bool):
+        return {path: float(configuration)}
+    else:
+        return {}
+    return {
+        name: number
+        for key, value in inner
+        for name, number in constants(value, f"{path}.{key}" if path else str(key)).items()
+    }
+
+
+def as_array(text: str, data: xr.Dataset) -> xr.DataArray:
+    """Return an expression over a result or a table as an array, a bare number too.
+
+    Raises
+    ------
+    ConfigError
+        It is not arithmetic, or names what is not there.
+    """
+    import xarray as xr
+
+    value = evaluate(text, names(data))
+    return value if isinstance(value, xr.DataArray) else xr.DataArray(value)
+
+
+def _by_step(text: str, run: xr.Dataset) -> Any:
+    """Return an expression over a run whose fields are reduced to a number for each step."""
+    value = evaluate(text, names(run), REDUCTIONS)
+    if set(getattr(value, "dims", ())) & set(_CELLS):
+        raise ConfigError(
+            f"{shown(text)} has a value for each cell, and one for each step is drawn; put fields, "
+            f"x and y inside {', '.join(REDUCTIONS)}, such as mean(pressure)"
+        )
+    return value
+
+
+@dataclass(frozen=True)
+class Runs:
+    """A table of runs and a way to the fields of each."""
+
+    table: xr.Dataset
+    """Scalars of each run and step; ``run`` names the runs."""
+    open: Callable[[str], xr.Dataset]
+    """Returns the dataset of a run by its name; raises StorageError if there is none."""
+
+    @classmethod
+    def of_result(cls, result: Result) -> Runs:
+        """Return the one run of a result, as a table of its steps."""
+        data = result.dataset
+        return cls(data.drop_dims(_CELLS).assign(run=((), "")), lambda _: data)
+
+    @classmethod
+    def of_study(cls, table: xr.Dataset, directory: Path) -> Runs:
+        """Return the runs of the study whose folder is ``directory``."""
+        return cls(table, lambda name: storage.read(directory / "runs" / f"{name}.h5"))
+
+    def each(self) -> Iterator[tuple[tuple[int, ...], xr.Dataset | None]]:
+        """Yield the place in the table and the dataset of each run, None for one that has none."""
+        for index, name in np.ndenumerate(self.table["run"].values):
+            try:
+                yield index, self.open(str(name))
+            except StorageError:
+                yield index, None
+
+    def column(self, text: str) -> xr.DataArray:
+        """Return an expression over the table, with fields reduced to a number a step.
+
+        Raises
+        ------
+        ConfigError
+            It is not arithmetic, or names what is not there.
+        """
+        if names_in(text) & {*FIELDS, *_CELLS}:
+            return self.from_each(lambda run: _by_step(text, run))
+        return as_array(text, self.table)
+
+    def from_each(self, what: Callable[[xr.Dataset], Any]) -> xr.DataArray:
+        """Return ``what`` makes of each run: a number for each step; NaN where there is no run."""
+        import xarray as xr
+
+        runs, steps = self.table["run"], self.table.sizes["step"]
+        values = np.full((*runs.shape, steps), np.nan)
+        for index, data in self.each():
+            if data is not None:
+                values[index][: data.sizes["step"]] = what(data)
+        coords = {dim: self.table[dim] for dim in (*runs.dims, "step")}
+        return xr.DataArray(values, coords, (*runs.dims, "step"))

@@ -1,0 +1,129 @@
+"""What comes out: what a solver returns, and the result of a run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pellicle.errors import ConfigError, StorageError
+from pellicle.grid import Grid
+
+from . import storage
+from .status import Status
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Result:
+    """The result of a run: all steps, their fields, and where they came from."""
+
+    dataset: xr.Dataset
+    """Dimensions (step, x, y); units in the attributes of each variable."""
+
+    @property
+    def configuration(self) -> dict[str, Any]:
+        """The full configuration that was run, SI floats."""
+        return json.loads(self.dataset.attrs["configuration"])  # type: ignore[no-any-return]
+
+    @property
+    def grid(self) -> Grid:
+        """The cells that the fields lie on."""
+        return Grid(**self.configuration["grid"])
+
+    @property
+    def converged(self) -> bool:
+        """Whether every step converged."""
+        return bool(self.dataset["converged"].all())
+
+    def failures(self) -> list[tuple[int, str]]:
+        """Return the number of each step that did not converge, counted from 1, with its status."""
+        failed = self.dataset.isel(step=~self.dataset["converged"].values)
+        return _statuses(failed)
+
+    def coarse(self) -> list[tuple[int, str]]:
+        """Return the number of each step that is too coarse for its contact, with its status."""
+        coarse = self.dataset["status_code"].values == Status.COARSE.name
+        return _statuses(self.dataset.isel(step=coarse))
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        return self.dataset._repr_html_()
+
+    def save(self, path: str | Path) -> None:
+        """Write the result to an HDF5 (NetCDF-4) file.
+
+        Raises
+        ------
+        StorageError
+            The file cannot be written.
+        """
+        storage.write(self.dataset, Path(path))
+
+
+def _statuses(data: xr.Dataset) -> list[tuple[int, str]]:
+    return list(zip(data["step"].values.tolist(), map(str, data["status"].values), strict=True))
+
+
+def said_of_steps(steps: Sequence[tuple[int, str]]) -> str:
+    """Return the number of the first step and its message, and how many steps follow it."""
+    (number, message), *others = steps
+    return f"step {number}{f' and {len(others)} more' if others else ''}: {message}"
+
+
+def load(path: str | Path) -> Result:
+    """Return the result in a file that `Result.save` or the output ``hdf5`` wrote.
+
+    Raises
+    ------
+    StorageError
+        No such file, not a result, damaged, or of another schema version.
+    """
+    dataset = storage.read(Path(path))
+    if problem := _damage(dataset):
+        raise StorageError(f"{path}: {problem}, so it is damaged; run it again")
+    return Result(dataset)
+
+
+_FIELDS = "pressure", "displacement", "gap", "contact"
+
+
+_SCALARS = "depth", "force", "contact_area", "iterations", "converged", "status_code", "status"
+
+
+_KINDS = {"contact": "b", "converged": "b", "status_code": "UO", "status": "UO"}
+
+
+_NUMBERS = "fiu"
+
+
+def _damage(dataset: xr.Dataset) -> str:
+    """Return what keeps a dataset from being a result, whatever the version that wrote it."""
+    always = {"step", "x", "y", *_FIELDS, *_SCALARS}
+    if missing := always - {*map(str, dataset.variables)}:
+        return f"lacks {', '.join(sorted(missing))}"
+    for name in always:
+        variable = dataset[name]
+        expected = ("step", "x", "y") if name in _FIELDS else (name,)
+        dims = ("step",) if name in _SCALARS else expected
+        if variable.dims != dims:
+            return f"has {name} over {', '.join(map(str, variable.dims)) or 'nothing'}"
+        if variable.dtype.kind not in _KINDS.get(name, _NUMBERS):
+            return f"has {name} of type {variable.dtype}"
+    if unknown := {*dataset["status_code"].values} - {*Status.__members__}:
+        return f"has the status_code {min(map(str, unknown))!r}"
+    configuration = json.loads(dataset.attrs["configuration"])
+    try:
+        grid = Grid(**configuration["grid"])
+        known = isinstance(configuration["loading"], dict)
+    except (ConfigError, LookupError, TypeError):
+        known = False
+    if not known:
+        return "has a configuration without a grid or a loading"
+    if grid.shape != (dataset.sizes["x"], dataset.sizes["y"]):
+        return f"has fields of other shapes than its grid of {grid.shape}"
+    return ""

@@ -1,0 +1,66 @@
+"""How a step and a solver can end."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class Status(Enum):
+    """How a step ended; the value is the message to the user.
+
+    `NOT_RUN` and `FAILED` occur in the table of a study only.
+    """
+
+    CONVERGED = "converged"
+    NEAREST_AREA = (
+        "converged; the contact area misses the prescribed one by {measure:.1e}, and no load "
+        "brings a nearer number of whole cells: more points do"
+    )
+    COARSE = (
+        "converged, but the cells are too coarse for this contact, which covers {cells} of them: "
+        "force, depth and area may be far off; use more points, or a smaller grid.size"
+    )
+    NOT_FINITE = (
+        "the pressure became NaN or infinite; check the kernel's compliance and the profile for "
+        "extreme values"
+    )
+    NEGATIVE_PRESSURE = "the solver returned a negative pressure, {measure:.1e} of the highest"
+    CONTACT_RESIDUAL = (
+        "the surface misses the indenter inside the contact by {measure:.1e} of the indenter's "
+        "height range there, over the tolerance {tolerance:.1e}; {remedy}"
+    )
+    PENETRATION = (
+        "the surface penetrates the indenter outside the contact by {measure:.1e} of the height "
+        "range in contact, over the tolerance {tolerance:.1e}; {remedy}"
+    )
+    COMPLEMENTARITY = (
+        "pressure acts across a gap: complementarity {measure:.1e} is over the tolerance "
+        "{tolerance:.1e}; {remedy}"
+    )
+    LOAD = "the force misses the prescribed one by {measure:.1e}, over {tolerance:.1e}; {remedy}"
+    AREA = (
+        "the contact area misses the prescribed one by {measure:.1e}, over {tolerance:g}; {remedy}"
+    )
+    STIFFNESS = (
+        "the contact stiffness is not known: its displacement misses by {measure:.1e}, over the "
+        "tolerance {tolerance:.1e}; loosen solver.tolerance, or leave loading.stiffness out"
+    )
+    CONTACT_AT_EDGE = (
+        "the contact reaches the edge of the domain, where the indenter does not end, so force "
+        "and area are wrong; enlarge grid.size = {size} or prescribe less than {prescribed}"
+    )
+
+    NOT_RUN = "not run"
+    FAILED = "failed: {reason}"
+
+    @property
+    def converged(self) -> bool:
+        """Whether the numbers of the step may be used, if not without a remark."""
+        return self in (Status.CONVERGED, Status.NEAREST_AREA, Status.COARSE)
+
+    @property
+    def verdict(self) -> str:
+        """The status in one or two words, for tables."""
+        if self.converged:
+            return "converged"
+        return {Status.NOT_RUN: "not run", Status.FAILED: "failed"}.get(self, "NOT CONVERGED")

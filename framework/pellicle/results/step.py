@@ -1,0 +1,127 @@
+"""Measured load steps as xarray datasets: the form in which results are kept everywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pellicle.analysis import ellipse, patches, perimeter
+from pellicle.arrays import Array
+from pellicle.grid import Grid
+from pellicle.numerics.problem import Equilibrium
+
+from . import storage
+
+if TYPE_CHECKING:
+    import xarray as xr
+from .variables import attributes
+
+
+def step_dataset(
+    grid: Grid, number: int, found: Equilibrium, scalars: Mapping[str, object]
+) -> xr.Dataset:
+    """Return load step ``number``, counted from 1, with dimensions (step: 1, x: nx, y: ny).
+
+    ``scalars`` adds what is not in the equilibrium; an unknown name is taken to be an area [m²].
+    """
+    import xarray as xr
+
+    contact = found.contact
+    area = np.count_nonzero(contact) * grid.cell_area
+    shape = ellipse(contact, grid)
+    fields = {
+        "pressure": found.pressure,
+        "displacement": found.displacement,
+        "gap": found.gap,
+        "contact": contact,
+    }
+    values: dict[str, object] = {
+        "depth": found.depth,
+        "force": found.force,
+        "mean_pressure": found.force / grid.area,
+        "contact_area": area,
+        "contact_fraction": area / grid.area,
+        "mean_contact_pressure": found.force / area if area else np.nan,
+        "contact_radius": np.sqrt(area / np.pi),
+        "semi_major_axis": shape.semi_major_axis,
+        "semi_minor_axis": shape.semi_minor_axis,
+        "major_axis_angle": shape.angle,
+        "patches": patches(contact, grid).count,
+        "perimeter": perimeter(contact, grid),
+        "residual_contact": found.residual_contact,
+        "residual_penetration": found.residual_penetration,
+        "residual_complementarity": found.residual_complementarity,
+        "residual_load": found.residual_load,
+        **scalars,
+    }
+    x, y = grid.coordinates()
+    coordinates = {
+        "step": ("step", [number], {"long_name": "load step, counted from 1"}),
+        "x": ("x", x[:, 0], {"units": "m", "long_name": "x of the cell centres"}),
+        "y": ("y", y[0], {"units": "m", "long_name": "y of the cell centres"}),
+    }
+    variables = {
+        name: (("step", "x", "y"), value[None], attributes(name)) for name, value in fields.items()
+    } | {
+        name: (
+            ("step",),
+            np.array([value], dtype=object if isinstance(value, str) else None),
+            attributes(name),
+        )
+        for name, value in values.items()
+    }
+    return xr.Dataset(variables, coordinates)
+
+
+class Steps:
+    """The finished load steps of a run, whose fields lie in arrays with room for all steps.
+
+    The arrays become the result as they are, so that no field is in memory twice. The system
+    provides their pages as steps are added.
+    """
+
+    def __init__(self, number: int) -> None:
+        self._number = number
+        self._fields: dict[str, xr.Variable] = {}
+        self._scalars: list[xr.Dataset] = []
+
+    def __len__(self) -> int:
+        return len(self._scalars)
+
+    @property
+    def pressure(self) -> Array | None:
+        """The pressure of the last step [Pa], or None before the first step."""
+        return self._fields["pressure"].values[len(self) - 1] if self._scalars else None
+
+    def append(self, step: xr.Dataset) -> xr.Dataset:
+        """Copy a step of `step_dataset` into the arrays, and return it as a view of them."""
+        import xarray as xr
+
+        here = slice(len(self), len(self) + 1)
+        fields = {}
+        for name, variable in step.variables.items():
+            if variable.ndim > 1:
+                if name not in self._fields:
+                    shape = (self._number, *variable.shape[1:])
+                    room = np.empty(shape, variable.dtype)
+                    self._fields[str(name)] = xr.Variable(variable.dims, room, variable.attrs)
+                fields[str(name)] = self._fields[str(name)].isel(step=here)
+                fields[str(name)].values[:] = variable.values
+        self._scalars.append(step.drop_vars(fields))
+        return step.assign(fields)
+
+    def extend(self, steps: Iterable[xr.Dataset]) -> None:
+        """Append several steps."""
+        for step in steps:
+            self.append(step)
+
+    def joined(self) -> xr.Dataset:
+        """Return all steps as one dataset; no step can be appended any more."""
+        import xarray as xr
+
+        done = slice(len(self))
+        fields = {name: field.isel(step=done) for name, field in self._fields.items()}
+        scalars = storage.joined(self._scalars)
+        return xr.Dataset({**fields, **scalars.data_vars}, scalars.coords, scalars.attrs)

@@ -1,0 +1,58 @@
+"""Solves the cases of known truth that plugins register."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from pellicle.components import Case
+from pellicle.config.run import Run
+from pellicle.plugins import registry
+from pellicle.results.result import Result
+
+from .runner import solve
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A case, what was computed, and how far it is off."""
+
+    case: Case
+    computed: float
+    converged: bool
+
+    @property
+    def error(self) -> float:
+        """Relative error."""
+        return abs(self.computed - self.case.expected) / abs(self.case.expected)
+
+    @property
+    def passed(self) -> bool:
+        """Whether the run converged and the error is within the case's tolerance."""
+        return self.converged and self.error <= self.case.tolerance
+
+
+def validate(cases: Iterable[Case] | None = None) -> Iterator[Verdict]:
+    """Yield a verdict on each case, of all registered ones if none are given.
+
+    Cases that share a configuration share its run.
+
+    Raises
+    ------
+    ConfigError, PluginError
+        A case cannot be run.
+    """
+    solved: dict[str, Result] = {}
+    for case in _registered() if cases is None else cases:
+        key = json.dumps(case.configuration, sort_keys=True)
+        if key not in solved:
+            # Only the latest run is kept: cases that share one are registered in a row.
+            solved = {key: solve(Run(**case.configuration))}
+        result = solved[key]
+        yield Verdict(case, case.computed(result), result.converged)
+
+
+def _registered() -> Iterator[Case]:
+    for suite in registry().suites:
+        yield from suite()

@@ -1,0 +1,1 @@
+"""Studies: many runs and the table of their numbers."""

@@ -1,0 +1,150 @@
+"""The table of a study: what its runs say, over the parameters that vary."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellicle.config.provenance import now_with
+from pellicle.config.study import Study
+from pellicle.files import atomic_write, for_document
+from pellicle.results import storage
+from pellicle.results.derived import FIRST_RUN, derive
+from pellicle.results.status import Status
+from pellicle.results.variables import header
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Table:
+    """Takes the numbers of the runs as they finish, and makes the dataset of what is there."""
+
+    def __init__(self, study: Study) -> None:
+        self._study = study
+        self._attributes = {
+            "title": for_document(study.points[0].run.title),
+            "configuration": study.to_json(),
+            FIRST_RUN: study.points[0].run.to_json(as_given=True),
+            "axes": json.dumps({name: list(axes) for name, axes in study.dimensions.items()}),
+            **now_with(point.run for point in study.points),
+        }
+        steps = {point.place: len(point.run.loading.values) for point in study.points}
+        shape = *study.shape, max(steps.values())
+        self._texts = {name: np.full(shape, "", dtype=object) for name in _TEXTS}
+        self._runs = np.full(study.shape, "", dtype=object)
+        for point in study.points:
+            count = steps[point.place]
+            self._texts["status"][point.place][:count] = Status.NOT_RUN.value
+            self._texts["status_code"][point.place][:count] = Status.NOT_RUN.name
+            self._runs[point.place] = point.run.identity[:16]
+        self._numbers: dict[str, np.ndarray[Any, np.dtype[Any]]] = {}
+        self._said: dict[str, dict[str, str]] = {}
+
+    def put(self, index: tuple[int, ...], scalars: xr.Dataset) -> None:
+        """Take the steps that a run has."""
+        count = scalars.sizes["step"]
+        for name, variable in scalars.data_vars.items():
+            self._said.setdefault(str(name), dict(variable.attrs))
+            if name in _TEXTS:
+                self._texts[str(name)][index][:count] = variable.values
+                continue
+            missing = False if variable.dtype == bool else np.nan
+            kept = self._numbers.setdefault(
+                str(name), np.full(self._texts["status"].shape, missing)
+            )
+            kept[index][:count] = variable.values
+
+    def fail(self, index: tuple[int, ...], reason: str) -> None:
+        """Record why a run has no more steps."""
+        codes = self._texts["status_code"][index]
+        missing = codes == Status.NOT_RUN.name
+        codes[missing] = Status.FAILED.name
+        self._texts["status"][index][missing] = Status.FAILED.value.format(reason=reason)
+
+    def dataset(self) -> xr.Dataset:
+        """Return the table, NaN where there is no number."""
+        import xarray as xr
+
+        dimensions = *self._study.dimensions, "step"
+        variables: dict[str, Any] = {
+            name: (dimensions, _whole(values, name), self._said[name])
+            for name, values in self._numbers.items()
+        }
+        for name, texts in self._texts.items():
+            variables[name] = dimensions, texts.copy(), self._said.get(name, {})
+        about = {"long_name": "name of the run's file"}
+        variables["run"] = dimensions[:-1], self._runs.copy(), about
+        coordinates: dict[str, Any] = {
+            key: (dimension, made.values, made.attributes)
+            for key, (dimension, made) in self._study.coordinates().items()
+        }
+        coordinates["step"] = (
+            "step",
+            np.arange(1, self._texts["status"].shape[-1] + 1),
+            {"long_name": "load step, counted from 1"},
+        )
+        made = xr.Dataset(variables, coordinates, self._attributes)
+        return derive(made, self._study.derived) if self._numbers else made
+
+
+_TEXTS = ("status_code", "status")
+_COUNTS = ("iterations", "operator_applications", "patches")
+
+
+def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any, np.dtype[Any]]:
+    """Return a copy, in whole numbers where they count something and none is missing."""
+    return values.astype(int) if name in _COUNTS and np.isfinite(values).all() else values.copy()
+
+
+def damage(table: xr.Dataset) -> str:
+    """Return what keeps a dataset from being the table of a study."""
+    texts = {*_TEXTS, "run"}
+    numbers = any(variable.dtype.kind in "fiu" for variable in table.data_vars.values())
+    expected = {*texts, "converged"} if numbers else texts
+    if missing := expected - {*map(str, table.data_vars)}:
+        return f"lacks {', '.join(sorted(missing))}"
+    for name, variable in table.data_vars.items():
+        kinds = "UO" if name in texts else "b" if name == "converged" else "fiub"
+        if variable.dtype.kind not in kinds:
+            return f"has {name} of type {variable.dtype}"
+    if unknown := {*table["status_code"].values.ravel()} - {"", *Status.__members__}:
+        return f"has the status_code {min(map(str, unknown))!r}"
+    try:
+        study, axes, run = (
+            json.loads(table.attrs[name]) for name in ("configuration", "axes", FIRST_RUN)
+        )
+        known = all(isinstance(part, dict) for part in (study["study"], axes, run))
+    except (LookupError, TypeError, ValueError):
+        known = False
+    if not known:
+        return "does not say which study it is of"
+    return ""
+
+
+def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:
+    """Write ``study.h5`` and ``study.csv`` and return their paths.
+
+    Raises
+    ------
+    StorageError
+        They cannot be written.
+    """
+    whole, text = directory / "study.h5", directory / "study.csv"
+    storage.write(table, whole)
+    with atomic_write(text) as part, part.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        columns = ["run", *table.coords, *(n for n in table.data_vars if n != "run")]
+        writer.writerow(header(str(name), table[name]) for name in columns)
+        status = table["status"]
+        spread = [
+            table[name].broadcast_like(status).transpose(*status.dims).values.ravel()
+            for name in columns
+        ]
+        there = spread[columns.index("status")] != ""
+        writer.writerows(zip(*(column[there].tolist() for column in spread), strict=True))
+    return whole, text

@@ -1,0 +1,153 @@
+"""The semi-analytic twin of a run: the same axisymmetric contact, without a grid."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pellicle import Run
+from pellicle.errors import ConfigError
+from pellicle.results.derived import Runs, derive
+from pellicle_plugins.analytic.axisymmetric import AxisymmetricContact, indent
+from pellicle_plugins.analytic.axisymmetric_indenters import Cone, Indenter, Paraboloid, Sphere
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_INDENTERS: dict[str, Callable[..., Indenter]] = {
+    "paraboloid": Paraboloid,
+    "sphere": Sphere,
+    "cone": Cone,
+}
+_KERNELS = ("half_space", "tensed_membrane")
+_LINE = 401
+
+
+def contact(run: xr.Dataset, step: int) -> AxisymmetricContact | None:
+    """Return the contact of a load step, counted from 1; None where 0 is prescribed.
+
+    Raises
+    ------
+    ConfigError
+        The run is none that the axisymmetric equation describes.
+    """
+    return _contact(run.attrs["configuration"], step)
+
+
+@cache
+def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
+    run = Run.from_json(configuration)
+    kernel, shape = run.kernel.model_dump(), run.indenter.model_dump()
+    known = kernel["type"] in _KERNELS and shape["type"] in _INDENTERS
+    if not known or run.grid.boundary != "free":
+        raise ConfigError(
+            f"kernel {kernel['type']!r} and indenter {shape['type']!r} on a {run.grid.boundary} "
+            f"boundary have no axisymmetric solution here; it knows {' and '.join(_KERNELS)}, "
+            f"{', '.join(_INDENTERS)}, and free boundaries",
+            "reference",
+        )
+    value = run.loading.values[step - 1]
+    if value == 0:
+        return None
+    indenter = _INDENTERS[shape.pop("type")](**shape)
+    modulus: float = run.kernel.reduced_modulus  # type: ignore[attr-defined]
+    tension = kernel.get("tension", 0.0)
+    match run.loading.prescribed:
+        case "depth":
+            return indent(indenter, modulus, tension, depth=value)
+        case "contact_radius":
+            return indent(indenter, modulus, tension, contact_radius=value)
+        case "contact_area":
+            return indent(indenter, modulus, tension, contact_radius=float(np.sqrt(value / np.pi)))
+    return indent(indenter, modulus, tension, force=value)
+
+
+def exact(runs: Runs) -> Runs:
+    """Return the table of ``runs`` with depth, force and areas of the semi-analytic solution.
+
+    Raises
+    ------
+    ConfigError
+        A run is none that the axisymmetric equation describes, or a field is asked for.
+    """
+
+    def number(quantity: str) -> xr.DataArray:
+        def of(run: xr.Dataset) -> list[float]:
+            found = (contact(run, step) for step in run["step"].values.tolist())
+            return [getattr(one, quantity) if one else 0.0 for one in found]
+
+        return runs.from_each(of)
+
+    def no_fields(_name: str) -> xr.Dataset:
+        raise ConfigError(
+            "the semi-analytic solution has no fields on a grid; compare fields by the output "
+            "profiles",
+            "reference",
+        )
+
+    force, area = number("force"), np.pi * number("contact_radius") ** 2
+    domain = runs.from_each(
+        lambda run: Run.from_json(run.attrs["configuration"]).grid.area * np.ones(run.sizes["step"])
+    )
+    areas = {name: area for name in runs.table.data_vars if str(name).startswith("contact_area")}
+    table = runs.table.assign(
+        {
+            "depth": number("depth"),
+            "force": force,
+            "contact_fraction": area / domain,
+            "mean_pressure": force / domain,
+            **areas,
+        }
+    )
+    derived = json.loads(table.attrs["configuration"]).get("study", {}).get("derived", {})
+    return Runs(derive(table, derived), no_fields)
+
+
+def exact_line(run: xr.Dataset) -> xr.Dataset:
+    """Return pressure, contact and numbers of the semi-analytic solution along a line of a run.
+
+    Parameters
+    ----------
+    run
+        One step, of which ``x`` or ``y`` is left as dimension.
+
+    Returns
+    -------
+    The same step with finer points along that dimension, the edge of the contact among them.
+
+    Raises
+    ------
+    ConfigError
+        The run is none that the axisymmetric equation describes.
+    """
+    import xarray as xr
+
+    (along,) = {"x", "y"} & set(map(str, run.dims))
+    (across,) = {"x", "y"} - {along}
+    found = contact(run, int(run["step"].item()))
+    offset = float(run[across].item())
+    end = float(np.abs(run[along].values).max())
+    a = found.contact_radius if found else 0.0
+    half = np.sqrt(max(a**2 - offset**2, 0.0))
+    # The pressure jumps at the edge: one point on it and one just outside.
+    inner = half * np.sin(np.linspace(0.0, np.pi / 2, _LINE))
+    positive = np.concatenate([inner, [half * (1 + 1e-9), max(end, half * (1 + 2e-9))]])
+    positions = np.concatenate([-positive[:0:-1], positive])
+    r = np.minimum(np.hypot(positions, offset), np.where(np.abs(positions) <= half, a, np.inf))
+    pressure = found.pressure(r) if found else np.zeros(r.shape)
+    area = np.pi * a**2
+    numbers = {
+        "contact_area": area,
+        "force": found.force if found else 0.0,
+        "depth": found.depth if found else 0.0,
+    }
+    areas = {name: area for name in run.data_vars if str(name).startswith("contact_area_")}
+    line = run.drop_dims(along).assign({**numbers, **areas})
+    return line.assign_coords({along: (along, positions, run[along].attrs)}).assign(
+        pressure=xr.DataArray(pressure, dims=along, attrs=run["pressure"].attrs),
+        contact=xr.DataArray(r <= a, dims=along),
+    )

@@ -1,0 +1,216 @@
+"""The tasks of one study in the hands of a dask scheduler."""
+
+from __future__ import annotations
+
+import pickle
+import time
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import CancelledError
+from importlib.metadata import version
+from queue import Empty, SimpleQueue
+from types import TracebackType
+from typing import Any, Generic, Self
+from uuid import uuid4
+
+import cloudpickle
+from distributed import Client, Future, KilledWorker, get_worker
+
+from pellicle import ConfigError, PellicleError, memory
+from pellicle.components import AnyTask, Report, Say
+from pellicle_plugins.executors.execution import attempt_far, pack
+
+_LOOK_EVERY = 2.0
+"""Time without news after which we look whether there are workers [s]."""
+_END_WITHIN = 10.0
+"""Time that running tasks have to end, which they do when they next report something [s]."""
+_LOOK_AGAIN = 0.05
+_NO_WORKERS = (
+    "the dask scheduler has no workers; runs wait until there are some: start them with `dask "
+    "worker ADDRESS`"
+)
+
+
+def connected(address: str) -> Client:
+    """Return a client of the scheduler at ``address``.
+
+    Raises
+    ------
+    ConfigError
+        No scheduler answers.
+    """
+    try:
+        return Client(address, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise ConfigError(
+            f"no scheduler answers at {address!r} ({error}); give the address that `dask "
+            'scheduler` prints, or use the executor "processes" on one machine',
+            "address",
+        ) from None
+
+
+class Submission(Generic[AnyTask]):
+    """Tasks that are submitted on entry, and withdrawn on exit as far as they are not done."""
+
+    def __init__(
+        self, client: Client, work: Callable[[AnyTask, Say], Any], tasks: Sequence[AnyTask]
+    ) -> None:
+        self._client = client
+        self._work = work
+        self._tasks = list(tasks)
+        self._name = f"pellicle-{uuid4().hex}"
+        self._futures: dict[int, Future[bytes]] = {}
+        self._news: SimpleQueue[tuple[int, bytes | None]] = SimpleQueue()
+        self._refused: list[tuple[AnyTask, Exception]] = []
+
+    def __enter__(self) -> Self:
+        self._client.subscribe_topic(self._name, lambda event: self._news.put(event[1]))
+        most = _largest_worker(self._client)
+        for index, task in enumerate(self._tasks):
+            try:
+                if task.memory > most:
+                    raise ConfigError(
+                        f"{task.name} needs about {memory.shortage(task.memory, most)} on the "
+                        "largest worker; use fewer points or fewer steps, or larger workers"
+                    )
+                self._submit(index)
+            except PellicleError as error:
+                self._refused.append((task, error))
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._client.cancel(list(self._futures.values()), force=True)
+        self._client.unsubscribe_topic(self._name)
+        end = time.monotonic() + _END_WITHIN
+        while self._futures and _runs_any(self._client, self._name) and time.monotonic() < end:
+            time.sleep(_LOOK_AGAIN)
+
+    def outcomes(self, report: Report[AnyTask]) -> Iterator[tuple[AnyTask, Any]]:
+        """Yield each task with its outcome, as they finish.
+
+        dask blames the death of a worker on all tasks that it had, those that waited there too. So
+        what it gives up is submitted once more when the others are done, each task alone.
+        """
+        yield from self._refused
+        blamed: list[int] = []
+        for index, outcome in self._finished(report):
+            if isinstance(outcome, KilledWorker):
+                blamed.append(index)
+            else:
+                yield self._tasks[index], outcome
+        for one in blamed:
+            self._submit(one)
+            for index, outcome in self._finished(report):
+                if isinstance(outcome, KilledWorker):
+                    deaths = outcome.allowed_failures + 1
+                    outcome = PellicleError(
+                        f"{deaths} worker{'s' * (deaths > 1)} died of it, as when the system is "
+                        "out of memory; the other runs went on"
+                    )
+                yield self._tasks[index], outcome
+
+    def _submit(self, index: int) -> None:
+        future = self._client.submit(
+            _bootstrap(),
+            pack(self._work, self._tasks[index]),
+            version("pellicle"),
+            self._name,
+            index,
+            key=f"{self._name}-{uuid4().hex}",
+            pure=False,
+        )
+        self._futures[index] = future
+        future.add_done_callback(lambda _: self._news.put((index, None)))
+
+    def _finished(self, report: Report[AnyTask]) -> Iterator[tuple[int, Any]]:
+        """Yield the outcome of each task that is submitted, and report what is said meanwhile."""
+        warned = False
+        while self._futures:
+            try:
+                # Without a timeout Windows would not let Ctrl-C through.
+                index, said = self._news.get(timeout=_LOOK_EVERY)
+            except Empty:
+                if not warned and not self._client.scheduler_info()["workers"]:
+                    warned = True
+                    warnings.warn(_NO_WORKERS, stacklevel=2)
+                continue
+            if said is not None:
+                report(self._tasks[index], pickle.loads(said))
+            elif index in self._futures:
+                # A result that is taken is let go of: nobody computes it again if its worker dies.
+                yield index, _outcome(self._futures.pop(index))
+
+
+def _bootstrap() -> Callable[..., bytes]:
+    """Return `carry_out` in a form that can be read where there is no pellicle.
+
+    A function inside a function travels by value. One that is sent by name ends a worker that does
+    not know it, without a word to us.
+    """
+
+    def begin(*arguments: Any) -> bytes:
+
+        return carry_out(*arguments)
+
+    return begin
+
+
+def carry_out(parcel: bytes, our_version: str, topic: str, index: int) -> bytes:
+    """Return the pickled outcome of a packed task, on a worker."""
+    if (there := version("pellicle")) != our_version:
+        error = f"the worker has pellicle {there}, not {our_version} as here; install the same"
+        return pickle.dumps(PellicleError(error))
+    worker = get_worker()
+    key = worker.get_current_task()
+
+    def say(said: Any) -> None:
+        # dask cannot stop a task at work; but it marks one that nobody waits for any more.
+        task = worker.state.tasks.get(key)
+        if task is None or task.state != "executing":
+            raise CancelledError(f"{key} was withdrawn")
+        worker.log_event(topic, (index, cloudpickle.dumps(said)))
+
+    return attempt_far(parcel, say)
+
+
+def _runs_any(client: Client, prefix: str) -> bool:
+    """Whether a worker is still at a task whose key begins with ``prefix``, withdrawn or not."""
+
+    def runs(dask_worker: Any) -> bool:
+        return any(str(key).startswith(prefix) for key in dask_worker.state.tasks)
+
+    return client.status == "running" and any(client.run(runs, on_error="ignore").values())
+
+
+def _largest_worker(client: Client) -> float:
+    """Return the memory limit [bytes] of the largest worker, or inf where there is none."""
+    limits = [worker["memory_limit"] for worker in client.scheduler_info()["workers"].values()]
+    return float("inf") if not all(limits) else max(limits, default=float("inf"))
+
+
+def _outcome(future: Future[bytes]) -> Any:
+    try:
+        return pickle.loads(future.result())
+    except CancelledError:
+        return PellicleError("the connection to the scheduler was lost")
+    except Exception as error:
+        if missing := _missing(error):
+            return PellicleError(
+                f"scheduler or workers lack {missing}; install there what is installed here, "
+                "pip install 'pellicle[cluster]' at the least"
+            )
+        return error
+
+
+def _missing(error: BaseException | None) -> str | None:
+    """Return the module that was not found, if that is the cause of an error."""
+    while error is not None:
+        if isinstance(error, ModuleNotFoundError):
+            return error.name
+        error = error.__cause__
+    return None

@@ -1,0 +1,203 @@
+"""What the outputs that draw a table of runs have in common."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from abc import abstractmethod
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pellicle.components import Output, Place
+from pellicle.errors import ConfigError, StorageError
+from pellicle.files import storage_errors
+from pellicle.model.expression import evaluate
+from pellicle.model.messages import nearest
+from pellicle.report.plotting import axis_unit, save_figure, without_round_off
+from pellicle.results.derived import Runs, names
+from pellicle.results.result import Result
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+_PLACEHOLDER = re.compile(r"\{([^{}]+)\}")
+
+
+Formats = Annotated[
+    tuple[Literal["png", "svg", "pdf"], ...],
+    Field(min_length=1, description="file formats to write: png, svg, pdf"),
+]
+Log = Annotated[tuple[Literal["x", "y"], ...], Field(description="axes that are logarithmic: x, y")]
+Reference = Annotated[
+    Literal["axisymmetric"] | None,
+    Field(description="draw the same expressions of the semi-analytic solution too"),
+]
+
+
+class Drawing(Output):
+    """Draws the runs of a study, or the steps of one run."""
+
+    leaves_numbers: ClassVar[bool] = True
+    """Whether the numbers drawn are written as CSV beside the figure."""
+
+    name: Annotated[
+        str, Field(pattern=r"^[\w-]*$", description="ending of the file names; its type if absent")
+    ] = ""
+    formats: Formats = ("png",)
+    title: Annotated[str, Field(description="title of the figure")] = ""
+    by: Annotated[
+        str | None,
+        Field(description="axis of the study, or step: each value has its own curve or panel"),
+    ] = None
+    label: Annotated[
+        str | None,
+        Field(
+            description="name of a curve or a panel; {expression} in it is replaced by its value"
+        ),
+    ] = None
+
+    @abstractmethod
+    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the files, whose names begin with ``stem``, and return them."""
+
+    def endings(self) -> tuple[str, ...]:
+        """Return those of the figure and of its numbers."""
+        kinds = (*self.formats, "csv") if self.leaves_numbers else self.formats
+        return tuple(f"{self._ending}.{kind}" for kind in kinds)
+
+    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
+        """Draw the steps of a run and return the files."""
+        return self.draw(Runs.of_result(result), place.file(self._ending))
+
+    def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
+        """Draw the runs of a study and return the files."""
+        return self.draw(Runs.of_study(table, place.directory), place.file(self._ending))
+
+    def picked(self, table: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+        """Yield the name of each curve or panel and the point of the table that it shows.
+
+        Of the other axes it is the first value, of the steps the last.
+        """
+        one_axis(table.sizes, self.by, "by")
+        first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
+        for at in along(table, self.by):
+            here = table.isel({**first, **at})
+            yield label(self.label, here, self.by), here
+
+    def steps(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
+        """Yield the name of each curve or panel and the fields that it shows, if they are there."""
+        for name, here in self.picked(runs.table):
+            step = _step_of(runs, here)
+            if step is not None:
+                yield name, step
+
+    @property
+    def _ending(self) -> str:
+        return f"-{self.name or self.type}"  # type: ignore[attr-defined]
+
+
+class Graph(Drawing):
+    """Draws one number against another."""
+
+    x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
+    y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
+
+    @abstractmethod
+    def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        """Draw, and yield the rows of the numbers drawn."""
+
+    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the figure and its numbers."""
+        rows: list[dict[str, object]] = []
+        files = save_figure(
+            lambda figure: rows.extend(self.fill(figure.add_subplot(), runs)), stem, self.formats
+        )
+        return (*files, write_csv(stem, rows))
+
+
+def one_axis(dims: Iterable[object], chosen: str | None, field: str) -> None:
+    """Refuse a ``chosen`` dimension that is not among ``dims``."""
+    if chosen is not None and chosen not in dims:
+        known = nearest(chosen, map(str, dims))
+        raise ConfigError(f"{chosen!r} is no axis of the table; {known}", field)
+
+
+def along(table: xr.Dataset, dim: str | None) -> list[dict[str, int]]:
+    """Return the places along a dimension; one that is everywhere if there is none."""
+    return [{dim: index} for index in range(table.sizes[dim])] if dim else [{}]
+
+
+def _step_of(runs: Runs, picked: xr.Dataset) -> xr.Dataset | None:
+    """Return the fields of the step that a point of the table stands for, if they are there."""
+    try:
+        run = runs.open(str(picked["run"].item()))
+    except StorageError:
+        return None
+    number = int(picked["step"].item())
+    return without_round_off(run.sel(step=number)) if number in run["step"] else None
+
+
+def label(template: str | None, data: xr.Dataset, dim: str | None) -> str:
+    """Return the name of a curve or a panel.
+
+    ``{…}`` in the template is an expression, of which the mean over ``data`` is written; without
+    a template it is the value of the dimension ``dim``, and without that, those of all axes of the
+    study at which ``data`` is.
+    """
+    if template is not None:
+        known = names(data)
+        return _PLACEHOLDER.sub(
+            lambda found: f"{np.nanmean(np.asarray(evaluate(found[1], known))):.3g}", template
+        )
+    axes = [dim] if dim else json.loads(data.attrs.get("axes", "[]"))
+    return ", ".join(_at(data[axis]) for axis in axes if data[axis].ndim == 0)
+
+
+def _at(value: xr.DataArray) -> str:
+    unit = value.attrs.get("units", "1")
+    if value.dtype.kind not in "if" or unit in ("", "1"):
+        return f"{value.name} = {value.item()}"
+    factor, name = axis_unit(value.values, unit)
+    return f"{value.name} = {value.item() * factor:.4g} {name}"
+
+
+def scaled(text: str, values: xr.DataArray, given: str | None) -> tuple[float, str]:
+    """Return the factor and the label of an axis that shows the expression ``text``.
+
+    A bare variable is brought to a unit with a prefix, unless the label is given.
+    """
+    if given is not None:
+        return 1.0, given
+    unit = values.attrs.get("units", "1")
+    if unit in ("", "1"):
+        return 1.0, text
+    factor, name = axis_unit(values.values, unit)
+    return factor, f"{text} [{name}]"
+
+
+def set_scales(axes: Axes, log: Sequence[str]) -> None:
+    """Make axes logarithmic that show anything positive, others begin at zero or below."""
+    for which in ("x", "y"):
+        low, _ = getattr(axes, f"get_{which}lim")()
+        if which in log and np.isfinite(getattr(axes.dataLim, f"minpos{which}")):
+            getattr(axes, f"set_{which}scale")("log")
+        elif low < 0 and getattr(axes.dataLim, f"{which}0") >= 0:
+            getattr(axes, f"set_{which}lim")(**{"left" if which == "x" else "bottom": 0.0})
+    axes.grid(alpha=0.3)
+
+
+def write_csv(stem: Path, rows: Sequence[dict[str, object]], heads: Sequence[str] = ()) -> Path:
+    """Write the numbers drawn beside their figure; ``heads`` are there even if no row is."""
+    path = stem.with_name(f"{stem.name}.csv")
+    heads = list(dict.fromkeys([*heads, *(head for row in rows for head in row)]))
+    with storage_errors(path), path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, heads)
+        writer.writeheader()
+        writer.writerows(rows)
+    return path

@@ -1,0 +1,44 @@
+"""The stiffness of the surface on a periodic plane, as quickly as it can be applied."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+
+from pellicle.grid import Grid
+from pellicle.numerics.operators import Operator
+
+Field = NDArray[np.float32]
+
+
+class Stiffness:
+    """K: multiplies by k(q) = 1/G(q), over its greatest value, in single precision.
+
+    Parameters
+    ----------
+    operator
+        Whose kernel and spacing it takes.
+    shape
+        Cells of the plane, which is periodic.
+    """
+
+    def __init__(self, operator: Operator, shape: tuple[int, int]) -> None:
+        dx, dy = operator.grid.spacing
+        plane = Grid(points=shape, size=(shape[0] * dx, shape[1] * dy), boundary="periodic")
+        q = np.hypot(*plane.wavenumbers())
+        # At q = 0 half of the lowest stiffness keeps K positive.
+        q[0, 0] = 2 * np.pi / max(plane.size)
+        stiffness = 1 / operator.compliance(q)
+        stiffness[0, 0] /= 2
+        self.shape = shape
+        self.greatest = float(stiffness.max())
+        """[Pa/m]"""
+        self._symbol = np.asarray(stiffness / self.greatest, dtype=np.float32)
+
+    def __call__(self, field: Field) -> Field:
+        """Return K applied to a field of `shape`; times `greatest` it is a pressure [Pa]."""
+        transform = scipy.fft.rfft2(field)
+        transform *= self._symbol
+        force = scipy.fft.irfft2(transform, s=self.shape, overwrite_x=True)
+        return np.asarray(force, dtype=np.float32)

@@ -1,0 +1,218 @@
+"""Curves in the formats of instruments, and tables of what a cantilever sees."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import instruments
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import pellicle as pl
+from pellicle.fitting.curves.columns import Calibration, Measured
+from pellicle.fitting.curves.readers import read
+from pellicle.fitting.statistics.likelihood import Likelihood
+
+Array = NDArray[np.float64]
+MODULUS, LENGTH, RADIUS, SPRING, SENSITIVITY = 5e3, 3e-6, 10e-6, 0.05, 50e-9
+GIVEN = Calibration(SPRING, SENSITIVITY)
+BEAD = pl.indenter("paraboloid", radius=RADIUS)
+
+
+POSITION = np.linspace(-1e-6, 3e-6, 300)
+FORCE = MODULUS * BEAD.force_curve(POSITION, LENGTH).force  # type: ignore[attr-defined]
+NOISE = 0.005 * FORCE.max() * np.random.default_rng(4).standard_normal(FORCE.size)
+SEEN = POSITION - NOISE / SPRING, FORCE + NOISE
+"""Position and force that are to be read: noise of the deflection is in both."""
+
+
+@pytest.fixture(scope="module")
+def recording() -> instruments.Recording:
+    """Return what an instrument sees of the curve."""
+    return instruments.record(POSITION, FORCE, NOISE, SPRING)
+
+
+def only(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Measured:
+    """Return the only curve of a file."""
+    (found,) = read(path, calibration, segment).values()
+    if isinstance(found, Exception):
+        raise found
+    return found
+
+
+def is_curve(measured: Measured, position: Array, force: Array) -> bool:
+    """Whether a curve is this one, but for where position is 0."""
+    assert measured.position is not None
+    moved = measured.position - position
+    same = np.ptp(moved) < 1e-6 * np.ptp(position)
+    return bool(same and np.allclose(measured.force, force, atol=1e-6 * np.ptp(force)))
+
+
+@pytest.mark.parametrize("name", instruments.WRITERS)
+def test_formats(tmp_path: Path, recording: instruments.Recording, name: str) -> None:
+    """Approach and retract are told apart, and the bending of the cantilever is subtracted."""
+    path = tmp_path / name
+    instruments.WRITERS[name](path, recording)
+    calibration = GIVEN if name in instruments.UNCALIBRATED else None
+    position, force = SEEN
+    approach = only(path, calibration)
+    if name == "curve.ibw":
+        # The file does not say where the approach ends: that is found from the position.
+        assert approach.force.size == 2 * force.size
+        assert approach.position is not None
+        first = slice(force.size)
+        approach = Measured(approach.force[first], approach.position[first])
+    else:
+        retract = only(path, calibration, "retract").position
+        assert retract is not None
+        assert retract[0] - retract[-1] == pytest.approx(np.ptp(position), rel=0.03)
+    assert is_curve(approach, position, force)
+
+
+def test_approach_of_an_unlabelled_file_is_fitted(
+    tmp_path: Path, recording: instruments.Recording
+) -> None:
+    """A file of both passes is fitted by its approach, and the truth is found."""
+    instruments.ibw(tmp_path / "curve.ibw", recording)
+    measured = only(tmp_path / "curve.ibw")
+    fit = pl.fit(
+        measured.position, measured.force, indenter=BEAD, spring_constant=measured.stiffness
+    )
+    # The turn is found exactly, because the base of the cantilever has no noise.
+    assert fit.points == 300
+    for found, truth in ((fit.reduced_modulus, MODULUS), (fit.tension, MODULUS * LENGTH / 2)):
+        assert found.low is not None
+        assert found.high is not None
+        assert found.low < truth < found.high
+
+
+@pytest.mark.parametrize("name", instruments.MAPS)
+def test_maps(tmp_path: Path, recording: instruments.Recording, name: str) -> None:
+    """A file of several curves has each by its number."""
+    instruments.MAPS[name](tmp_path / name, [recording, recording])
+    found = read(tmp_path / name)
+    assert list(found) == ["0", "1"]
+    assert all(isinstance(each, Measured) and is_curve(each, *SEEN) for each in found.values())
+
+
+@pytest.mark.parametrize("name", instruments.UNCALIBRATED)
+def test_calibration_is_asked_for(
+    tmp_path: Path, recording: instruments.Recording, name: str
+) -> None:
+    """A signal in volts needs spring constant and sensitivity, and the message says so."""
+    instruments.WRITERS[name](tmp_path / name, recording)
+    with pytest.raises(pl.ConfigError, match="--spring-constant and --sensitivity"):
+        read(tmp_path / name)
+
+
+def test_calibration_is_not_given_twice(tmp_path: Path, recording: instruments.Recording) -> None:
+    """A spring constant beside the one in the file is refused where it cannot be replaced."""
+    instruments.tab(tmp_path / "curve.tab", recording)
+    with pytest.raises(pl.ConfigError, match=r"holds a spring constant of 0\.05 already"):
+        only(tmp_path / "curve.tab", Calibration(0.1))
+    assert is_curve(only(tmp_path / "curve.tab", Calibration(SPRING)), *SEEN)
+
+
+def test_damaged_file(tmp_path: Path, recording: instruments.Recording) -> None:
+    """A file that was cut off is said to be unreadable."""
+    path = tmp_path / "curve.jpk-force"
+    instruments.jpk(path, recording)
+    path.write_bytes(path.read_bytes()[:2000])
+    with pytest.raises(pl.StorageError, match="afmformats cannot read it"):
+        read(path)
+
+
+def test_neither_text_nor_known(tmp_path: Path) -> None:
+    """A file that nothing can read is to be exported as a table."""
+    (tmp_path / "curve.spm").write_bytes(bytes(range(256)))
+    with pytest.raises(pl.StorageError, match="export it as a table"):
+        read(tmp_path / "curve.spm")
+
+
+@pytest.mark.parametrize("name", ["curve.jpk-force", "export.h5"])
+def test_without_the_extra(
+    tmp_path: Path,
+    recording: instruments.Recording,
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+) -> None:
+    """Where afmformats is not installed, the message says how to get it."""
+    instruments.WRITERS[name](tmp_path / name, recording)
+    monkeypatch.setitem(sys.modules, "afmformats", None)
+    with pytest.raises(pl.PellicleError, match=r"pip install 'pellicle\[afm\]'"):
+        only(tmp_path / name)
+
+
+COLUMNS = {
+    "height [um],force [nN]": (-1e6, 0.0),
+    "height [um],deflection [nm]": (-1e6, 1e9),
+    "extension [nm],deflection [mV]": (1e9, 1e3 / SENSITIVITY),
+    "extension [nm],deflection [nm],force [nN]": (1e9, 1e9),
+}
+
+
+@pytest.mark.parametrize("header", COLUMNS)
+def test_columns_of_a_cantilever(tmp_path: Path, header: str) -> None:
+    """Height or extension, less the deflection, is the position; force is its spring's."""
+    position, force = SEEN
+    bending = force / SPRING
+    place, signal = COLUMNS[header]
+    values = {"deflection": bending * signal, "force": force * 1e9}
+    names = [each.split()[0] for each in header.split(",")]
+    rows = np.column_stack([(position + bending) * place, *(values[name] for name in names[1:])])
+    path = tmp_path / "curve.csv"
+    np.savetxt(path, rows, delimiter=",", header=header, comments="", fmt="%.12g")
+    assert is_curve(only(path, GIVEN), position, force)
+    if header != "extension [nm],deflection [nm],force [nN]":
+        with pytest.raises(pl.ConfigError, match=r"spring_constant|sensitivity"):
+            only(path)
+    else:
+        assert is_curve(only(path), position, force)
+
+
+def test_noise_of_the_deflection_is_in_the_position_too() -> None:
+    """With a spring as soft as the contact errors are those of the bound, and nothing is widened.
+
+    Without its spring constant the same curve is thought not to be described by the model.
+    """
+    random = np.random.default_rng(7)
+    truth = np.array([0.0, np.log(MODULUS), MODULUS * LENGTH / 2, 0.0, 0.0])
+    errors = []
+    for _ in range(8):
+        noise = 0.005 * FORCE.max() * random.standard_normal(FORCE.size)
+        seen = POSITION - noise / SPRING, FORCE + noise
+        fit = pl.fit(*seen, indenter=BEAD, spring_constant=SPRING)
+        assert not fit.failed_checks
+        bound = fit.likelihood.deviations(truth)
+        errors += [
+            np.log(fit.reduced_modulus.value / MODULUS) / bound[1],
+            (fit.tension.value - truth[2]) / bound[2],
+        ]
+    assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 1.6
+    blind = pl.fit(*seen, indenter=BEAD)
+    assert any("does not describe the curve" in message for message in blind.messages)
+
+
+def test_balance_of_cantilever_and_solid() -> None:
+    """At the truth nothing is left but the noise, and slopes are derivatives of the residuals."""
+    noise = 0.01 * float(FORCE.max())
+    likelihood = Likelihood(*SEEN, BEAD, noise, (0, 1, 2, 3, 4), SPRING)  # type: ignore[arg-type]
+    truth = np.array([0.0, np.log(MODULUS), MODULUS * LENGTH / 2, 0.0, 0.0])
+    assert likelihood.residuals(truth) * noise == pytest.approx(-NOISE, abs=1e-8 * FORCE.max())
+    here = truth + 0.01 * likelihood.scale * np.array([1, 10, 1, 1, 1])
+    away = np.abs(POSITION - here[0]) > 0.1e-6
+    for which in range(5):
+        step = np.zeros(5)
+        step[which] = 1e-5 * likelihood.scale[which]
+        rise = likelihood.residuals(here + step) - likelihood.residuals(here - step)
+        slope = likelihood.slopes(here)[:, which]
+        found = rise / (2 * step[which])
+        assert found[away] == pytest.approx(slope[away], abs=1e-4 * np.abs(slope).max())
+
+
+def test_bad_calibration() -> None:
+    """A calibration of another dimension is refused."""
+    with pytest.raises(pl.ConfigError, match=r"spring_constant: .*\[mass\]"):
+        Calibration.of("5 um")

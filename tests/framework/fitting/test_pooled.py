@@ -1,0 +1,287 @@
+"""One modulus and one tension of several curves."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import Result
+from numpy.typing import NDArray
+
+import pellicle as pl
+from pellicle.fitting.models import simulation
+from pellicle.fitting.models.interpolated import SimulatedCurve
+from pellicle.fitting.report.page import save_report
+from pellicle.fitting.statistics.likelihood import MODULUS, POINT, TENSION, Likelihood
+from pellicle.fitting.statistics.pooled_likelihood import Pool
+from pellicle.fitting.statistics.profile import widened
+
+Array = NDArray[np.float64]
+TRUE_MODULUS, TRUE_TENSION = 2e3, 5e-3
+RADII = (5e-6, 40e-6)
+
+
+def curve(
+    radius: float, random: np.random.Generator, *, modulus: float = TRUE_MODULUS, points: int = 150
+) -> tuple[Array, Array, float, float]:
+    """Return position, force, contact point and noise under a paraboloid."""
+    depth = np.linspace(-0.3, 1.0, points) * 0.3 * radius
+    bead = pl.indenter("paraboloid", radius=radius)
+    force = modulus * bead.force_curve(depth, 2 * TRUE_TENSION / modulus).force  # type: ignore[attr-defined]
+    noise = 0.01 * float(force.max())
+    point = random.uniform(-1, 1) * radius
+    return depth + point, force + noise * random.standard_normal(points), point, noise
+
+
+def pooled(curves: dict[str, tuple[Array, Array]], **options: object) -> pl.PooledFit:
+    """Return the pooled fit of a curve for each radius."""
+    radii = list(RADII[: len(curves)])
+    return pl.fit_pooled(curves, indenter="paraboloid", radius=radii, **options)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def measured() -> dict[str, tuple[Array, Array]]:
+    """Return a curve for each radius."""
+    random = np.random.default_rng(1)
+    return {f"{1e6 * radius:.0f} um": curve(radius, random)[:2] for radius in RADII}
+
+
+@pytest.fixture(scope="module")
+def fit(measured: dict[str, tuple[Array, Array]]) -> pl.PooledFit:
+    """Return their pooled fit."""
+    return pooled(measured, contact_points=True)
+
+
+def test_errors_reach_the_pooled_bound_and_intervals_shrink_to_it() -> None:
+    """Over random curves errors and intervals are those of the Cramér–Rao bound of the pool."""
+    random = np.random.default_rng(8)
+    errors, covered, widths, gains, touched = [], [], [], [], []
+    for _ in range(10):
+        made = [curve(radius, random, points=100) for radius in RADII]
+        curves = {str(number): each[:2] for number, each in enumerate(made)}
+        found = pooled(curves, contact_points=True)
+        members = [
+            Likelihood(z, f, pl.indenter("paraboloid", radius=radius), noise, (0, 1, 2))  # type: ignore[arg-type]
+            for (z, f, _, noise), radius in zip(made, RADII, strict=True)
+        ]
+        shared = [np.log(TRUE_MODULUS), TRUE_TENSION]
+        parts = [np.array([point, *shared, 0.0, 0.0]) for _, _, point, _ in made]
+        pool = Pool.of(members)
+        bound = pool.deviations(pool.joined(parts))
+        alone = [m.deviations(part) for m, part in zip(members, parts, strict=True)]
+        for which, estimate, truth in (
+            (MODULUS, found.reduced_modulus, TRUE_MODULUS),
+            (TENSION, found.tension, TRUE_TENSION),
+        ):
+            assert estimate.low is not None
+            assert estimate.high is not None
+            deviation = bound[which] * (TRUE_MODULUS if which == MODULUS else 1)
+            errors.append((estimate.value - truth) / deviation)
+            covered.append(estimate.low < truth < estimate.high)
+            widths.append((estimate.high - estimate.low) / 2 / deviation)
+            gains.append(min(each[which] for each in alone) / bound[which])
+        for own, (_, _, point, _) in zip(found.curves, made, strict=True):
+            estimate = own.contact_point
+            assert estimate.low is not None
+            assert estimate.high is not None
+            touched.append(estimate.low < point < estimate.high)
+    # Three standard deviations of the rms of 20 normal numbers, half of them independent.
+    assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 1.6
+    assert sum(covered) >= 16
+    assert sum(touched) >= 16
+    # 1.96, but for the noise that is estimated from 23 points of each curve.
+    assert np.mean(widths) == pytest.approx(2.0, rel=0.1)
+    # The two radii tell far more than either alone.
+    assert min(gains) > 2
+
+
+def test_pool_of_the_same_curve_twice(measured: dict[str, tuple[Array, Array]]) -> None:
+    """Twice the same curve gives its fit, with intervals √2 narrower."""
+    position, force = measured["5 um"]
+    one = pl.fit(position, force, indenter="paraboloid", radius=RADII[0])
+    two = pl.fit_pooled(
+        {"a": (position, force), "b": (position + 1e-6, force)},
+        indenter="paraboloid",
+        radius=RADII[0],
+    )
+    for name in ("reduced_modulus", "tension"):
+        single, double = getattr(one, name), getattr(two, name)
+        assert double.value == pytest.approx(single.value, rel=1e-5)
+        assert double.bound == pytest.approx(single.bound / np.sqrt(2), rel=1e-4)
+        ratio = (single.high - single.low) / (double.high - double.low)
+        assert ratio == pytest.approx(np.sqrt(2 * one.rise / two.rise), rel=0.02)
+    points = [curve.contact_point.value for curve in two.curves]
+    assert points[1] - points[0] == pytest.approx(1e-6, rel=1e-4)
+
+
+def test_slopes_and_bound_are_those_of_all_points(fit: pl.PooledFit) -> None:
+    """The six rows that stand for a curve keep χ², its gradient and the Fisher information."""
+    free = (0, 1, 2, 3, 4)
+    pool = Pool.of([replace(member, free=free) for member in fit.pool.members])
+    here = fit.parameters + 0.3 * pool.deviations(fit.parameters)
+    parts = pool.parts(here)
+    whole = sum(m.chi_squared(part) for m, part in zip(pool.members, parts, strict=True))
+    assert pool.chi_squared(here) == pytest.approx(whole, rel=1e-12)
+    stacked = np.zeros((sum(m.force.size for m in pool.members), here.size))
+    left = np.concatenate([m.residuals(p) for m, p in zip(pool.members, parts, strict=True)])
+    first, *others = [m.slopes(p) for m, p in zip(pool.members, parts, strict=True)]
+    stacked[: len(first), :5] = first
+    stacked[len(first) :, [5, 1, 2, 6, 7]] = others[0]
+    gradient = pool.slopes(here).T @ pool.residuals(here)
+    assert gradient * pool.scale == pytest.approx(stacked.T @ left * pool.scale, rel=1e-8, abs=1e-6)
+    scaled = stacked * pool.scale
+    bound = np.sqrt(np.diag(np.linalg.inv(scaled.T @ scaled))) * pool.scale
+    assert pool.deviations(here) == pytest.approx(bound, rel=1e-6)
+
+
+def test_ends_are_where_the_profile_has_risen(fit: pl.PooledFit) -> None:
+    """At each end the least χ² is up by the stated rise, and no start finds less."""
+    random = np.random.default_rng(3)
+    bound = fit.pool.deviations(fit.parameters)
+    points = [curve.contact_point for curve in fit.curves]
+    for which, ends in (
+        (MODULUS, np.log([fit.reduced_modulus.low, fit.reduced_modulus.high])),
+        (TENSION, [fit.tension.low, fit.tension.high]),
+        *((fit.pool.place(at, POINT), [each.low, each.high]) for at, each in enumerate(points)),
+    ):
+        for end in ends:
+            start = fit.parameters + 2 * bound * random.standard_normal(bound.size)
+            start[which] = end
+            least = fit.pool.minimise(start, (which,)).chi_squared
+            assert least - fit.chi_squared == pytest.approx(fit.rise, rel=0.02)
+
+
+def test_contact_points_are_sought_if_asked(measured: dict[str, tuple[Array, Array]]) -> None:
+    """Without that they have a bound and no ends; those that are held have both."""
+    common = {"indenter": "paraboloid", "radius": list(RADII), "fix": {"tension": TRUE_TENSION}}
+    plain = pl.fit_pooled(measured, **common)  # type: ignore[arg-type]
+    assert plain.curves[0].contact_point.low is None
+    assert plain.curves[0].contact_point.bound > 0
+    told = pl.fit_pooled(measured, contact_points=True, **common)  # type: ignore[arg-type]
+    for curve in told.curves:
+        point = curve.contact_point
+        assert point.low is not None
+        assert point.high is not None
+        # √rise standard deviations, where the noise is known from as few points as here.
+        width = (point.high - point.low) / 2 / point.bound
+        assert width == pytest.approx(np.sqrt(told.rise), rel=0.05)
+
+
+def test_what_is_said(fit: pl.PooledFit) -> None:
+    """Tension is needed, the curves agree, and each has its own contact point and noise."""
+    assert "tension is needed" in fit.comparison
+    assert fit.agreement.startswith("the curves agree")
+    assert [curve.name for curve in fit.curves] == ["5 um", "40 um"]
+    assert fit.curves[1].noise > 10 * fit.curves[0].noise
+    assert sum(curve.chi_squared for curve in fit.curves) == pytest.approx(fit.chi_squared)
+    said = json.loads(json.dumps(fit.to_dict()))["curves"]
+    assert said[0]["contact_point"]["unit"] == "m"
+    assert [each["model"]["indenter"]["radius"] for each in said] == list(RADII)
+
+
+def test_curves_that_disagree() -> None:
+    """Two solids are not one: that is said, and the intervals are widened."""
+    random = np.random.default_rng(5)
+    curves = {
+        str(modulus): curve(radius, random, modulus=modulus)[:2]
+        for radius, modulus in zip(RADII, (2e3, 4e3), strict=True)
+    }
+    fit = pooled(curves)
+    assert "do not agree" in fit.agreement
+    assert fit.rise > 40
+
+
+def test_hertz_and_baseline(measured: dict[str, tuple[Array, Array]]) -> None:
+    """A tension that is held is held for all; each curve has its own baseline."""
+    position, force = measured["40 um"]
+    drift = 1e-9 + 1e-4 * (position - position[0])
+    fit = pooled({**measured, "40 um": (position, force + drift)}, baseline="slope")
+    assert fit.reduced_modulus.low is not None
+    assert fit.reduced_modulus.low < TRUE_MODULUS < (fit.reduced_modulus.high or 0)
+    small, large = fit.curves
+    assert abs(small.slope) < 0.3 * large.slope
+    held = pooled(measured, fix={"tension": "5 mN/m"})
+    assert held.tension.held
+    assert held.reduced_modulus.value == pytest.approx(TRUE_MODULUS, rel=0.02)
+
+
+def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> None:
+    """What coarser grids would shift is added to the intervals, as for one curve."""
+    depths, ratios = 2.0 ** np.arange(-9, 1), simulation._RATIOS
+    bead = pl.indenter("paraboloid", radius=1.0)
+    forces = np.array(
+        [
+            [bead.force_curve(np.array([depth]), ratio * depth**0.5).force[0] for ratio in ratios]  # type: ignore[attr-defined]
+            for depth in depths
+        ]
+    )
+    coarse = SimulatedCurve(
+        bead, {"type": "tensed_membrane"}, depths, ratios, np.log(1.01 * forces), (0.5, 0.0), 1.0
+    )
+    exact = replace(coarse, log_forces=np.log(forces))
+    starts = [
+        np.array([z[z.size // 4], np.log(TRUE_MODULUS), TRUE_TENSION, 0.0, 0.0])
+        for z, _ in measured.values()
+    ]
+    ends = []
+    for model in (exact, replace(exact, coarse=coarse)):
+        members = []
+        for (z, f), radius in zip(measured.values(), RADII, strict=True):
+            coarser = model.coarse and replace(model.coarse, unit=radius)
+            here = replace(model, unit=radius, coarse=coarser)
+            members.append(Likelihood(z, f, here, 0.01 * float(np.ptp(f)), (0, 1, 2)))
+        pool = Pool.of(members)
+        best = pool.minimise(pool.joined(starts))
+        ends.append(widened({MODULUS: (0.0, 0.0)}, pool, best)[0])
+    assert ends[0] == {MODULUS: (0.0, 0.0)}
+    low, high = ends[1][MODULUS]
+    assert low is not None
+    assert high == -low == pytest.approx(np.log(1.01), rel=0.05)
+
+
+def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Result]) -> None:
+    """``--pool`` prints, and leaves JSON, a figure and a page."""
+    for number, (position, force) in enumerate(measured.values()):
+        rows = np.column_stack([position * 1e6, force * 1e9])
+        header = "position [um],force [nN]"
+        np.savetxt(f"{number}.csv", rows, delimiter=",", header=header, comments="")
+    radii = [text for radius in RADII for text in ("--radius", f"{radius * 1e6:g} um")]
+    arguments = ("0.csv", "1.csv", "-i", "paraboloid", *radii, "--pool", "-o", "out", "--report")
+    shown = cli(*arguments, "--contact-points").stdout
+    assert "the curves agree" in shown
+    assert "95 % of contact_point" in shown
+    said = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
+    assert said["reduced_modulus"]["low"] < TRUE_MODULUS < said["reduced_modulus"]["high"]
+    assert Path("out/pool.png").stat().st_size > 10_000
+    page = Path("out/pool.html").read_text(encoding="utf-8")
+    for words in (
+        "The curves agree",
+        "0.csv",
+        "5 µm, 40 µm",
+        "modulus alone",
+        "contact point, low",
+    ):
+        assert words in page
+    assert page.count("data:image/svg+xml") == 2
+
+
+def test_page_of_curves_that_disagree(tmp_path: Path) -> None:
+    """What the curves disagree on is said where it is seen first, and not as good news."""
+    random = np.random.default_rng(5)
+    made = [curve(RADII[0], random, modulus=modulus, points=60)[:2] for modulus in (2e3, 4e3)]
+    fit = pl.fit_pooled(
+        {"soft": made[0], "stiff": made[1]},
+        indenter="paraboloid",
+        radius=RADII[0],
+        fix={"tension": TRUE_TENSION},
+    )
+    page = save_report(fit, tmp_path / "pool.html", "Two gels").read_text(encoding="utf-8")
+    notice = re.search(r'<div class="notice bad">.*?do not agree', page, re.DOTALL)
+    assert notice is not None
+    assert "notice good" not in notice[0]
+    assert page.count("held") >= 2
