@@ -1,5 +1,6 @@
 """Files, for plugins: the contents of `pellicle.results.storage` and parts of `pellicle.files`."""
 
+from pellicle.files import atomic_write, storage_errors
 from pellicle.files import check_writable as check_writable
 from pellicle.results.storage import REPLACING as REPLACING
 from pellicle.results.storage import SCHEMA_VERSION as SCHEMA_VERSION
@@ -15,3 +16,6 @@ from pellicle.results.storage import require_consecutive as require_consecutive
 from pellicle.results.storage import scalars as scalars
 from pellicle.results.storage import table as table
 from pellicle.results.storage import write as write
+
+aside = atomic_write
+reported = storage_errors

@@ -18,8 +18,9 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle import memory, storage
+from pellicle import memory
 from pellicle.cli import app
+from pellicle.results import storage
 
 START = """
 title = "bad input"
@@ -636,7 +637,7 @@ def test_output_folder_that_cannot_be_written(
     def fail(*arguments: object) -> None:
         raise AssertionError("solved in vain")
 
-    monkeypatch.setattr("pellicle.runs.steps.solve", fail)
+    monkeypatch.setattr("pellicle.runs.steps.solve_step", fail)
     outputs = f"outputs=[{{type='{type_}'}}]"
     outcome = cli("run", "start.toml", "-o", "out", "--set", outputs)
     assert outcome.exit_code == 2

@@ -13,9 +13,8 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle import storage
 from pellicle.cli import app
-from pellicle.results import checksum, version_1
+from pellicle.results import checksum, storage, version_1
 
 DATA = Path(__file__).parents[1] / "data"
 RUN = {

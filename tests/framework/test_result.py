@@ -13,8 +13,8 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
-from pellicle import storage
 from pellicle.plugins import Origin, registry
+from pellicle.results import storage
 
 CONFIGURATION: dict[str, Any] = {
     "title": "τ₀",

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from pellicle import storage
 from pellicle.errors import StorageError
+from pellicle.files import check_writable
+from pellicle.results import storage
 
 ATTRIBUTES = {"configuration": '{"a": "τ₀"}', "versions": "pellicle 0", "title": "τ₀"}
 
@@ -121,11 +122,11 @@ def test_nothing_half_written_has_the_name(path: Path, monkeypatch: pytest.Monke
 
 def test_check_writable(tmp_path: Path) -> None:
     """A folder that can be written is made; one that cannot is named."""
-    storage.check_writable(tmp_path / "a" / "b" / "c.h5")
+    check_writable(tmp_path / "a" / "b" / "c.h5")
     assert list((tmp_path / "a" / "b").iterdir()) == []
     (tmp_path / "file").touch()
     with pytest.raises(StorageError, match=r"c\.h5: cannot be written .*choose another folder"):
-        storage.check_writable(tmp_path / "file" / "c.h5")
+        check_writable(tmp_path / "file" / "c.h5")
 
 
 def test_attributes(path: Path) -> None:

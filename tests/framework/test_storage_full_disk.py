@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
-from pellicle import storage
+from pellicle.results import storage
 
 if sys.platform == "win32":
     pytest.skip("has no limit on the size of files", allow_module_level=True)

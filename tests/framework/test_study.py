@@ -17,10 +17,11 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle import storage
+from pellicle import files
 from pellicle.cli import app
 from pellicle.components import Monitor
 from pellicle.operators import Array
+from pellicle.results import storage
 from pellicle.studies import runner as study_module
 
 RUN: dict[str, Any] = {
@@ -422,7 +423,7 @@ def test_left_overs_of_the_dead_are_swept(tmp_path: Path) -> None:
     dead = subprocess.run(
         [sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True
     )
-    host = storage._host()
+    host = files._host()
     runs = tmp_path / "runs"
     runs.mkdir()
     gone = runs / f".a.h5.{host}.{int(dead.stdout)}.part"

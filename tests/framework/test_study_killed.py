@@ -14,7 +14,7 @@ from pathlib import Path
 import xarray as xr
 
 import pellicle as pl
-from pellicle import storage
+from pellicle.results import storage
 
 FILE = """
 title = "18 runs of 3 steps"

@@ -11,9 +11,9 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("framework/pellicle", "plugins/pellicle_plugins")
-DATA = {"pellicle/py.typed", "pellicle/starter.toml", "pellicle_plugins/py.typed"} | {
+DATA = {"pellicle/py.typed", "pellicle/cli/starter.toml", "pellicle_plugins/py.typed"} | {
     path.relative_to(ROOT / "framework").as_posix()
-    for folder in ("templates", "page")
+    for folder in ("cli/templates", "report")
     for path in (ROOT / "framework/pellicle" / folder).rglob("*")
     if path.is_file() and path.suffix != ".py" and path.parent.name != "__pycache__"
 }

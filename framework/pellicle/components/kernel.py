@@ -17,7 +17,7 @@ class Kernel(Component):
 
     That is all it needs to give. On free boundaries its closed form, ``greens_function(r)`` [m/N]
     and ``radial_primitive(r)`` [m²/N] as in `pellicle.operators.HasClosedForm`, is used if it has
-    one, and is otherwise tabulated from G(q) by `pellicle.numerics.hankel`. On periodic ones a uniform
+    one, and is otherwise tabulated from G(q). On periodic ones a uniform
     pressure has no displacement unless it also has `pellicle.operators.HasMeanCompliance`.
     """
 

@@ -60,6 +60,7 @@ def header(name: str, variable: xr.DataArray) -> str:
 
 
 def attributes(name: str) -> dict[str, str]:
+    """Return meaning and unit of a variable, as attributes of an xarray variable."""
     corrected = ("m2", f"contact area, {name.removeprefix('contact_area_')} correction")
     unit, meaning = DESCRIPTIONS.get(name, corrected)
     return {"long_name": meaning} | ({"units": unit} if unit else {})

@@ -39,17 +39,17 @@ def solve_steps(
     for index, problem in enumerate(problems[first:], first):
         # Only the copy in ``steps`` outlives a solve; the next one starts from its pressure.
         yield steps.append(
-            _solve_step(run, index, problem, steps.pressure, bar.step(index)).assign_attrs(origin)
+            _solved_step(run, index, problem, steps.pressure, bar.step(index)).assign_attrs(origin)
         )
 
 
-def _solve_step(
+def _solved_step(
     run: Run, index: int, problem: Problem, start: Array | None, monitor: Monitor
 ) -> xr.Dataset:
     """Return a load step, solved and judged."""
     started = time.perf_counter()
     applied = problem.operator.applications
-    step = solve(run, index, problem, start, monitor)
+    step = solve_step(run, index, problem, start, monitor)
     used = problem.operator.applications - applied
     found = measure(step.problem, step.solution.pressure)
     stiffness = _stiffness(run, problem, found, monitor)
@@ -66,7 +66,10 @@ def _solve_step(
     return step_dataset(run.grid, index + 1, found, scalars)
 
 
-def solve(run: Run, index: int, problem: Problem, start: Array | None, monitor: Monitor) -> Reached:
+def solve_step(
+    run: Run, index: int, problem: Problem, start: Array | None, monitor: Monitor
+) -> Reached:
+    """Return the solution of load step ``index``, started from the pressure ``start`` [Pa]."""
     areas = prescribed_areas(run)
     if areas and areas[index] > 0:
         return reach_area(problem, areas[index], run.solver, start, monitor)

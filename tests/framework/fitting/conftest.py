@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from pellicle.cli import app
 
 HERE = Path(__file__).parent
-sys.path += [str(HERE), str(HERE.parent / "benchmarks")]
+sys.path += [str(HERE), str(HERE.parents[1] / "benchmarks")]
 
 
 @pytest.fixture

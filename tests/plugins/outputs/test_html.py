@@ -20,7 +20,7 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
-from pellicle.runs import runner as orchestrator
+from pellicle.runs import steps
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -291,7 +291,7 @@ def test_values_that_are_not_numbers(tmp_path: Path) -> None:
 
 def test_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The page of the steps that are there says that they are not all."""
-    solve, calls = orchestrator._solve, []
+    solve, calls = steps.solve_step, []
 
     def once(*arguments: Any) -> Any:
         calls.append(arguments)
@@ -299,7 +299,7 @@ def test_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             raise KeyboardInterrupt
         return solve(*arguments)
 
-    monkeypatch.setattr(orchestrator, "_solve", once)
+    monkeypatch.setattr(steps, "solve_step", once)
     with pytest.raises(KeyboardInterrupt):
         page_of(tmp_path)
     page = Page(tmp_path / "odd.html")

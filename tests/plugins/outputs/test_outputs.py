@@ -69,16 +69,16 @@ def test_csv_goes_on_below_the_header_that_is_there(tmp_path: Path) -> None:
 
 def test_csv_holds_every_finished_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run that is interrupted leaves the rows of the steps before."""
-    from pellicle.runs import runner as orchestrator
+    from pellicle.runs import steps
 
-    _interrupt_in_step(2, monkeypatch, orchestrator)
+    _interrupt_in_step(2, monkeypatch, steps)
     with pytest.raises(KeyboardInterrupt):
         pl.run(_run([{"type": "csv"}]), directory=tmp_path, progress=False)
     assert len(_read_csv(tmp_path / "two-steps.csv")) == 1
 
 
 def _interrupt_in_step(step: int, monkeypatch: pytest.MonkeyPatch, module: Any) -> None:
-    solve, calls = module._solve, []
+    solve, calls = module.solve_step, []
 
     def solve_or_interrupt(*arguments: Any) -> Any:
         calls.append(arguments)
@@ -86,7 +86,7 @@ def _interrupt_in_step(step: int, monkeypatch: pytest.MonkeyPatch, module: Any) 
             raise KeyboardInterrupt
         return solve(*arguments)
 
-    monkeypatch.setattr(module, "_solve", solve_or_interrupt)
+    monkeypatch.setattr(module, "solve_step", solve_or_interrupt)
 
 
 @pytest.mark.parametrize("format_", SIGNATURES)
@@ -147,17 +147,17 @@ def test_hdf5(tmp_path: Path) -> None:
 
 def test_hdf5_is_whole_after_each_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """While a step is solved, the file with those before it can be read."""
-    from pellicle.runs import runner as orchestrator
+    from pellicle.runs import steps
 
     found: list[int] = []
-    solve = orchestrator._solve
+    solve = steps.solve_step
 
     def look_and_solve(*arguments: Any) -> Any:
         path = tmp_path / "two-steps.h5"
         found.append(pl.load(path).dataset.sizes["step"] if path.exists() else 0)
         return solve(*arguments)
 
-    monkeypatch.setattr(orchestrator, "_solve", look_and_solve)
+    monkeypatch.setattr(steps, "solve_step", look_and_solve)
     run = _run([{"type": "hdf5"}], loading={"depth": ["6 um", "8 um", "10 um"]})
     pl.run(run, directory=tmp_path, progress=False)
     assert found == [0, 1, 2]
