@@ -22,7 +22,7 @@ from .indenter import Indenter as Indenter
 from .indenter import IsShallowLimit as IsShallowLimit
 from .kernel import Kernel as Kernel
 from .output import Output as Output
-from .output import Place as Place
+from .output import Runs as Runs
 from .solver import HasMemory as HasMemory
 from .solver import IterativeSolver as IterativeSolver
 from .solver import Monitor as Monitor

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import ClassVar
 
 from pellicle.model.base import Model
@@ -13,3 +14,5 @@ class Component(Model):
     family: ClassVar[str]
     libraries: ClassVar[tuple[str, ...]] = ()
     """Distributions that it computes with, beside numpy and scipy; results say their versions."""
+    replaced_methods: ClassVar[Mapping[str, str]] = {}
+    """Methods of an earlier contract, and the method that replaces each; they are refused."""

@@ -23,6 +23,7 @@ from pydantic import (
 )
 
 from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
+from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid, grid_of_run
 from pellicle.loading import Loading
@@ -33,7 +34,6 @@ from pellicle.model.toml import parse_override, read_toml
 from pellicle.plugins import registry
 
 from .component_field import FromRegistry
-from .output_conflicts import refuse_clashes
 
 DEFAULT_SOLVER = "active_set"
 # Raised when equal configurations begin to give other numbers, not with the layout of files.
@@ -62,7 +62,7 @@ class Run(Model):
     ] = ()
     outputs: Annotated[
         tuple[Annotated[Output, FromRegistry()], ...] | None,
-        Field(description="what the run leaves behind; all the standard outputs if not given"),
+        Field(description="what is written besides the result file; csv and figures if not given"),
     ] = None
 
     @field_validator("indenter", mode="wrap")
@@ -97,7 +97,7 @@ class Run(Model):
 
     @model_validator(mode="after")
     def _each_file_once(self) -> Self:
-        refuse_clashes(self.outputs or ())
+        refuse_shared_files(self.outputs or ())
         return self
 
     @classmethod

@@ -15,6 +15,7 @@ from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from pellicle import memory
 from pellicle.components import Executor
+from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, shown
 from pellicle.loading import ON_DEMAND
 from pellicle.model import ranges as axes
@@ -30,7 +31,6 @@ from pellicle.units import quantity_of, split
 
 from .component_field import FromRegistry
 from .json_schema import json_schema
-from .output_conflicts import refuse_clashes_with_study
 from .run import Run, read
 
 DEFAULT_EXECUTOR = "serial"
@@ -191,7 +191,7 @@ class Study(Model):
             self._points = tuple(self._make_points())
         self._check_derived()
         try:
-            refuse_clashes_with_study(self.points[0].run.outputs or ())
+            refuse_shared_files(self.points[0].run.outputs or (), of_study=True)
         except ConfigError as error:
             raise error.within("run") from None
         return self

@@ -4,30 +4,24 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle.errors import ConfigError, StorageError, shown
-from pellicle.model.expression import evaluate, names_in
-
-from . import storage
+from pellicle.model.expression import evaluate
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from .result import Result
-
 FIELDS = ("pressure", "displacement", "gap", "contact")
 """What a result has for each cell, besides the coordinates x and y."""
-_CELLS = ["x", "y"]
+CELLS = ["x", "y"]
+"""Dimensions of a field."""
 REDUCTIONS: dict[str, Callable[[Any], Any]] = {
-    "mean": lambda field: field.mean(_CELLS),
-    "sum": lambda field: field.sum(_CELLS),
-    "min": lambda field: field.min(_CELLS),
-    "max": lambda field: field.max(_CELLS),
+    "mean": lambda field: field.mean(CELLS),
+    "sum": lambda field: field.sum(CELLS),
+    "min": lambda field: field.min(CELLS),
+    "max": lambda field: field.max(CELLS),
 }
 """Functions that make one number for each step of a field over the cells."""
 
@@ -98,67 +92,3 @@ def as_array(text: str, data: xr.Dataset) -> xr.DataArray:
 
     value = evaluate(text, names(data))
     return value if isinstance(value, xr.DataArray) else xr.DataArray(value)
-
-
-def _by_step(text: str, run: xr.Dataset) -> Any:
-    """Return an expression over a run whose fields are reduced to a number for each step."""
-    value = evaluate(text, names(run), REDUCTIONS)
-    if set(getattr(value, "dims", ())) & set(_CELLS):
-        raise ConfigError(
-            f"{shown(text)} has a value for each cell, and one for each step is drawn; put fields, "
-            f"x and y inside {', '.join(REDUCTIONS)}, such as mean(pressure)"
-        )
-    return value
-
-
-@dataclass(frozen=True)
-class Runs:
-    """A table of runs and a way to the fields of each."""
-
-    table: xr.Dataset
-    """Scalars of each run and step; ``run`` names the runs."""
-    open: Callable[[str], xr.Dataset]
-    """Returns the dataset of a run by its name; raises StorageError if there is none."""
-
-    @classmethod
-    def of_result(cls, result: Result) -> Runs:
-        """Return the one run of a result, as a table of its steps."""
-        data = result.dataset
-        return cls(data.drop_dims(_CELLS).assign(run=((), "")), lambda _: data)
-
-    @classmethod
-    def of_study(cls, table: xr.Dataset, directory: Path) -> Runs:
-        """Return the runs of the study whose folder is ``directory``."""
-        return cls(table, lambda name: storage.read(directory / "runs" / f"{name}.h5"))
-
-    def each(self) -> Iterator[tuple[tuple[int, ...], xr.Dataset | None]]:
-        """Yield the place in the table and the dataset of each run, None for one that has none."""
-        for index, name in np.ndenumerate(self.table["run"].values):
-            try:
-                yield index, self.open(str(name))
-            except StorageError:
-                yield index, None
-
-    def column(self, text: str) -> xr.DataArray:
-        """Return an expression over the table, with fields reduced to a number a step.
-
-        Raises
-        ------
-        ConfigError
-            It is not arithmetic, or names what is not there.
-        """
-        if names_in(text) & {*FIELDS, *_CELLS}:
-            return self.from_each(lambda run: _by_step(text, run))
-        return as_array(text, self.table)
-
-    def from_each(self, what: Callable[[xr.Dataset], Any]) -> xr.DataArray:
-        """Return ``what`` makes of each run: a number for each step; NaN where there is no run."""
-        import xarray as xr
-
-        runs, steps = self.table["run"], self.table.sizes["step"]
-        values = np.full((*runs.shape, steps), np.nan)
-        for index, data in self.each():
-            if data is not None:
-                values[index][: data.sizes["step"]] = what(data)
-        coords = {dim: self.table[dim] for dim in (*runs.dims, "step")}
-        return xr.DataArray(values, coords, (*runs.dims, "step"))

@@ -18,7 +18,7 @@ from pellicle.components import Executor, Indenter
 from pellicle.config.study import Study
 from pellicle.errors import ConfigError, ConvergenceError
 from pellicle.plugins import registry
-from pellicle.studies.runner import as_study, carry_out, is_table, read
+from pellicle.studies.runner import as_study, execute, is_table, read
 from pellicle.studies.summary import failures
 
 from .extent import half_widths
@@ -201,7 +201,7 @@ def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:
         found, _ = read(folder)
         if not failures(found):
             return found
-    made = carry_out(study, folder, progress=progress).table
+    made = execute(study, folder, progress=progress).table
     if said := failures(made):
         raise ConvergenceError(
             f"the force curve needs the study in {folder}: {said}; another number of grid points "
