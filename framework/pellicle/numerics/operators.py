@@ -136,10 +136,10 @@ class Operator(ABC):
         return self._symbol.unit * self._factor
 
     def held(self, compliance: float) -> Self:
-        """Return the operator of a surface pressed by an indenter on a spring; it shares all arrays.
+        """Return the operator for an indenter that a spring holds; it shares all arrays.
 
         The deflection of the spring, ``compliance`` [m/N] times the force, is added to the
-        displacement of every cell, in place of that of a spring before.
+        displacement of every cell. It replaces that of an earlier spring.
         """
         if compliance == self._holder:
             return self

@@ -51,10 +51,10 @@ _CONTROLS: Final = {"depth": Depth, "force": Force}
 
 @dataclass(frozen=True, init=False)
 class Problem:
-    """Find p ≥ 0 with gap = A p − z − f ≥ 0 and p·gap = 0, z being a given depth or that of a force.
+    """Find p ≥ 0 with gap = A p − z − f ≥ 0 and p·gap = 0, for a given depth z or force.
 
-    Under a `Depth` with a compliance z is the depth of the base: the `operator` A then includes the
-    deflection of the spring, so that a solver need not know of it.
+    Under a `Depth` with a compliance z is the depth of the base. The `operator` A then includes
+    the deflection of the spring, so that no solver has to know of it.
     """
 
     grid: Grid
