@@ -8,7 +8,7 @@ from .components import Indenter as Indenter
 from .components import IterativeSolver as IterativeSolver
 from .components import Kernel as Kernel
 from .components import Output as Output
-from .components import Place as Place
+from .components import Runs as Runs
 from .components import Solver as Solver
 from .config.run import Run as Run
 from .config.study import Study as Study

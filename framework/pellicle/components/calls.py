@@ -241,11 +241,23 @@ def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
     Raises
     ------
     PluginError
-        It does not return a tuple of paths that begin with its own stem.
+        As for `require_files`.
+    """
+    with blamed(output):
+        files = output.write(runs, stem_of(output, stem))
+    require_files(output, files, stem)
+    return tuple(files)
+
+
+def require_files(output: Output, files: object, stem: Path) -> None:
+    """Refuse what write() of an output returned unless it is files of its own stem.
+
+    Raises
+    ------
+    PluginError
+        It is not a tuple of paths that begin with the stem.
     """
     own = stem_of(output, stem)
-    with blamed(output):
-        files: object = output.write(runs, own)
     call = f"{component_name(output)}: write(runs, stem) returned"
     if not isinstance(files, (tuple, list)) or not all(isinstance(path, Path) for path in files):
         raise PluginError(
@@ -255,7 +267,6 @@ def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
     for path in files:
         if not str(path).startswith(str(own)):
             raise PluginError(f"{call} {path}; its files have to begin with the stem, {own}")
-    return tuple(files)
 
 
 def outcomes_of(

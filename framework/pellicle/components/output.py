@@ -38,7 +38,7 @@ class Output(Component):
     whole. An output of scope ``"study"`` is skipped in a run that stands alone.
     """
     shares_stem: ClassVar[bool] = False
-    """Whether its stem is ``NAME``, that of all outputs; its `suffixes` then have to be complete."""
+    """Whether its stem is ``NAME`` alone; then its `suffixes` have to be given."""
 
     @property
     def suffixes(self) -> tuple[str, ...]:
@@ -75,12 +75,14 @@ def refuse_shared_files(outputs: Sequence[Output], *, of_study: bool = False) ->
         The suffixes of an output are not a tuple of texts.
     """
     for index, output in enumerate(outputs):
-        is_of_table = of_study and output.scope != "run"
-        reserved = (".h5", ".csv") if is_of_table else (".h5",)
+        if of_study and output.scope != "run":
+            name, owner, reserved = "study", "the table of the study", [".h5", ".csv"]
+        else:
+            name, owner, reserved = "NAME", "the result of the run", [".h5"]
         if shared := _shared(reserved, _suffixes(output)):
-            file = f"study{shared}, the table of the study" if is_of_table else f"NAME{shared}, the result"
             raise ConfigError(
-                f"{output.type_name!r} would write {file}; leave it out", f"outputs.{index}.type"
+                f"{output.type_name!r} would write {name}{shared}, {owner}; leave it out",
+                f"outputs.{index}.type",
             )
         for earlier, other in enumerate(outputs[:index]):
             if shared := _shared(_suffixes(output), _suffixes(other)):

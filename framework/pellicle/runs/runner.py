@@ -189,8 +189,9 @@ def writers(
         try:
             return files_of(output, runs(), stem)
         except ConfigError as error:
-            named = list(run.outputs or ())
-            raise (error.within(f"outputs.{named.index(output)}") if output in named else error)
+            if not run.outputs:
+                raise
+            raise error.within(f"outputs.{run.outputs.index(output)}") from None
 
     return [partial(write, output) for output in outputs]
 

@@ -236,9 +236,7 @@ def _execute(
         whole = rows.dataset()
 
         def runs() -> Runs:
-            return Runs.of_study(
-                read_only_dataset(whole), directory, study.to_json(as_given=True)
-            )
+            return Runs.of_study(read_only_dataset(whole), directory, study.to_json(as_given=True))
 
         written = runner.all_done(runner.writers(outputs, runs, directory / "study", first))
     for message in (*messages, *(f"{message}; see status" for message in coarse(whole))):

@@ -15,7 +15,8 @@ from pellicle.components import Output, Runs
 from pellicle.errors import StorageError
 from pellicle.model.expression import evaluate
 from pellicle.results.derived import names
-from pellicle_plugins.outputs.base import XYFigure, set_scales
+
+from .base import XYFigure, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr

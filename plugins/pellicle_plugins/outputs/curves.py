@@ -18,7 +18,8 @@ from pellicle.errors import ConfigError
 from pellicle.model.base import Model
 from pellicle.model.expression import names_in
 from pellicle_plugins.analytic.reference import exact
-from pellicle_plugins.outputs.base import (
+
+from .base import (
     Log,
     Reference,
     XYFigure,

@@ -12,7 +12,8 @@ from pydantic import Field
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.report.plotting import axis_unit, save_figure
-from pellicle_plugins.outputs.base import Log, TableFigure, set_scales, write_csv
+
+from .base import Log, TableFigure, set_scales, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,7 +14,8 @@ from pellicle import hookimpl
 from pellicle.components import Output, Runs
 from pellicle.report.plotting import axis_unit, extent, save_figure
 from pellicle.results.derived import as_array
-from pellicle_plugins.outputs.base import TableFigure, scaled
+
+from .base import TableFigure, scaled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,9 +72,7 @@ class Maps(TableFigure):
             return
         values = np.concatenate([field.values.ravel() for *_, field in panels])
         is_bool = panels[0][2].dtype == bool
-        factor, name = (
-            (1.0, "") if is_bool else scaled(self.field, panels[0][2], self.field_label)
-        )
+        factor, name = (1.0, "") if is_bool else scaled(self.field, panels[0][2], self.field_label)
         values = values[np.isfinite(values)] * factor
         low, high = (values.min(), values.max()) if values.size and not is_bool else (0.0, 1.0)
         if low == high:

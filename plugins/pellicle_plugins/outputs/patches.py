@@ -13,7 +13,8 @@ from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.report.plotting import axis_unit, extent, save_figure
 from pellicle.results.result import Result
-from pellicle_plugins.outputs.base import TableFigure, write_csv
+
+from .base import TableFigure, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,9 +53,7 @@ class Patches(TableFigure):
     def _patches(self, step: xr.Dataset) -> analysis.Patches:
         return analysis.patches(step["contact"], Result(step).grid, self.connectivity)
 
-    def _fill(
-        self, figure: Figure, curves: list[tuple[str, xr.Dataset, analysis.Patches]]
-    ) -> None:
+    def _fill(self, figure: Figure, curves: list[tuple[str, xr.Dataset, analysis.Patches]]) -> None:
         left, right = figure.subplots(1, 2)
         if curves:
             _map(left, *curves[-1])
@@ -87,9 +86,7 @@ def _map(axes: Axes, name: str, step: xr.Dataset, patches: analysis.Patches) -> 
     axes.set_title(f"{name}\n{patches.count} patches".lstrip(), fontsize="medium")
 
 
-def _rows(
-    name: str, step: xr.Dataset, patches: analysis.Patches
-) -> Iterator[dict[str, object]]:
+def _rows(name: str, step: xr.Dataset, patches: analysis.Patches) -> Iterator[dict[str, object]]:
     grid = Result(step).grid
     pressure = step["pressure"].values.ravel()
     force = np.bincount(patches.labels.ravel(), pressure)[1:] * grid.cell_area

@@ -11,7 +11,8 @@ from pellicle import hookimpl
 from pellicle.components import Output, Runs
 from pellicle.results.derived import as_array
 from pellicle_plugins.analytic.reference import exact_line
-from pellicle_plugins.outputs.base import Reference, XYFigure, scaled, set_scales
+
+from .base import Reference, XYFigure, scaled, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr

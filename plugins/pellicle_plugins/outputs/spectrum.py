@@ -12,7 +12,8 @@ from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.report.plotting import save_figure
 from pellicle.results.result import Result
-from pellicle_plugins.outputs.base import TableFigure, write_csv
+
+from .base import TableFigure, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
