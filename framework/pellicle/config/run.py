@@ -85,7 +85,7 @@ class Run(Model):
 
     @model_validator(mode="after")
     def _each_correction_once(self) -> Self:
-        types = [getattr(correction, "type", "") for correction in self.corrections]
+        types = [correction.type_name for correction in self.corrections]
         for index, type_ in enumerate(types):
             if type_ in types[:index]:
                 raise ConfigError(

@@ -24,8 +24,8 @@ from pellicle.model.input_path import AS_GIVEN, paths_relative_to
 from pellicle.model.input_path import as_given as path_as_given
 from pellicle.model.paths import replaced
 from pellicle.plugins import registry
-from pellicle.results.derived import FIELDS, constants
-from pellicle.results.variables import DESCRIPTIONS
+from pellicle.results.derived import constants
+from pellicle.results.variables import FIELDS, VARIABLES, corrected_area
 from pellicle.units import quantity_of, split
 
 from .component_field import FromRegistry
@@ -349,8 +349,8 @@ class Study(Model):
         """Refuse expressions that name what a table will not have, before anything is run."""
         run = self.points[0].run
         absent = {"status", "status_code"} | (ON_DEMAND - run.loading.brings)
-        there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - absent
-        there |= {f"contact_area_{getattr(each, 'type', '')}" for each in run.corrections}
+        there = {*VARIABLES, *constants(json.loads(run.to_json()))} - absent
+        there |= {corrected_area(c.type_name).name for c in run.corrections}
         there |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         taken = {*FUNCTIONS, *CONSTANTS, "status", "status_code", "run", "step", "x", "y"}
         problems: list[Problem] = []

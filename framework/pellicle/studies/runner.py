@@ -315,7 +315,7 @@ def is_table(path: Path) -> bool:
 
 def _by_run(named: Sequence[Output]) -> tuple[Output, ...]:
     """Return the outputs that each run calls itself: its file is there in any case."""
-    return tuple(o for o in named if not o.draws_studies and getattr(o, "type", "") != "hdf5")
+    return tuple(o for o in named if not o.draws_studies and o.type_name != "hdf5")
 
 
 def _collect(task: RunTask, rows: table.Table) -> int:
