@@ -60,7 +60,7 @@ def judge(
         return Status.NEAREST_AREA, Status.NEAREST_AREA.value.format(measure=step.missed)
     cells = int(np.count_nonzero(found.contact))
     enough = _RESOLVED_ACROSS if min(found.contact.shape) == 1 else _RESOLVED
-    if step.problem.value > 0 and cells < min(enough, found.contact.size):
+    if step.problem.control.value > 0 and cells < min(enough, found.contact.size):
         return Status.COARSE, Status.COARSE.value.format(cells=cells or "none")
     return Status.CONVERGED, Status.CONVERGED.value
 

@@ -13,7 +13,7 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor, Solver
 from pellicle.errors import ConfigError
 from pellicle.numerics.grid_transfer import highest, prolong
-from pellicle.numerics.problem import Problem
+from pellicle.numerics.problem import Depth, Problem
 from pellicle_plugins.solvers.contact_cg import Inner, inner_solve
 from pellicle_plugins.solvers.initial_guess import first_guess, with_force
 from pellicle_plugins.solvers.preconditioner import OnContact, Preconditioner
@@ -193,7 +193,7 @@ class ActiveSet(ScaledSolver):
         profile = np.where(contact, 0.0, -np.inf)
         unit = 1 / problem.operator.unit
         operator = problem.operator.scaled(unit)
-        flat = replace(problem, operator=operator, profile=profile, prescribed="depth", value=1.0)
+        flat = replace(problem, operator=operator, profile=profile, control=Depth(1.0))
         preconditioner = Preconditioner(operator).on(contact)
         goal = self.tolerance / 2
         pressure, displacement = np.zeros(problem.grid.shape), np.zeros(problem.grid.shape)
