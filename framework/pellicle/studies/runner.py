@@ -140,7 +140,7 @@ def run_study(
     from .lazy_fields import add_fields
 
     threads = checked_threads(threads)
-    study = as_study(configuration)
+    study = Study.of(configuration)
     if fields:
         if directory is None:
             raise ConfigError("fields are read from files: give a directory", "fields")
@@ -160,21 +160,6 @@ def run_study(
     if message := failures(made):
         warnings.warn(f"{message}; see status", ConvergenceWarning, stacklevel=2)
     return add_fields(made, Path(directory) / "runs") if fields and directory else made
-
-
-def as_study(configuration: Study | Mapping[str, Any] | str | Path) -> Study:
-    """Return a study, whichever way it is given.
-
-    Raises
-    ------
-    ConfigError, PluginError
-        It cannot be made.
-    """
-    if isinstance(configuration, Study):
-        return configuration
-    if isinstance(configuration, Mapping):
-        return Study.from_mapping(configuration)
-    return Study.from_toml(configuration)
 
 
 def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
