@@ -14,11 +14,12 @@ from pellicle.components import Monitor, Solver
 from pellicle.errors import ConfigError
 from pellicle.numerics.grid_transfer import highest, prolong
 from pellicle.numerics.problem import Depth, Problem
-from pellicle_plugins.solvers.contact_cg import Inner, inner_solve
-from pellicle_plugins.solvers.initial_guess import first_guess, with_force
-from pellicle_plugins.solvers.preconditioner import OnContact, Preconditioner
-from pellicle_plugins.solvers.relaxation import relaxed
-from pellicle_plugins.solvers.scaling import ScaledSolver
+
+from .contact_cg import Inner, inner_solve
+from .initial_guess import first_guess, with_force
+from .preconditioner import OnContact, Preconditioner
+from .relaxation import relaxed
+from .scaling import ScaledSolver
 
 # Coarse grids are solved to this share of the height range: with tension a smaller error than that
 # of the grid itself still moves the edge of the contact by several cells.
