@@ -13,9 +13,11 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import Solver
 from pellicle.grid import Grid
 from pellicle.numerics.problem import Problem
-from pellicle_plugins.solvers.initial_guess import first_guess, with_force
-from pellicle_plugins.solvers.products import dot
-from pellicle_plugins.solvers.scaling import ScaledSolver
+from pellicle.numerics.solution import State
+
+from .initial_guess import first_guess, with_force
+from .products import dot
+from .scaling import ScaledSolver
 
 # Contact is added only where penetration is at least this share of the error inside.
 _PROPORTION = 0.3
@@ -61,10 +63,12 @@ class ConjugateGradient(ScaledSolver):
 
     type: Literal["conjugate_gradient"] = "conjugate_gradient"
 
-    def begin(self, problem: Problem, start: Array | None) -> _State:
+    def begin(self, problem: Problem, start: State | None) -> _State:
         """Return the state of a first guess: the last step's pressure, or one from the profile."""
-        pressure = first_guess(problem) if start is None or not start.any() else start.copy()
-        pressure = with_force(problem, pressure)
+        if start is not None and start.contact.any():
+            pressure = with_force(problem, start.pressure.copy())
+        else:
+            pressure = with_force(problem, first_guess(problem))
         state = _State(
             profile=np.maximum(problem.profile, _NO_INDENTER),
             pressure=pressure,
