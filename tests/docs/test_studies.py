@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from blocks import ROOT
+from tests.docs.blocks import ROOT
 from tests.pictures import pixels
 from typer.testing import CliRunner
 
