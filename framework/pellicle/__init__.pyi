@@ -10,9 +10,9 @@ from .components import Kernel as Kernel
 from .components import Output as Output
 from .components import Place as Place
 from .components import Solver as Solver
+from .config.json_schema import schema as schema
 from .config.run import Run as Run
 from .config.study import Study as Study
-from .config.study import schema as schema
 from .errors import ConfigError as ConfigError
 from .errors import ConvergenceError as ConvergenceError
 from .errors import ConvergenceWarning as ConvergenceWarning
