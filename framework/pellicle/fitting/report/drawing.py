@@ -11,7 +11,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.fitting.fit import Fit
-from pellicle.fitting.statistics.likelihood import MODULUS, TENSION
+from pellicle.fitting.models.force_model import MODULUS, TENSION
 from pellicle.report.plotting import axis_unit
 
 from .pictures import Drawn, save
@@ -89,7 +89,7 @@ def likelihood_map(fit: Fit, axes: Axes) -> None:
 
 def _rises(fit: Fit) -> tuple[Array, Array, Array]:
     """Return moduli, tensions and rises of χ², each of shape (m, n), row by row of one modulus."""
-    held = replace(fit.likelihood, free=tuple(k for k in fit.likelihood.free if k != MODULUS))
+    fixed = replace(fit.likelihood, free=tuple(p for p in fit.likelihood.free if p != MODULUS))
     moduli = _moduli(fit)
     tensions = np.empty((_ROWS, _STEPS))
     rise = np.empty_like(tensions)
@@ -98,15 +98,15 @@ def _rises(fit: Fit) -> tuple[Array, Array, Array]:
     for row in nearest:
         start = warm.copy()
         start[MODULUS] = np.log(moduli[row])
-        ridge = held.minimise(start).parameters
-        deviation = float(held.deviations(ridge)[TENSION])
+        ridge = fixed.minimise(start).parameters
+        deviation = fixed.deviations(ridge)[TENSION]
         half = _HALF * (deviation if np.isfinite(deviation) else ridge[TENSION])
         lowest = max(ridge[TENSION] - half, 0.0)
         tensions[row] = np.linspace(lowest, ridge[TENSION] + half, _STEPS)
         for column, tension in enumerate(tensions[row]):
             start = ridge.copy()
             start[TENSION] = tension
-            rise[row, column] = held.minimise(start, (TENSION,)).chi_squared - fit.chi_squared
+            rise[row, column] = fixed.minimise(start, (TENSION,)).chi_squared - fit.chi_squared
     return np.repeat(moduli[:, None], _STEPS, axis=1), tensions, rise
 
 

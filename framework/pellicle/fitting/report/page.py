@@ -9,8 +9,7 @@ import numpy as np
 from pellicle.fitting.fit import Fit
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.result import Answer
-from pellicle.fitting.statistics.estimate import Estimate
-from pellicle.fitting.statistics.interval import CONFIDENCE
+from pellicle.fitting.statistics.profile import CONFIDENCE, Estimate
 from pellicle.report.page import Column, Notice, Section, Table, Text
 from pellicle.report.plotting import axis_unit
 

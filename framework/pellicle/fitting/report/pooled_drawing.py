@@ -9,9 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.fitting.models.force_model import (
+    MODULUS,
+    OFFSET,
+    SLOPE,
+    Coordinates,
+    Parameter,
+)
 from pellicle.fitting.pooled import PooledFit
-from pellicle.fitting.statistics.likelihood import MODULUS, OFFSET, POINT, SLOPE, Likelihood
-from pellicle.fitting.statistics.pooled_likelihood import SHARED
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.report.plotting import axis_unit
 
 from .pictures import Drawn, save
@@ -53,7 +59,7 @@ def residuals(fit: PooledFit, axes: Axes) -> None:
     axes.set(xlabel="depth / its largest", ylabel="residual / noise")
 
 
-def profile(fit: PooledFit, which: int, axes: Axes) -> None:
+def profile(fit: PooledFit, which: Parameter, axes: Axes) -> None:
     """Draw the rise of the least χ² where modulus or tension is held."""
     estimate = fit.reduced_modulus if which == MODULUS else fit.tension
     values = _values(estimate.value, estimate.low, estimate.high, estimate.bound)
@@ -61,7 +67,7 @@ def profile(fit: PooledFit, which: int, axes: Axes) -> None:
     warm = fit.parameters
     for at in np.argsort(np.abs(values - estimate.value)):
         start = warm.copy()
-        start[which] = np.log(values[at]) if which == MODULUS else values[at]
+        start[which] = which.coordinate(values[at])
         rises[at] = fit.pool.minimise(start, (which,)).chi_squared - fit.chi_squared
     scale, unit = axis_unit(values, estimate.unit)
     axes.plot(values * scale, rises, "C0-")
@@ -95,7 +101,7 @@ def _left(fit: PooledFit, figure: FigureBase) -> None:
 
 
 def _right(fit: PooledFit, figure: FigureBase) -> None:
-    free = [which for which in SHARED if which in fit.pool.free]
+    free = [parameter for parameter in fit.pool.free if parameter.shared]
     for number, which in enumerate(free):
         profile(fit, which, figure.add_subplot(len(free), 1, number + 1))
 
@@ -111,12 +117,12 @@ def save_figure(fit: PooledFit, path: Path) -> Path:
     return save(pictures(fit), path)
 
 
-def _each(fit: PooledFit) -> list[tuple[Likelihood, Array]]:
+def _each(fit: PooledFit) -> list[tuple[Likelihood, Coordinates]]:
     return list(zip(fit.pool.members, fit.pool.parts(fit.parameters), strict=True))
 
 
-def _depth(member: Likelihood, part: Array) -> Array:
-    depth: Array = member.position - part[POINT]
+def _depth(member: Likelihood, part: Coordinates) -> Array:
+    depth = member.depth(part)
     depth /= depth[-1]
     return depth
 
