@@ -273,11 +273,6 @@ def checked_type(component: Any, family: str) -> str:
         raise PluginError(f'{name} needs a field: type: Literal["…"] = "…"')
     if info.default != names[0]:
         raise PluginError(f'{name}.type needs the default "{names[0]}"')
-    if replaced := sorted(m for m in component.replaced_methods if hasattr(component, m)):
-        methods = " and ".join(sorted({component.replaced_methods[method] for method in replaced}))
-        raise PluginError(
-            f"{name} has {', '.join(replaced)} of an earlier contract; {methods} replaces that"
-        )
     if missing := sorted(component.__abstractmethods__):
         raise PluginError(f"{name} lacks the method {', '.join(missing)}")
     if not (component.__doc__ or "").strip():

@@ -5,6 +5,10 @@ methods are pure. The same object is configuration, code, JSON schema and proven
 pickles to workers. A concrete component declares ``type: Literal["name"] = "name"``.
 """
 
+from typing import TYPE_CHECKING
+
+from pellicle.errors import PluginError
+
 from .base import Component as Component
 from .correction import AreaCorrection as AreaCorrection
 from .executor import AnyTask as AnyTask
@@ -34,3 +38,13 @@ FAMILIES: dict[str, type[Component]] = {
     family.family: family for family in (Kernel, Indenter, Solver, AreaCorrection, Output, Executor)
 }
 """The base class of each family, by name."""
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> object:
+        if name == "Place":
+            raise PluginError(
+                "Place belongs to the contract of outputs of an earlier version; write "
+                "write(runs, stem), where stem is the path that its files begin with"
+            )
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

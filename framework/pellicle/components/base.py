@@ -1,24 +1,36 @@
-"""What all components share."""
+"""The base class of all components."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
+from pellicle.errors import PluginError
 from pellicle.model.base import Model
 
 
 class Component(Model):
-    """What all families share."""
+    """A frozen model with a field ``type: Literal["…"]``, by which configurations name it."""
 
     family: ClassVar[str]
     libraries: ClassVar[tuple[str, ...]] = ()
-    """Distributions that it computes with, beside numpy and scipy; results say their versions."""
+    """Distributions that it computes with, beside numpy and scipy; results state their versions."""
     replaced_methods: ClassVar[Mapping[str, str]] = {}
-    """Methods of an earlier contract, and the method that replaces each; they are refused."""
+    """Methods of an earlier contract, and what replaces each; a class that has one is refused."""
 
     @property
     def type_name(self) -> str:
         """The component's type, such as ``half_space``."""
         # A base class with a field ``type: str`` would not let components narrow it to a literal.
         return str(getattr(self, "type", type(self).__name__))
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        """Refuse a class that was written for the contract of an earlier version."""
+        super().__pydantic_init_subclass__(**options)
+        for name, replacement in cls.replaced_methods.items():
+            if name in vars(cls):
+                raise PluginError(
+                    f"{cls.__name__}.{name}() belongs to the contract of an earlier version, and "
+                    f"nothing calls it any more; write {replacement}"
+                )

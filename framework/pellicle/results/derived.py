@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from pellicle.model.expression import evaluate
+from pellicle.model.paths import walk
 
 if TYPE_CHECKING:
     import xarray as xr
 
-FIELDS = ("pressure", "displacement", "gap", "contact")
-"""What a result has for each cell, besides the coordinates x and y."""
 CELLS = ["x", "y"]
 """Dimensions of a field."""
 REDUCTIONS: dict[str, Callable[[Any], Any]] = {
@@ -61,20 +60,12 @@ def derive(table: xr.Dataset, expressions: Mapping[str, str]) -> xr.Dataset:
     return table
 
 
-def constants(configuration: object, path: str = "") -> dict[str, float]:
-    """Return the numbers of a configuration by their dotted path; entries of lists count from 0."""
-    if isinstance(configuration, Mapping):
-        inner: Iterator[tuple[Any, Any]] = iter(configuration.items())
-    elif isinstance(configuration, list):
-        inner = enumerate(configuration)
-    elif isinstance(configuration, (int, float)) and not isinstance(configuration, bool):
-        return {path: float(configuration)}
-    else:
-        return {}
+def constants(configuration: object) -> dict[str, float]:
+    """Return the numbers of a configuration by their dotted path."""
     return {
-        name: number
-        for key, value in inner
-        for name, number in constants(value, f"{path}.{key}" if path else str(key)).items()
+        path: float(value)
+        for path, value, _ in walk(configuration)
+        if isinstance(value, (int, float)) and not isinstance(value, bool)
     }
 
 

@@ -14,7 +14,8 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.model.expression import evaluate, names_in
 
 from . import storage
-from .derived import CELLS, FIELDS, REDUCTIONS, as_array, names
+from .derived import CELLS, REDUCTIONS, as_array, names
+from .variables import FIELDS
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -16,7 +16,7 @@ from pellicle.checks import blamed, checked_threads, read_only_dataset
 from pellicle.components import Output
 from pellicle.components.calls import files_of
 from pellicle.components.output import Runs, stem_of
-from pellicle.config.run import Run, refuse_study
+from pellicle.config.run import Run
 from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
 from pellicle.plugins import registry
@@ -217,13 +217,10 @@ def all_done(calls: Iterable[Callable[[], Value]]) -> list[Value]:
 
 
 def _as_run(configuration: Run | Mapping[str, Any] | str | Path) -> tuple[Run, str]:
-    if isinstance(configuration, Run):
-        return configuration, _file_stem(configuration.title)
-    if isinstance(configuration, Mapping):
-        refuse_study(configuration)
-        run = Run(**configuration)
-        return run, _file_stem(run.title)
-    return Run.from_toml(configuration), Path(configuration).stem
+    run = Run.of(configuration)
+    if isinstance(configuration, (str, Path)):
+        return run, Path(configuration).stem
+    return run, _file_stem(run.title)
 
 
 def _file_stem(title: str) -> str:

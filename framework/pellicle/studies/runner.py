@@ -122,7 +122,7 @@ def run_study(
     from .lazy_fields import add_fields
 
     threads = checked_threads(threads)
-    study = as_study(configuration)
+    study = Study.of(configuration)
     if fields:
         if directory is None:
             raise ConfigError("fields are read from files: give a directory", "fields")
@@ -144,21 +144,6 @@ def run_study(
     return add_fields(rows, Path(directory) / "runs") if fields and directory else rows
 
 
-def as_study(configuration: Study | Mapping[str, Any] | str | Path) -> Study:
-    """Return the study that a configuration describes: a `Study`, a mapping, or a path.
-
-    Raises
-    ------
-    ConfigError, PluginError
-        It is not a study.
-    """
-    if isinstance(configuration, Study):
-        return configuration
-    if isinstance(configuration, Mapping):
-        return Study.from_mapping(configuration)
-    return Study.from_toml(configuration)
-
-
 def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
     """Return all runs of a study, finished or not."""
     outputs = tuple(o for o in study.points[0].run.outputs or () if o.scope == "run")
@@ -167,7 +152,7 @@ def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[Run
             point.name,
             point.run,
             Journal(directory / "runs" / identity[:16], identity, overwrite),
-            point.place,
+            point.position,
             outputs,
         )
         for point in study.points

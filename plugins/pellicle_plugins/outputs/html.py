@@ -44,7 +44,8 @@ from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.result import Result
 from pellicle.results.status import Status
-from pellicle.results.variables import OF_THE_CONTACT
+from pellicle.results.variables import FIELDS as RESULT_FIELDS
+from pellicle.results.variables import names_of
 from pellicle.studies.summary import coarse, each_run, failures, reasons, standing
 
 if TYPE_CHECKING:
@@ -56,8 +57,7 @@ FIELDS = {
     "gap": MapField("gap", "m", "Blues", power=0.5),
 }
 """The variables that are mapped."""
-_MEASURED = "pressure", "displacement", "gap", "contact"
-_EFFORT = ("iterations", "operator_applications", "wall_time")
+_EFFORT = names_of("effort", "residual")
 _CURVES = {
     "profile": "Pressure and gap of the last step along x through the centre.",
     "force_depth": "Force against depth over the load steps.",
@@ -160,13 +160,16 @@ class Html(Output):
             try:
                 # Only what is drawn is read, not all steps.
                 attributes, fields = storage.fields(
-                    folder / f"{row['run'].item()}.h5", _MEASURED, last
+                    folder / f"{row['run'].item()}.h5", RESULT_FIELDS, last
                 )
             except StorageError:
                 continue
             grid = Grid(**json.loads(attributes["configuration"])["grid"])
             step = xr.Dataset(
-                {name: (("x", "y"), field) for name, field in zip(_MEASURED, fields, strict=True)},
+                {
+                    name: (("x", "y"), field)
+                    for name, field in zip(RESULT_FIELDS, fields, strict=True)
+                },
                 attrs=attributes,
             ).assign(depth=row["depth"][last])
             drawn = without_round_off(step)
@@ -235,8 +238,8 @@ def _numbers(data: xr.Dataset) -> list[str]:
 
 def _steps(data: xr.Dataset) -> list[Table]:
     """Return the numbers of each load step: the result, the shape of the contact, the effort."""
-    effort = [n for n in _numbers(data) if n in _EFFORT or n.startswith("residual_")]
-    shape = [n for n in _numbers(data) if n in OF_THE_CONTACT]
+    effort = [n for n in _numbers(data) if n in _EFFORT]
+    shape = [n for n in _numbers(data) if n in names_of("contact")]
     tables = {
         "What was found in each load step.": [
             n for n in _numbers(data) if n not in (*effort, *shape)
@@ -279,7 +282,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
     ``mapped`` has the indices of the runs that are mapped, in the order of their maps.
     """
     axes = [str(name) for name in table.coords if name != "step"]
-    names = [n for n in _numbers(table) if n not in _EFFORT and not n.startswith("residual_")]
+    names = [n for n in _numbers(table) if n not in _EFFORT]
     varied = [_column(name, table[name]) for name in axes]
     numbers = [_column(name, table[name]) for name in names]
     rows: list[list[str | Cell]] = []

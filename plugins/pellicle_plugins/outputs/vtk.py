@@ -19,7 +19,7 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.files import atomic_write
-from pellicle.results.derived import FIELDS
+from pellicle.results.variables import FIELDS
 
 if TYPE_CHECKING:
     import xarray as xr
