@@ -140,7 +140,7 @@ def run_study(
     from .lazy_fields import add_fields
 
     threads = checked_threads(threads)
-    study = as_study(configuration)
+    study = Study.of(configuration)
     if fields:
         if directory is None:
             raise ConfigError("fields are read from files: give a directory", "fields")
@@ -162,21 +162,6 @@ def run_study(
     return add_fields(made, Path(directory) / "runs") if fields and directory else made
 
 
-def as_study(configuration: Study | Mapping[str, Any] | str | Path) -> Study:
-    """Return a study, whichever way it is given.
-
-    Raises
-    ------
-    ConfigError, PluginError
-        It cannot be made.
-    """
-    if isinstance(configuration, Study):
-        return configuration
-    if isinstance(configuration, Mapping):
-        return Study.from_mapping(configuration)
-    return Study.from_toml(configuration)
-
-
 def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
     """Return all runs of a study, done or not."""
     named = study.points[0].run.outputs or ()
@@ -185,7 +170,7 @@ def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[Run
         identity = point.run.identity
         configuration = point.run.to_json(as_given=True)
         place = Place(directory / "runs", identity[:16], configuration, identity, overwrite)
-        made.append(RunTask(point.name, point.run, place, point.place, _by_run(named)))
+        made.append(RunTask(point.name, point.run, place, point.position, _by_run(named)))
     return made
 
 
@@ -315,7 +300,7 @@ def is_table(path: Path) -> bool:
 
 def _by_run(named: Sequence[Output]) -> tuple[Output, ...]:
     """Return the outputs that each run calls itself: its file is there in any case."""
-    return tuple(o for o in named if not o.draws_studies and getattr(o, "type", "") != "hdf5")
+    return tuple(o for o in named if not o.draws_studies and o.type_name != "hdf5")
 
 
 def _collect(task: RunTask, rows: table.Table) -> int:
