@@ -11,7 +11,8 @@ from pydantic import Field
 
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
-from pellicle.report.plotting import axis_unit, save_figure
+from pellicle.report.plotting import save_figure
+from pellicle.units import axis_unit
 
 from .base import Log, TableFigure, set_scales, write_csv
 
