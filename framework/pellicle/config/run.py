@@ -48,11 +48,8 @@ class Run(FromFile):
     solver: Annotated[
         Solver,
         FromRegistry(),
-        Field(
-            description="how it is solved",
-            default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER}),
-        ),
-    ]
+        Field(description="how it is solved"),
+    ] = Field(default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER}))
     corrections: Annotated[
         tuple[Annotated[AreaCorrection, FromRegistry()], ...],
         Field(description="corrections of the contact area"),

@@ -100,19 +100,13 @@ class Study(FromFile):
     ] = ()
     derived: Annotated[
         dict[str, str],
-        Field(
-            description="further numbers of the table: name → arithmetic expression",
-            default_factory=dict,
-        ),
-    ]
+        Field(description="further numbers of the table: name → arithmetic expression"),
+    ] = Field(default_factory=dict)
     executor: Annotated[
         Executor,
         FromRegistry(),
-        Field(
-            description="what carries out the runs",
-            default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}),
-        ),
-    ]
+        Field(description="what carries out the runs"),
+    ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
     _points: tuple[Point, ...] = PrivateAttr()
 
     @model_validator(mode="after")

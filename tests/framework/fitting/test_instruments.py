@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import instruments
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.framework.fitting import instruments
 
 import pellicle as pl
 from pellicle.fitting.curves.columns import Calibration, Measured
