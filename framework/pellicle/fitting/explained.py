@@ -9,7 +9,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 
-from .posed import Posed
+from .problem import FitProblem
 from .statistics.checks import examine
 from .statistics.initial_guess import starts
 from .statistics.likelihood import Likelihood, best_minimum
@@ -21,7 +21,6 @@ from .statistics.shape_check import check_shape
 class Explained:
     """A curve on its own: its likelihood with its noise, and the best parameters."""
 
-    posed: Posed
     likelihood: Likelihood
     parameters: Array
     freedom: float
@@ -32,7 +31,7 @@ class Explained:
     """What to be careful of, besides the checks."""
 
 
-def explain(posed: Posed) -> Explained:
+def explain(problem: FitProblem) -> Explained:
     """Return the best parameters of a curve, its noise, and the checks that it fails.
 
     Raises
@@ -42,18 +41,27 @@ def explain(posed: Posed) -> Explained:
     ConvergenceError
         No search for the best parameters came to an end.
     """
-    curve, asked = posed.curve, posed.asked
+    curve = problem.curve
     largest = float(np.max(np.abs(curve.force)))
     rough = Likelihood(
-        curve.position, curve.force, asked.indenter, largest, asked.free, curve.stiffness
+        curve.position,
+        curve.force,
+        problem.indenter,  # type: ignore[arg-type]
+        largest,
+        problem.free,
+        curve.stiffness,
     )
-    minimum = best_minimum(rough, _starts(rough, asked.held))
+    guesses = starts(rough, problem.fixed)
+    if not guesses:
+        raise ConfigError(
+            "is nowhere pushed back as an indenter would be; check signs, indenter and fix", "force"
+        )
+    minimum = best_minimum(rough, guesses)
     examined = examine(rough, minimum.parameters)
     likelihood = replace(rough, noise=examined.noise)
     scaled = minimum.chi_squared * (largest / examined.noise) ** 2
     notes, failed = check_shape(likelihood, minimum._replace(chi_squared=scaled))
     return Explained(
-        posed,
         likelihood,
         minimum.parameters,
         examined.freedom,
@@ -61,12 +69,3 @@ def explain(posed: Posed) -> Explained:
         (*examined.failed, *failed),
         (*curve.messages, *examined.messages, *notes),
     )
-
-
-def _starts(likelihood: Likelihood, held: Array) -> list[Array]:
-    found = starts(likelihood, held)
-    if not found:
-        raise ConfigError(
-            "is nowhere pushed back as an indenter would be; check signs, indenter and fix", "force"
-        )
-    return found

@@ -8,7 +8,7 @@ import numpy as np
 
 from pellicle.fitting.fit import Fit
 from pellicle.fitting.pooled import PooledFit
-from pellicle.fitting.result import Answer
+from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.estimate import Estimate
 from pellicle.fitting.statistics.interval import CONFIDENCE
 from pellicle.report.page import Column, Notice, Section, Table, Text
@@ -44,7 +44,7 @@ def save_report(fit: Fit | PooledFit, path: Path, title: str) -> Path:
     return sheet.save(path, title, "Fit", sections, fit.to_dict())
 
 
-def _estimates(fit: Answer) -> Table:
+def _estimates(fit: FitResult) -> Table:
     heads = ["value", "low", "high", "unit", "bound"]
     columns = [
         Column("parameter", words=True),

@@ -12,7 +12,7 @@ import numpy as np
 
 from pellicle.config.describe import inputs
 from pellicle.files import atomic_write, storage_errors
-from pellicle.fitting.written import as_json
+from pellicle.fitting.result import as_json
 from pellicle.report.page import Cell, Code, Column, Notice, Picture, Section, Table, page
 from pellicle.report.plotting import axis_unit, svg
 
