@@ -171,8 +171,7 @@ class _Wanted(NamedTuple):
 
 def _leave(made: Fit | PooledFit, name: str, title: str, wanted: _Wanted) -> None:
     """Print a fit, and leave its files."""
-    from pellicle.fitting.pooled import PooledFit
-    from pellicle.fitting.report import drawing, pooled_drawing
+    from pellicle.fitting.report.figures import save_figure
     from pellicle.fitting.report.page import save_report
 
     if wanted.json:
@@ -183,11 +182,7 @@ def _leave(made: Fit | PooledFit, name: str, title: str, wanted: _Wanted) -> Non
     if wanted.directory is not None:
         stem = wanted.directory / name
         files.append(made.save(stem.with_name(f"{name}.json")))
-        picture = stem.with_name(f"{name}.png")
-        if isinstance(made, PooledFit):
-            files.append(pooled_drawing.save_figure(made, picture))
-        else:
-            files.append(drawing.save_figure(made, picture))
+        files.append(save_figure(made, stem.with_name(f"{name}.png")))
     if wanted.report:
         files.append(save_report(made, wanted.page(name), title))
     for path in files:
@@ -196,7 +191,7 @@ def _leave(made: Fit | PooledFit, name: str, title: str, wanted: _Wanted) -> Non
 
 def _leave_table(done: Fitted, wanted: _Wanted) -> None:
     """Print many fits, and leave their page."""
-    from pellicle.fitting.report.many_page import save_report
+    from pellicle.fitting.report.page import save_report
 
     count, files = len(done.rows), list(done.files)
     if wanted.json:

@@ -103,9 +103,8 @@ class Operator(ABC):
     Linear, symmetric and positive; ``applications`` counts its uses.
     """
 
-    fixes_mean: bool
-    """Whether a uniform pressure has a displacement; if not, the mean displacement is zero."""
     _symbol: _Symbol
+    _fixes_mean: bool
 
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
         self.kernel = kernel
@@ -114,6 +113,12 @@ class Operator(ABC):
         self._count = [0]
         # Powers of two, so that no digit changes.
         self._factor = 1.0
+        self._holder = 0.0
+
+    @property
+    def fixes_mean(self) -> bool:
+        """Whether a uniform pressure has a displacement; if not, the mean displacement is zero."""
+        return self._fixes_mean or self._holder > 0
 
     @property
     def applications(self) -> int:
@@ -130,6 +135,22 @@ class Operator(ABC):
         """The power of two next below `greatest` [m/Pa]; 1 if that is 0."""
         return self._symbol.unit * self._factor
 
+    def held(self, compliance: float) -> Self:
+        """Return the operator for an indenter that a spring holds; it shares all arrays.
+
+        The deflection of the spring, ``compliance`` [m/N] times the force, is added to the
+        displacement of every cell. It replaces that of an earlier spring.
+        """
+        if compliance == self._holder:
+            return self
+        held = copy.copy(self)
+        held._holder = compliance
+        return held
+
+    def deflection(self, total: float) -> float:
+        """Return that of the spring [m] under pressures whose sum is ``total`` [Pa]."""
+        return self._holder * self.grid.cell_area * total
+
     def scaled(self, factor: float) -> Self:
         """Return the operator times ``factor``, a power of two; it shares all arrays with this one.
 
@@ -138,6 +159,7 @@ class Operator(ABC):
         """
         scaled = copy.copy(self)
         scaled._factor = self._factor * factor
+        scaled._holder = self._holder * factor
         return scaled
 
     def coarsened(self) -> Operator:
@@ -149,10 +171,11 @@ class Operator(ABC):
             The kernel cannot work on the coarser grid.
         """
         # The kernel itself was checked for the finest grid.
-        return _operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
+        coarse = _operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
+        return coarse.held(self._holder)
 
     def compliance(self, q: Array) -> Array:
-        """Return G(q) [m/Pa] of the kernel, as `scaled` as the operator."""
+        """Return G(q) [m/Pa] of the kernel at q > 0, as `scaled` as the operator."""
         return np.asarray(self.kernel.compliance(q) * self._factor, dtype=np.float64)
 
     def parts(self) -> dict[str, object]:
@@ -168,6 +191,8 @@ class Operator(ABC):
         displacement = np.asarray(self._apply(pressure), dtype=pressure.dtype)
         if (unit := self.unit) != 1:
             displacement *= unit
+        if self._holder:
+            displacement += self.deflection(float(pressure.sum(dtype=np.float64)))
         return displacement
 
     @abstractmethod
@@ -206,7 +231,7 @@ class PeriodicOperator(Operator):
         q = np.hypot(qx, qy)
         mean = mean_compliance(kernel)
         # An incompressible layer has no mean displacement either.
-        self.fixes_mean = 0 < mean < math.inf
+        self._fixes_mean = 0 < mean < math.inf
         symbol = np.empty(q.shape)
         # The first wavenumber is 0.
         symbol.ravel()[0] = 0.0 if mean == math.inf else mean
@@ -233,7 +258,7 @@ class FreeOperator(Operator):
     Exact for a pressure that is uniform in each cell, at the cell centres (Liu, Wang & Liu 2000).
     """
 
-    fixes_mean = True
+    _fixes_mean = True
 
     def __init__(self, kernel: HasClosedForm, grid: Grid) -> None:
         super().__init__(kernel, grid)

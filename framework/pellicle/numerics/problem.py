@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import isfinite
-from typing import Literal, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,41 @@ _ROUNDING = 1e-13
 
 
 @dataclass(frozen=True)
+class Depth:
+    """Depth control: δ = value − compliance · F."""
+
+    value: float
+    """Depth [m] of the indenter, or of the base that holds it by a spring."""
+    compliance: float = 0.0
+    """Of the spring between base and indenter [m/N]; 0 without a spring."""
+
+    def scaled(self, height: float, pressure: float) -> Depth:
+        """Return it in units of ``height`` [m] and ``pressure`` [Pa]."""
+        return Depth(self.value / height, self.compliance * pressure / height)
+
+
+@dataclass(frozen=True)
+class Force:
+    """Force control."""
+
+    value: float
+    """Force on the domain [N]."""
+
+    def scaled(self, height: float, pressure: float) -> Force:
+        """Return it in units of ``pressure`` [Pa]."""
+        return Force(self.value / pressure)
+
+
+_CONTROLS: Final = {"depth": Depth, "force": Force}
+
+
+@dataclass(frozen=True, init=False)
 class Problem:
-    """Find p ≥ 0 with gap = u − δ − f ≥ 0 and p·gap = 0, for a given depth or force."""
+    """Find p ≥ 0 with gap = A p − z − f ≥ 0 and p·gap = 0, for a given depth z or force.
+
+    Under a `Depth` with a compliance z is the depth of the base. The `operator` A then includes
+    the deflection of the spring, so that no solver has to know of it.
+    """
 
     grid: Grid
     """The cells that pressure, displacement and profile live on."""
@@ -30,10 +63,39 @@ class Problem:
     """From pressure [Pa] to displacement [m]; counts its applications."""
     profile: Array
     """Indenter profile f ≤ 0 [m] of the grid's shape; −inf where there is no indenter."""
-    prescribed: Literal["depth", "force"]
-    """A mean pressure is the force that it makes on the domain."""
-    value: float
-    """Depth δ [m] or force [N]."""
+    control: Depth | Force
+    """What is given: a depth or a force. A mean pressure is the force that it makes."""
+
+    def __init__(
+        self,
+        grid: Grid,
+        operator: Operator,
+        profile: Array,
+        control: Depth | Force | Literal["depth", "force"],
+        value: float | None = None,
+        prescribed: Literal["depth", "force"] | None = None,
+    ) -> None:
+        # Packages written for version 1 name the control and its value apart.
+        kind = prescribed or control
+        if isinstance(kind, str):
+            assert value is not None
+            kind = _CONTROLS[kind](value)
+        elif value is not None:
+            kind = replace(kind, value=value)
+        compliance = kind.compliance if isinstance(kind, Depth) else 0.0
+        vars(self).update(
+            grid=grid, operator=operator.held(compliance), profile=profile, control=kind
+        )
+
+    @property
+    def prescribed(self) -> Literal["depth", "force"]:
+        """The kind of `control`; use that instead."""
+        return "depth" if isinstance(self.control, Depth) else "force"
+
+    @property
+    def value(self) -> float:
+        """The value of `control`; use that instead."""
+        return self.control.value
 
     @property
     def touches(self) -> bool:
@@ -43,9 +105,10 @@ class Problem:
         return isfinite(lowest) and self.value > (0 if self.prescribed == "force" else -lowest)
 
     def depth(self, aloft: Array) -> float:
-        """Return δ [m] from the values of u − f on the contact.
+        """Return z [m] given A p − f on the contact.
 
-        With a force prescribed it is that of no mean gap there (Polonsky & Keer 1999).
+        It is the prescribed depth or, under force control, that for which the mean gap in contact
+        vanishes (Polonsky & Keer 1999).
         """
         return self.value if self.prescribed == "depth" else float(aloft.mean())
 
@@ -54,7 +117,9 @@ class Problem:
         return bool(contact.all()) and not self.operator.fixes_mean
 
     def height_scale(self, contact: Mask, depth: float, total: float) -> float:
-        """Return the length [m] by which gaps are judged; ``total`` is the sum of pressures [Pa].
+        """Return the length [m] by which gaps are judged.
+
+        ``depth`` [m] is that of the base, ``total`` the sum of all pressures [Pa].
 
         The indenter's height range in contact, or the depth where it is flat there. Neither is more
         than rounding where a flat indenter fills a periodic domain whose mean stays: then it is the
@@ -63,7 +128,7 @@ class Problem:
         wave = 0.0
         if self.is_rigid(contact):
             wave = self.operator.greatest * total / contact.size
-        return height_scale(self.profile, contact, depth, wave)
+        return height_scale(self.profile, contact, depth - self.operator.deflection(total), wave)
 
     def coarsened(self) -> Problem:
         """Return the same problem with half as many cells each way.
@@ -88,7 +153,7 @@ class Problem:
             self,
             operator=self.operator.scaled(pressure / height),
             profile=self.profile / height,
-            value=self.value / (height if self.prescribed == "depth" else pressure),
+            control=self.control.scaled(height, pressure),
         )
 
 
@@ -125,12 +190,13 @@ def measure(problem: Problem, pressure: Array) -> Equilibrium:
     contact = pressure > 0
     total = float(pressure.sum())
     force = total * problem.grid.cell_area
-    displacement = problem.operator(pressure)
+    displacement = problem.operator.held(0.0)(pressure)
     aloft = displacement - problem.profile
     # Without pressure the lowest point just touches, wherever between the cells it is.
-    depth = problem.depth(aloft[contact] if total else np.zeros(1))
+    base = problem.depth(aloft[contact] if total else np.zeros(1))
+    depth = base - problem.operator.deflection(total)
     gap = aloft - depth
-    scale = problem.height_scale(contact, depth, total)
+    scale = problem.height_scale(contact, base, total)
     inside = np.abs(gap[contact])
     missed = abs(force - problem.value) if problem.prescribed == "force" else 0.0
     return Equilibrium(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Literal
 
 import numpy as np
 
@@ -16,8 +15,8 @@ from pellicle.config.run import Run
 from pellicle.errors import ConfigError
 from pellicle.numerics.grid_checks import warn_of_cells, warn_of_seam
 from pellicle.numerics.operators import Operator, make_operator
-from pellicle.numerics.problem import Problem
-from pellicle.results.variables import DESCRIPTIONS
+from pellicle.numerics.problem import Depth, Force, Problem
+from pellicle.results.variables import VARIABLES
 
 
 def problems_of(run: Run) -> list[Problem]:
@@ -35,25 +34,25 @@ def problems_of(run: Run) -> list[Problem]:
     if run.indenter.footprint == "domain":
         warn_of_seam(profile, run.grid)
 
-    def each(prescribed: Literal["depth", "force"], values: Iterable[float]) -> list[Problem]:
-        return [Problem(run.grid, operator, profile, prescribed, value) for value in values]
+    def each(kind: type[Depth] | type[Force], values: Iterable[float]) -> list[Problem]:
+        return [Problem(run.grid, operator, profile, kind(value)) for value in values]
 
     values = run.loading.values
     match run.loading.prescribed:
         case "depth":
             _check_depths(values, profile, operator, "depth")
-            return each("depth", values)
+            return each(Depth, values)
         case "mean_plane_depth":
             mean = _mean_plane(run, profile)
             _check_depths([value - mean for value in values], profile, operator, "mean_plane_depth")
-            return each("depth", [value - mean for value in values])
+            return each(Depth, [value - mean for value in values])
         case "force":
-            return each("force", values)
+            return each(Force, values)
         case "mean_pressure":
-            return each("force", [value * run.grid.area for value in values])
+            return each(Force, [value * run.grid.area for value in values])
     _check_areas(run, profile)
     # The force is searched for.
-    return each("force", [0.0] * len(values))
+    return each(Force, [0.0] * len(values))
 
 
 def _mean_plane(run: Run, profile: Array) -> float:
@@ -108,7 +107,7 @@ def _check_areas(run: Run, profile: Array) -> None:
     there = int(np.count_nonzero(np.isfinite(profile)))
     first = int(np.count_nonzero(profile == profile.max()))
     name = run.loading.prescribed
-    unit = DESCRIPTIONS[name][0]
+    unit = VARIABLES[name].unit
     for index, (given, area) in enumerate(
         zip(run.loading.values, prescribed_areas(run) or (), strict=True)
     ):

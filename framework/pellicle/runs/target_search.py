@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 from pellicle.arrays import Array
 from pellicle.components import Monitor, Solver
 from pellicle.components.calls import solution_of
-from pellicle.numerics.problem import Problem
+from pellicle.numerics.problem import Force, Problem
 from pellicle.numerics.solution import Solution
 
 # Of the logarithm of the force where the area jumps across the prescribed one.
@@ -47,7 +47,7 @@ def reach_area(
     The root of log A over log F is bracketed and found (Brent 1973). Each try starts from the
     pressure of the one before, the first from ``start`` if that is not None.
     """
-    search = _Search(replace(problem, prescribed="force"), area, solver, monitor, start)
+    search = _Search(replace(problem, control=Force(0.0)), area, solver, monitor, start)
     low = high = math.log(_first_force(problem, area, start))
     below = above = search(low)
     while below > 0 and len(search.tried) < _MOST_TRIES:
@@ -62,7 +62,7 @@ def reach_area(
         brentq(search, low, high, xtol=_WIDTH, rtol=1e-15)
     how: Literal["met", "nearest", "not found"] = "nearest" if below < 0 < above else "not found"
     return Reached(
-        replace(search.problem, value=search.force),
+        replace(search.problem, control=Force(search.force)),
         replace(search.solution, iterations=search.iterations),
         search.missed,
         "met" if 0.0 in search.tried.values() else how,
@@ -117,7 +117,7 @@ class _Search:
         return self.tried[log_force]
 
     def _try(self, force: float) -> float:
-        problem = replace(self.problem, value=force)
+        problem = replace(self.problem, control=Force(force))
         found = solution_of(self.solver, problem, self.pressure, self.monitor)
         self.pressure = found.pressure
         self.iterations += found.iterations

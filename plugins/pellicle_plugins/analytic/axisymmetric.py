@@ -13,14 +13,15 @@ from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, ConvergenceError
-from pellicle_plugins.analytic.axisymmetric_equation import (
+
+from .axisymmetric_equation import (
     LEVELS,
     Solution,
     solve,
     without_negligible,
 )
-from pellicle_plugins.analytic.axisymmetric_indenters import Indenter, classical_radius
-from pellicle_plugins.analytic.checks import exactly_one, not_negative, positive
+from .axisymmetric_indenters import Indenter, classical_radius
+from .checks import exactly_one, not_negative, positive
 
 TOLERANCE = 1e-10
 EDGE_TOLERANCE = 1e-6

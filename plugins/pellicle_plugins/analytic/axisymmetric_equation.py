@@ -18,10 +18,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle_plugins.analytic.axisymmetric_indenters import Indenter
-from pellicle_plugins.analytic.panels import Panel, Points, graded, joined, points_at
-from pellicle_plugins.analytic.product_integration import clustering, collocation, weights
-from pellicle_plugins.analytic.tension_kernel import auxiliary_g, primitive
+
+from .axisymmetric_indenters import Indenter
+from .panels import Panel, Points, graded, joined, points_at
+from .product_integration import clustering, collocation, weights
+from .tension_kernel import auxiliary_g, primitive
 
 LEVELS = ((12, 1e-3), (16, 3e-4), (22, 1e-4))
 """Gauss points to a panel, and size of the finest panel over that of the layer."""

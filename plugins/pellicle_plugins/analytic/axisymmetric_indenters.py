@@ -17,7 +17,8 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle_plugins.analytic.checks import positive
+
+from .checks import positive
 
 
 class Indenter(Protocol):

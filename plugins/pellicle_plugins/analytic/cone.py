@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle_plugins.analytic.checks import exactly_one, not_negative, positive
+
+from .checks import exactly_one, not_negative, positive
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
-from pellicle_plugins.analytic.checks import exactly_one, not_negative, positive
+
+from .checks import exactly_one, not_negative, positive
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pellicle_plugins.analytic.checks import not_negative, positive
+from .checks import not_negative, positive
 
 
 def pressure_amplitude(

@@ -14,7 +14,8 @@ from scipy.optimize import brentq
 from scipy.special import elliprd, elliprf
 
 from pellicle.arrays import Array
-from pellicle_plugins.analytic.checks import exactly_one, not_negative, positive
+
+from .checks import exactly_one, not_negative, positive
 
 
 @dataclass(frozen=True)

@@ -13,17 +13,17 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.optimize import newton
 
-from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.axisymmetric_equation import solve
-from pellicle_plugins.analytic.axisymmetric_indenters import (
+from .axisymmetric import indent
+from .axisymmetric_equation import solve
+from .axisymmetric_indenters import (
     Cone,
     Indenter,
     Paraboloid,
     Sphere,
     classical_radius,
 )
-from pellicle_plugins.analytic.master_curves import FILE, SCALE, one_variable
-from pellicle_plugins.analytic.tensed_punch import punch
+from .master_curves import FILE, SCALE, one_variable
+from .tensed_punch import punch
 
 _LENGTHS = SCALE * np.expm1(np.arange(0.0, 23.1, 0.15))
 """s over the contact radius."""

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 
 from pellicle.arrays import Array
-from pellicle_plugins.analytic.panels import Panel, Points, gauss, joined
+
+from .panels import Panel, Points, gauss, joined
 
 Kernel = Callable[[Array, Points, Points], Array]
 

@@ -12,8 +12,9 @@ import numpy as np
 from pellicle import Run
 from pellicle.errors import ConfigError
 from pellicle.results.derived import Runs, derive
-from pellicle_plugins.analytic.axisymmetric import AxisymmetricContact, indent
-from pellicle_plugins.analytic.axisymmetric_indenters import Cone, Indenter, Paraboloid, Sphere
+
+from .axisymmetric import AxisymmetricContact, indent
+from .axisymmetric_indenters import Cone, Indenter, Paraboloid, Sphere
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,12 +10,13 @@ import numpy as np
 
 from pellicle.components import Case
 from pellicle.results.result import Result
-from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.axisymmetric_indenters import Paraboloid
-from pellicle_plugins.analytic.cone import cone
-from pellicle_plugins.analytic.flat_punch import flat_punch
-from pellicle_plugins.analytic.full_contact import pressure_amplitude
-from pellicle_plugins.analytic.hertz import ellipse, sphere
+
+from .axisymmetric import indent
+from .axisymmetric_indenters import Paraboloid
+from .cone import cone
+from .flat_punch import flat_punch
+from .full_contact import pressure_amplitude
+from .hertz import ellipse, sphere
 
 _MODULUS = 10e3
 _RADIUS = 1e-3

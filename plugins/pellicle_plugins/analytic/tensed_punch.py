@@ -13,11 +13,12 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
-from pellicle_plugins.analytic.axisymmetric_equation import LEVELS, without_negligible
-from pellicle_plugins.analytic.checks import exactly_one, not_negative, positive
-from pellicle_plugins.analytic.panels import Points, gauss, graded, joined
-from pellicle_plugins.analytic.product_integration import clustering, collocation
-from pellicle_plugins.analytic.tension_kernel import auxiliary_g
+
+from .axisymmetric_equation import LEVELS, without_negligible
+from .checks import exactly_one, not_negative, positive
+from .panels import Points, gauss, graded, joined
+from .product_integration import clustering, collocation
+from .tension_kernel import auxiliary_g
 
 TOLERANCE = 1e-9
 RING_TOLERANCE = 1e-6

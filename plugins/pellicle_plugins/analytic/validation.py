@@ -10,7 +10,7 @@ from pellicle.components import Case, Suite
 
 def closed_forms() -> Iterator[Case]:
     """Yield the cases; their truths are computed only when somebody asks."""
-    from pellicle_plugins.analytic.suite import suite
+    from .suite import suite
 
     yield from suite()
 

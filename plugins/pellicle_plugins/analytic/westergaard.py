@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
-from pellicle_plugins.analytic.checks import exactly_one, not_negative, positive
-from pellicle_plugins.analytic.full_contact import pressure_amplitude
+
+from .checks import exactly_one, not_negative, positive
+from .full_contact import pressure_amplitude
 
 
 @dataclass(frozen=True)

@@ -50,7 +50,7 @@ class Dask(Executor):
         if not tasks:
             return
         try:
-            from pellicle_plugins.executors.dask_tasks import Submission, connected
+            from .dask_tasks import Submission, connected
         except ImportError as error:
             raise ConfigError(
                 f"'dask' needs {error.name}, which is not installed; pip install "

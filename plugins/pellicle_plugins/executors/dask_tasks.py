@@ -18,7 +18,8 @@ from distributed import Client, Future, KilledWorker, get_worker
 
 from pellicle import ConfigError, PellicleError, memory
 from pellicle.components import AnyTask, Report, Say
-from pellicle_plugins.executors.execution import attempt_far, pack
+
+from .execution import attempt_far, pack
 
 _LOOK_EVERY = 2.0
 """Time without news after which we look whether there are workers [s]."""
@@ -154,6 +155,7 @@ def _bootstrap() -> Callable[..., bytes]:
     """
 
     def begin(*arguments: Any) -> bytes:
+        from pellicle_plugins.executors.dask_tasks import carry_out
 
         return carry_out(*arguments)
 

@@ -9,8 +9,9 @@ from typing import Any, Generic, Self
 
 from pellicle import ConfigError, memory
 from pellicle.components import AnyTask, Report, Say
-from pellicle_plugins.executors.execution import pack
-from pellicle_plugins.executors.worker import Worker
+
+from .execution import pack
+from .worker import Worker
 
 _LIMITS = (
     "OMP_NUM_THREADS",

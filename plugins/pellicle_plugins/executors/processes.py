@@ -37,7 +37,7 @@ class Processes(Executor):
         """Yield each task as it finishes; see `Executor.map`."""
         import loky
 
-        from pellicle_plugins.executors.process_pool import Crew
+        from .process_pool import Crew
 
         most = self.workers or max(1, loky.cpu_count() // self.threads)
         with Crew(work, tasks, most, self.threads) as crew:

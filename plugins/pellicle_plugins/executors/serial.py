@@ -8,7 +8,8 @@ from typing import Literal
 
 from pellicle import hookimpl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
-from pellicle_plugins.executors.execution import attempt
+
+from .execution import attempt
 
 
 class Serial(Executor):

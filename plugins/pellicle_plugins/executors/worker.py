@@ -18,7 +18,8 @@ import cloudpickle
 import loky  # noqa: F401  (makes the start method "loky" known)
 
 from pellicle import PellicleError
-from pellicle_plugins.executors.execution import attempt_far
+
+from .execution import attempt_far
 
 _SAID, _OUTCOME = b"s", b"o"
 

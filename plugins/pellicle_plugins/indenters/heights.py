@@ -18,8 +18,9 @@ from pellicle.files import read_text
 from pellicle.grid import shape_of_run
 from pellicle.model.input_path import InputPath
 from pellicle.units import Length
-from pellicle_plugins.indenters.from_heights import Measured
-from pellicle_plugins.indenters.topography_reader import require_content, require_memory
+
+from .from_heights import Measured
+from .topography_reader import require_content, require_memory
 
 # Peak while an array is read and checked, in bytes for each value beside its own.
 _BYTES = 10

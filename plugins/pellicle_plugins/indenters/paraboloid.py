@@ -12,7 +12,8 @@ from pellicle.arrays import Array
 from pellicle.components import ForceCurve, Indenter
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
-from pellicle_plugins.indenters.sphere import Sphere
+
+from .sphere import Sphere
 
 
 class Paraboloid(Indenter):

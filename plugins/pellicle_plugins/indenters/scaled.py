@@ -12,7 +12,8 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Indenter
 from pellicle.units import Quantity
-from pellicle_plugins.indenters.transformed import Altered, profile_of
+
+from .transformed import Altered, profile_of
 
 
 class Scaled(Altered):

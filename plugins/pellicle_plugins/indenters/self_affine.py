@@ -16,7 +16,8 @@ from pellicle.arrays import Array
 from pellicle.components import Footprint, Indenter
 from pellicle.errors import ConfigError
 from pellicle.units import Length, Quantity
-from pellicle_plugins.indenters.sampling import Axis
+
+from .sampling import Axis
 
 # Wavelengths that fit the domain exactly must not be lost to rounding.
 _ROUNDING = 1e-9

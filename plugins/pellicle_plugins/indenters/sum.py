@@ -14,7 +14,8 @@ from pellicle.arrays import Array
 from pellicle.components import Footprint, Indenter
 from pellicle.config.component_field import FromRegistry
 from pellicle.errors import ConfigError
-from pellicle_plugins.indenters.transformed import profile_of
+
+from .transformed import profile_of
 
 
 class Sum(Indenter):

@@ -19,9 +19,10 @@ from pellicle.errors import ConfigError
 from pellicle.grid import pair
 from pellicle.model.input_path import InputPath
 from pellicle.units import Length, Quantity
-from pellicle_plugins.indenters.from_heights import Measured
-from pellicle_plugins.indenters.sampling import Axis
-from pellicle_plugins.indenters.topography_reader import Scan, library, read_scan, require_memory
+
+from .from_heights import Measured
+from .sampling import Axis
+from .topography_reader import Scan, library, read_scan, require_memory
 
 _Position = Annotated[float, Quantity("m", at_least=0)]
 _Level = Literal["none", "mean", "tilt", "curvature"]

@@ -11,8 +11,9 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Kernel
 from pellicle.units import BendingStiffness
-from pellicle_plugins.kernels.reduced_modulus import ElasticSolid
-from pellicle_plugins.kernels.skin import Skin
+
+from .reduced_modulus import ElasticSolid
+from .skin import Skin
 
 
 class BendingSkin(Skin, ElasticSolid):

@@ -11,7 +11,8 @@ import numpy as np
 from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle_plugins.kernels.elastic_layer import ElasticLayer
+
+from .elastic_layer import ElasticLayer
 
 # sinh y − y = y³/6 Σ c_k y^2k, to the last digit below the split.
 _SPLIT: Final = 2.0

@@ -12,7 +12,8 @@ from pellicle.arrays import Array
 from pellicle.components import Kernel
 from pellicle.config.component_field import FromRegistry
 from pellicle.numerics.operators import mean_compliance
-from pellicle_plugins.kernels.skin import Skin
+
+from .skin import Skin
 
 
 class Coated(Skin):

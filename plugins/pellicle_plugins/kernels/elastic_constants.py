@@ -7,7 +7,8 @@ from typing import Annotated, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from pellicle.units import PoissonsRatio
-from pellicle_plugins.kernels.reduced_modulus import ElasticSolid
+
+from .reduced_modulus import ElasticSolid
 
 
 class IsotropicSolid(ElasticSolid):

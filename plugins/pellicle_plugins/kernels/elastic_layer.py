@@ -9,7 +9,8 @@ from pydantic import Field
 
 from pellicle.arrays import Array
 from pellicle.units import Length
-from pellicle_plugins.kernels.elastic_constants import IsotropicSolid
+
+from .elastic_constants import IsotropicSolid
 
 # Where exp(−2qh) is beyond the digits of a double, and a layer is a half-space.
 _DEEP = 100.0

@@ -10,7 +10,8 @@ import numpy as np
 from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle_plugins.kernels.elastic_layer import ElasticLayer
+
+from .elastic_layer import ElasticLayer
 
 
 class FrictionlessLayer(ElasticLayer):

@@ -11,8 +11,9 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Kernel
 from pellicle.units import Tension
-from pellicle_plugins.kernels.elastic_constants import IsotropicSolid
-from pellicle_plugins.kernels.skin import Skin
+
+from .elastic_constants import IsotropicSolid
+from .skin import Skin
 
 
 class GurtinMurdoch(Skin, IsotropicSolid):

@@ -10,7 +10,8 @@ import numpy as np
 from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Kernel
-from pellicle_plugins.kernels.reduced_modulus import ElasticSolid
+
+from .reduced_modulus import ElasticSolid
 
 
 class HalfSpace(ElasticSolid):

@@ -12,8 +12,9 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Kernel
 from pellicle.units import Tension
-from pellicle_plugins.kernels.reduced_modulus import ElasticSolid
-from pellicle_plugins.kernels.struve import struve_minus_bessel, struve_minus_bessel_primitive
+
+from .reduced_modulus import ElasticSolid
+from .struve import struve_minus_bessel, struve_minus_bessel_primitive
 
 
 class TensedMembrane(ElasticSolid):

@@ -15,7 +15,8 @@ from pellicle.components import Output
 from pellicle.errors import StorageError
 from pellicle.model.expression import evaluate
 from pellicle.results.derived import Runs, names
-from pellicle_plugins.outputs.base import Graph, set_scales
+
+from .base import Graph, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr

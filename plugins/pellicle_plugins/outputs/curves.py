@@ -19,7 +19,8 @@ from pellicle.model.base import Model
 from pellicle.model.expression import names_in
 from pellicle.results.derived import Runs
 from pellicle_plugins.analytic.reference import exact
-from pellicle_plugins.outputs.base import (
+
+from .base import (
     Graph,
     Log,
     Reference,

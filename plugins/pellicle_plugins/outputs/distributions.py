@@ -14,7 +14,8 @@ from pellicle.analysis import Distribution, distribution
 from pellicle.components import Output
 from pellicle.report.plotting import axis_unit, save_figure
 from pellicle.results.derived import Runs
-from pellicle_plugins.outputs.base import Drawing, Log, set_scales, write_csv
+
+from .base import Drawing, Log, set_scales, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,7 +10,8 @@ from pellicle import hookimpl
 from pellicle.components import Output, Place
 from pellicle.report.plotting import FIGURES, STUDY_FIGURES, save_figures, save_study_figures
 from pellicle.results.result import Result
-from pellicle_plugins.outputs.base import Formats
+
+from .base import Formats
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,7 +14,8 @@ from pellicle import hookimpl
 from pellicle.components import Output
 from pellicle.report.plotting import axis_unit, extent, save_figure
 from pellicle.results.derived import Runs, as_array
-from pellicle_plugins.outputs.base import Drawing, scaled
+
+from .base import Drawing, scaled
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,7 +11,8 @@ from pellicle import hookimpl
 from pellicle.components import Output
 from pellicle.results.derived import Runs, as_array
 from pellicle_plugins.analytic.reference import exact_line
-from pellicle_plugins.outputs.base import Graph, Reference, scaled, set_scales
+
+from .base import Graph, Reference, scaled, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr

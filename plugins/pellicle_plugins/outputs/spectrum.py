@@ -14,7 +14,8 @@ from pellicle.components import Output
 from pellicle.report.plotting import save_figure
 from pellicle.results.derived import Runs
 from pellicle.results.result import Result
-from pellicle_plugins.outputs.base import Drawing, write_csv
+
+from .base import Drawing, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -13,12 +13,13 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor, Solver
 from pellicle.errors import ConfigError
 from pellicle.numerics.grid_transfer import highest, prolong
-from pellicle.numerics.problem import Problem
-from pellicle_plugins.solvers.contact_cg import Inner, inner_solve
-from pellicle_plugins.solvers.initial_guess import first_guess, with_force
-from pellicle_plugins.solvers.preconditioner import OnContact, Preconditioner
-from pellicle_plugins.solvers.relaxation import relaxed
-from pellicle_plugins.solvers.scaling import ScaledSolver
+from pellicle.numerics.problem import Depth, Problem
+
+from .contact_cg import Inner, inner_solve
+from .initial_guess import first_guess, with_force
+from .preconditioner import OnContact, Preconditioner
+from .relaxation import relaxed
+from .scaling import ScaledSolver
 
 # Coarse grids are solved to this share of the height range: with tension a smaller error than that
 # of the grid itself still moves the edge of the contact by several cells.
@@ -193,7 +194,7 @@ class ActiveSet(ScaledSolver):
         profile = np.where(contact, 0.0, -np.inf)
         unit = 1 / problem.operator.unit
         operator = problem.operator.scaled(unit)
-        flat = replace(problem, operator=operator, profile=profile, prescribed="depth", value=1.0)
+        flat = replace(problem, operator=operator, profile=profile, control=Depth(1.0))
         preconditioner = Preconditioner(operator).on(contact)
         goal = self.tolerance / 2
         pressure, displacement = np.zeros(problem.grid.shape), np.zeros(problem.grid.shape)

@@ -13,9 +13,10 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import Solver
 from pellicle.grid import Grid
 from pellicle.numerics.problem import Problem
-from pellicle_plugins.solvers.initial_guess import first_guess, with_force
-from pellicle_plugins.solvers.products import dot
-from pellicle_plugins.solvers.scaling import ScaledSolver
+
+from .initial_guess import first_guess, with_force
+from .products import dot
+from .scaling import ScaledSolver
 
 # Contact is added only where penetration is at least this share of the error inside.
 _PROPORTION = 0.3

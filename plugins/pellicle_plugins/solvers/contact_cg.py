@@ -8,8 +8,9 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.numerics.problem import Problem
-from pellicle_plugins.solvers.preconditioner import Cells, OnContact
-from pellicle_plugins.solvers.products import dot
+
+from .preconditioner import Cells, OnContact
+from .products import dot
 
 # A solve ends when no more cells are in doubt, for each that is certain to be wrong.
 _DOUBTS: Final = 0.3

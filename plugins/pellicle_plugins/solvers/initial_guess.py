@@ -6,7 +6,8 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.numerics.problem import Problem
-from pellicle_plugins.solvers.products import dot
+
+from .products import dot
 
 
 def first_guess(problem: Problem) -> Array:

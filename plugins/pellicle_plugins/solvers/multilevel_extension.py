@@ -9,7 +9,8 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Mask
-from pellicle_plugins.solvers.circulant_stiffness import Field
+
+from .circulant_stiffness import Field
 
 Moments = tuple[Field, ...]
 

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Grid
 from pellicle.numerics.operators import Operator
-from pellicle_plugins.solvers.circulant_stiffness import Field, Stiffness
-from pellicle_plugins.solvers.multilevel_extension import Extension, bends, stretch_of
+
+from .circulant_stiffness import Field, Stiffness
+from .multilevel_extension import Extension, bends, stretch_of
 
 Cells = NDArray[np.int64]
 

@@ -8,9 +8,10 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.numerics.problem import Problem
-from pellicle_plugins.solvers.circulant_stiffness import Stiffness
-from pellicle_plugins.solvers.contact_cg import Inner
-from pellicle_plugins.solvers.preconditioner import OnContact
+
+from .circulant_stiffness import Stiffness
+from .contact_cg import Inner
+from .preconditioner import OnContact
 
 # Waves of up to about twenty cells settle; the longer ones are for the inner solves.
 _STEPS: Final = 160

@@ -1,60 +1,30 @@
-"""The web page of a fit: what was found, how sure it is, the figure, and what it was told."""
+"""The web page of a fit: estimates, warnings, figures, inputs, and everything as JSON."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from pellicle.config.describe import inputs
+from pellicle.files import atomic_write, storage_errors
 from pellicle.fitting.fit import Fit
 from pellicle.fitting.pooled import PooledFit
-from pellicle.fitting.result import FitResult
-from pellicle.fitting.statistics.estimate import Estimate
 from pellicle.fitting.statistics.interval import CONFIDENCE
-from pellicle.report.page import Column, Notice, Section, Table, Text
-from pellicle.report.plotting import axis_unit
+from pellicle.fitting.many import FITTED
+from pellicle.fitting.result import as_json
+from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
+from pellicle.report.page import page as render
+from pellicle.report.plotting import axis_unit, svg
 
-from . import drawing, pooled_drawing, sheet
+from .figures import SIZE, Rows, panels
 
-
-def save_report(fit: Fit | PooledFit, path: Path, title: str) -> Path:
-    """Write the page of a fit, one file that loads nothing, and return its name.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be written.
-    """
-    if isinstance(fit, PooledFit):
-        messages = [f"{curve.name}: {said}" for curve in fit.curves for said in curve.messages]
-        agreement = Notice(sheet.sentence(fit.agreement), good=fit.agree)
-        said = [agreement, *sheet.careful([*fit.messages, *messages])]
-        found, drawn = [_estimates(fit), _curves(fit)], pooled_drawing.pictures(fit)
-        told = [sheet.model([curve.model for curve in fit.curves])]
-    else:
-        said, found, drawn = sheet.careful(fit.messages), [_estimates(fit)], drawing.pictures(fit)
-        told = [sheet.model([fit.model()]), _facts(fit)]
-    comparison = Notice(sheet.sentence(fit.comparison), good=not fit.doubt)
-    sections = [
-        Section("Result", [comparison, *said, *found]),
-        Section("Figures", sheet.pictures(drawn)),
-        Section("What would tell more", [Text(sheet.sentence(fit.advice))] if fit.advice else []),
-        Section("Inputs", told),
-    ]
-    return sheet.save(path, title, "Fit", sections, fit.to_dict())
-
-
-def _estimates(fit: FitResult) -> Table:
-    heads = ["value", "low", "high", "unit", "bound"]
-    columns = [
-        Column("parameter", words=True),
-        *(Column(head, meaning=_MEANINGS.get(head, ""), words=head == "unit") for head in heads),
-    ]
-    rows = [[name.replace("_", " "), *_row(each)] for name, each in fit.estimates().items()]
-    caption = f"What was found, with {100 * CONFIDENCE:.0f} % intervals of the profile likelihood."
-    return Table(caption, columns, rows)
-
-
+_LISTED = 8
+"""Values of an input that are listed side by side."""
 _MEANINGS = {
     "low": "lower end of the interval",
     "high": "upper end of the interval",
@@ -62,17 +32,95 @@ _MEANINGS = {
 }
 
 
-def _row(estimate: Estimate) -> list[str]:
-    factor, unit = axis_unit(np.array([estimate.value]), estimate.unit)
-    value = f"{estimate.value * factor:.4g}"
-    if estimate.held:
-        return [value, "held", "held", unit, ""]
-    ends = ("open" if e is None else f"{e * factor:.4g}" for e in (estimate.low, estimate.high))
-    bound = f"{estimate.bound * factor:.2g}" if np.isfinite(estimate.bound) else "none"
-    return [value, *ends, unit, bound]
+def save_report(fit: Fit | PooledFit | Rows, path: Path, title: str) -> Path:
+    """Write the page of a fit, a pooled fit or a table of many fits, and return its path.
+
+    The page is one file that loads nothing.
+
+    Raises
+    ------
+    StorageError
+        The file cannot be written.
+    """
+    advice: list[Block] = []
+    content: dict[str, Any] = {"curves": fit}
+    if isinstance(fit, (Fit, PooledFit)):
+        kind, content, (results, given) = "Fit", fit.to_dict(), _fit(fit)
+        advice = [Text(_sentence(fit.advice))] if fit.advice else []
+    else:
+        kind, (results, given) = "Fits", _many(fit)
+    figures = [Picture(svg(p.draw, SIZE), p.caption, p.caption) for p in panels(fit)]
+    sections = [
+        Section("Result", results),
+        Section("Figures", figures),
+        Section("What would tell more", advice),
+        Section("Inputs", given),
+        Section("As JSON", [Code(as_json(content), "All numbers, SI.", f"{path.stem}.json")]),
+    ]
+    now = datetime.now(UTC).isoformat(" ", timespec="seconds").replace("+00:00", " UTC")
+    text = render(title, sections, f"{kind} of pellicle {version('pellicle')}, {now}")
+    with storage_errors(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with atomic_write(path) as part:
+            part.write_text(text, encoding="utf-8")
+    return path
 
 
-def _facts(fit: Fit) -> Table:
+def _fit(fit: Fit | PooledFit) -> tuple[list[Block], list[Block]]:
+    """Return results and inputs of a fit or a pooled fit."""
+    results: list[Block] = [Notice(_sentence(fit.comparison), good=not fit.doubt)]
+    if isinstance(fit, PooledFit):
+        own = [f"{curve.name}: {message}" for curve in fit.curves for message in curve.messages]
+        results.append(Notice(_sentence(fit.agreement), good=fit.agree))
+        results += [*_warnings([*fit.messages, *own]), _estimates(fit), _curves(fit)]
+        return results, [_inputs([curve.model for curve in fit.curves])]
+    results += [*_warnings(fit.messages), _estimates(fit)]
+    return results, [_inputs([fit.model()]), _data(fit)]
+
+
+def _many(rows: Rows) -> tuple[list[Block], list[Block]]:
+    """Return results and inputs of a table of many fits."""
+    failed = [f"{row['curve']}: {row['status']}" for row in rows if row["status"] != FITTED]
+    summary = f"{len(rows) - len(failed)} of {len(rows)} curves were fitted."
+    messages = [f"{row['curve']}: {text}" for row in rows for text in row.get("messages", ())]
+    models = [row["model"] for row in rows if "model" in row]
+    columns: dict[Column, Sequence[str | Cell]] = {}
+    columns[Column("curve", words=True)] = [row["curve"] for row in rows]
+    for name, unit in (("reduced_modulus", "Pa"), ("tension", "N/m"), ("contact_point", "m")):
+        if any(name in row for row in rows):
+            columns |= _intervals(name.replace("_", " "), [row.get(name) for row in rows], unit)
+    verdicts = [row["status"].partition(":")[0] for row in rows]
+    columns[Column("status", words=True)] = [Cell(v, bad=v != FITTED) for v in verdicts]
+    table = _table("Each curve on its own, with its 95 % intervals.", columns)
+    notice = Notice(summary, not failed, failed)
+    return [notice, table, *_warnings(messages)], [_inputs(models)] if models else []
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def _warnings(messages: Sequence[str]) -> list[Notice]:
+    return [Notice("To be careful of:", good=False, details=messages)] if messages else []
+
+
+def _estimates(fit: Fit | PooledFit) -> Table:
+    rows = []
+    for name, estimate in fit.estimates().items():
+        factor, unit = axis_unit(np.array([estimate.value]), estimate.unit)
+        ends = [_end(end, factor, estimate.held) for end in (estimate.low, estimate.high)]
+        bound = f"{estimate.bound * factor:.2g}" if np.isfinite(estimate.bound) else "none"
+        bound = "" if estimate.held else bound
+        rows.append([name.replace("_", " "), f"{estimate.value * factor:.4g}", *ends, unit, bound])
+    columns = [
+        Column(head, meaning=_MEANINGS.get(head, ""), words=head in ("parameter", "unit"))
+        for head in ("parameter", "value", "low", "high", "unit", "bound")
+    ]
+    caption = f"What was found, with {100 * CONFIDENCE:.0f} % intervals of the profile likelihood."
+    return Table(caption, columns, rows)
+
+
+def _data(fit: Fit) -> Table:
     factor, unit = axis_unit(np.array([fit.noise]), "N")
     rows = [
         ["points", str(fit.points)],
@@ -84,17 +132,73 @@ def _facts(fit: Fit) -> Table:
 
 
 def _curves(fit: PooledFit) -> Table:
-    each = fit.curves
-    points = [curve.contact_point.to_dict() for curve in each]
-    ends = sheet.estimates("contact point", points, "m")
-    columns = [
-        sheet.words("curve", [curve.name for curve in each]),
-        *(ends if fit.contact_points else ends[:1]),
-        sheet.numbers("noise", [curve.noise for curve in each], "N"),
-        sheet.Filled(Column("points"), [str(curve.points) for curve in each]),
-        sheet.Filled(Column("χ²"), [f"{curve.chi_squared:.5g}" for curve in each]),
-        sheet.Filled(Column("χ² alone"), [f"{curve.chi_squared_alone:.5g}" for curve in each]),
-        sheet.numbers("modulus alone", [curve.reduced_modulus_alone for curve in each], "Pa"),
-        sheet.numbers("tension alone", [curve.tension_alone for curve in each], "N/m"),
+    curves = fit.curves
+    if fit.contact_points:
+        points = _intervals("contact point", [c.contact_point.to_dict() for c in curves], "m")
+    else:
+        points = _numbers("contact point", [c.contact_point.value for c in curves], "m")
+    columns = {
+        Column("curve", words=True): [c.name for c in curves],
+        **points,
+        **_numbers("noise", [c.noise for c in curves], "N"),
+        Column("points"): [str(c.points) for c in curves],
+        Column("χ²"): [f"{c.chi_squared:.5g}" for c in curves],
+        Column("χ² alone"): [f"{c.chi_squared_alone:.5g}" for c in curves],
+        **_numbers("modulus alone", [c.reduced_modulus_alone for c in curves], "Pa"),
+        **_numbers("tension alone", [c.tension_alone for c in curves], "N/m"),
+    }
+    return _table("Each curve in the pool, and what it says alone.", columns)
+
+
+def _inputs(models: Sequence[Mapping[str, Any]]) -> Table:
+    """Return the fields of indenter and kernel, of one curve or of many."""
+    configurations = [
+        {field.name: field for field in inputs({k: v for k, v in model.items() if k != "accuracy"})}
+        for model in models
     ]
-    return sheet.table("Each curve in the pool, and what it says alone.", columns)
+    rows = []
+    for name, field in {k: v for fields in configurations for k, v in fields.items()}.items():
+        values = [fields[name].value if name in fields else "none" for fields in configurations]
+        distinct = len(set(values))
+        if distinct == 1:
+            text = values[0]
+        elif len(values) <= _LISTED:
+            text = ", ".join(values)
+        else:
+            text = f"{values[0]} … {values[-1]} ({distinct} values)"
+        rows.append([name, text, field.meaning])
+    columns = [Column(head, words=True) for head in ("field", "value", "meaning")]
+    return Table("What was pressed in, and what was known of the solid.", columns, rows)
+
+
+def _table(caption: str, columns: Mapping[Column, Sequence[str | Cell]]) -> Table:
+    return Table(caption, list(columns), list(zip(*columns.values(), strict=True)))
+
+
+def _numbers(name: str, values: Sequence[float], unit: str) -> dict[Column, list[str]]:
+    """Return a column of numbers, in a unit that brings them near 1 … 1000."""
+    factor, prefixed = axis_unit(np.array(values), unit)
+    return {Column(name, prefixed): [f"{value * factor:.4g}" for value in values]}
+
+
+def _intervals(
+    name: str, estimates: Sequence[Mapping[str, Any] | None], unit: str
+) -> dict[Column, list[str]]:
+    """Return the columns value, low and high of a parameter of many curves.
+
+    An estimate is the dictionary of `Estimate.to_dict`, or None for a curve that was not fitted.
+    """
+    factor, prefixed = axis_unit(np.array([e["value"] for e in estimates if e]), unit)
+    heads = {"value": name, "low": f"{name}, low", "high": f"{name}, high"}
+    return {
+        Column(head, prefixed, _MEANINGS.get(key, "")): [
+            _end(e[key], factor, e["held"] and key != "value") if e else "" for e in estimates
+        ]
+        for key, head in heads.items()
+    }
+
+
+def _end(value: float | None, factor: float, fixed: bool) -> str:
+    if fixed:
+        return "held"
+    return "open" if value is None else f"{value * factor:.4g}"

@@ -1,0 +1,305 @@
+"""Figures of fits as panels beside each other: of one curve, of a pooled fit, of many curves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.fitting.fit import Fit
+from pellicle.fitting.pooled import PooledFit
+from pellicle.fitting.statistics.estimate import Estimate
+from pellicle.fitting.statistics.likelihood import (
+    MODULUS,
+    OFFSET,
+    POINT,
+    SLOPE,
+    TENSION,
+    Likelihood,
+)
+from pellicle.fitting.statistics.pooled_likelihood import SHARED
+from pellicle.report.plotting import axis_unit
+from pellicle.report.plotting import save_figure as save_drawing
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import FigureBase
+
+Rows = Sequence[dict[str, Any]]
+"""The table of many fits: one dictionary for each curve."""
+
+SIZE = (5.2, 4.6)
+"""Width and height of a panel [inch]."""
+_JOINT = (2.30, 5.99)
+"""Δχ² that bounds 68 % and 95 % confidence regions of two parameters."""
+_MODULI, _TENSIONS = 31, 21
+"""Points of the likelihood map along the modulus, and along the tension at each modulus."""
+_MAP_HALF_WIDTH = 4.5
+"""Tensions drawn to either side of the ridge, in standard deviations at fixed modulus."""
+_OPEN_FACTOR = 10.0
+"""Moduli drawn beyond the best value where the interval is open, as a factor."""
+_PROFILE_MARGIN = 0.4
+"""Values drawn beyond an interval, as a fraction of its width."""
+_OPEN_DEVIATIONS = 3.0
+"""Values drawn towards an open end, in standard deviations."""
+_LEGEND_CURVES, _TICK_CURVES = 8, 20
+"""Curves whose names have room in the legend of a pool, and below the axis of many fits."""
+_OPEN_TOP = 1.1
+"""Position of an open upper end, as a multiple of the largest value drawn."""
+
+
+class Panel(NamedTuple):
+    """A part of a figure and its caption."""
+
+    draw: Callable[[FigureBase], None]
+    caption: str
+
+
+def panels(fit: Fit | PooledFit | Rows) -> list[Panel]:
+    """Return the panels of a fit, of a pooled fit, or of the table of many fits.
+
+    The likelihood map needs a fitted modulus and tension, a table at least one fitted curve.
+    """
+    if isinstance(fit, Fit):
+        caption = "Data, fit, and the fit without tension; below, what each leaves."
+        drawn = [Panel(partial(_with_residuals, fit), caption)]
+        if not (fit.reduced_modulus.held or fit.tension.held):
+            caption = "The pairs of modulus and tension that explain the curve."
+            drawn.append(Panel(lambda part: likelihood_map(fit, part.add_subplot()), caption))
+        return drawn
+    if isinstance(fit, PooledFit):
+        data = "Data and fit of each curve, depth and force over its largest; below, what is left."
+        profiles = (
+            "The rise of the least χ² where a parameter is held; dotted, the ends of its interval"
+        )
+        return [
+            Panel(partial(_with_residuals, fit), data),
+            Panel(partial(_profiles, fit), f"{profiles}."),
+        ]
+    if not any(name in row for name in ("reduced_modulus", "tension") for row in fit):
+        return []
+    caption = "A bar is the interval: down to 0, or up to a triangle, where an end is open."
+    return [Panel(partial(_estimates, fit), caption)]
+
+
+def save_figure(fit: Fit | PooledFit, path: Path) -> Path:
+    """Write the panels of a fit beside each other as png, pdf or svg, and return the file.
+
+    Raises
+    ------
+    StorageError
+        The file cannot be written.
+    """
+    beside = panels(fit)
+
+    def draw(figure: FigureBase) -> None:
+        parts = figure.subfigures(1, len(beside), squeeze=False)[0]
+        for panel, part in zip(beside, parts, strict=True):
+            panel.draw(part)
+
+    size = len(beside) * SIZE[0], SIZE[1]
+    (file,) = save_drawing(draw, path.with_suffix(""), [path.suffix[1:]], size)
+    return file
+
+
+def curve(fit: Fit, axes: Axes) -> None:
+    """Draw force against position: data, fit, and the fit without tension."""
+    data = fit.likelihood
+    scale, name = axis_unit(data.force, "N")
+    length, _ = axis_unit(data.position, "m")
+    axes.plot(
+        data.position * length, data.force * scale, ".", color="0.6", markersize=3, label="data"
+    )
+    fine = replace(data, position=np.linspace(data.position[0], data.position[-1], 500))
+    for parameters, style, label in (
+        (fit.parameters_without_tension, "C1--", "without tension"),
+        (fit.parameters, "C0-", "fit"),
+    ):
+        axes.plot(fine.position * length, fine.model(parameters) * scale, style, label=label)
+    axes.axvline(fit.contact_point.value * length, color="0.3", linewidth=0.8, linestyle=":")
+    axes.set_ylabel(f"force [{name}]")
+    axes.legend()
+
+
+def curves(fit: PooledFit, axes: Axes) -> None:
+    """Draw data and model of each curve of a pool, depth and force relative to their maxima."""
+    for number, (member, parameters) in enumerate(_members(fit)):
+        baseline = parameters[OFFSET] + parameters[SLOPE] * (member.position - member.position[0])
+        model = member.model(parameters) - baseline
+        largest = float(np.max(np.abs(model)))
+        data = (member.force - baseline) / largest
+        depth, colour = _relative_depth(member, parameters), f"C{number}"
+        axes.plot(depth, data, ".", color=colour, alpha=0.3, markersize=2)
+        axes.plot(depth, model / largest, color=colour, label=fit.curves[number].name)
+    axes.set_ylabel("force / its largest")
+    if len(fit.curves) <= _LEGEND_CURVES:
+        axes.legend(fontsize="small")
+
+
+def residuals(fit: Fit | PooledFit, axes: Axes) -> None:
+    """Draw the residuals of the force over the noise.
+
+    Those of a single fit are drawn with and without tension against the position, those of a pool
+    for each curve against the depth relative to its maximum.
+    """
+    if isinstance(fit, PooledFit):
+        label = "depth / its largest"
+        lines = [
+            (f"C{number}", _relative_depth(*part), *part)
+            for number, part in enumerate(_members(fit))
+        ]
+    else:
+        length, name = axis_unit(fit.likelihood.position, "m")
+        label, position = f"position [{name}]", fit.likelihood.position * length
+        lines = [
+            ("C1", position, fit.likelihood, fit.parameters_without_tension),
+            ("C0", position, fit.likelihood, fit.parameters),
+        ]
+    for colour, x, likelihood, parameters in lines:
+        values = -likelihood.residuals(parameters)
+        axes.plot(x, values, ".", color=colour, markersize=2, alpha=0.5)
+    axes.axhline(0, color="0.3", linewidth=0.8)
+    axes.set(xlabel=label, ylabel="residual / noise")
+
+
+def likelihood_map(fit: Fit, axes: Axes) -> None:
+    """Draw √Δχ² over reduced modulus and tension, minimised over the other parameters."""
+    moduli, tensions, rise = _likelihood_grid(fit)
+    scale, name = axis_unit(moduli, "Pa")
+    tension_scale, tension_name = axis_unit(tensions, "N/m")
+    x, y = moduli * scale, tensions * tension_scale
+    filled = axes.contourf(
+        x, y, np.sqrt(np.maximum(rise, 0)), np.linspace(0, 4, 17), cmap="Blues_r"
+    )
+    axes.contour(x, y, rise, _JOINT, colors="black", linewidths=0.8)
+    axes.plot(fit.reduced_modulus.value * scale, fit.tension.value * tension_scale, "k+")
+    _mark_interval(fit.reduced_modulus, scale, axes.axvline)
+    _mark_interval(fit.tension, tension_scale, axes.axhline)
+    axes.set(xlabel=f"reduced modulus [{name}]", ylabel=f"tension [{tension_name}]")
+    axes.set_title("68 % and 95 % of the pair; dotted: 95 % of each alone", fontsize="medium")
+    figure = axes.get_figure()
+    if figure is not None:
+        figure.colorbar(filled, ax=axes, label="√Δχ²")
+
+
+def _mark_interval(estimate: Estimate, scale: float, line: Callable[..., object]) -> None:
+    for end in (estimate.low, estimate.high):
+        if end is not None:
+            line(end * scale, color="C3", linewidth=0.8, linestyle=":")
+
+
+def _likelihood_grid(fit: Fit) -> tuple[Array, Array, Array]:
+    """Return moduli, tensions and Δχ², each of shape (moduli, tensions).
+
+    The tensions of a row surround the best tension at its modulus, so that the grid follows a
+    narrow ridge.
+    """
+    estimate = fit.reduced_modulus
+    low = estimate.value / _OPEN_FACTOR if estimate.low is None else estimate.low
+    high = estimate.value * _OPEN_FACTOR if estimate.high is None else estimate.high
+    moduli = np.geomspace(low**1.4 / high**0.4, high**1.4 / low**0.4, _MODULI)
+    fixed = replace(fit.likelihood, free=tuple(k for k in fit.likelihood.free if k != MODULUS))
+    tensions = np.empty((_MODULI, _TENSIONS))
+    rise = np.empty_like(tensions)
+    for row, modulus in enumerate(moduli):
+        start = fit.parameters.copy()
+        start[MODULUS] = np.log(modulus)
+        ridge = fixed.minimise(start).parameters
+        deviation = float(fixed.deviations(ridge)[TENSION])
+        half = _MAP_HALF_WIDTH * (deviation if np.isfinite(deviation) else ridge[TENSION])
+        lowest = max(ridge[TENSION] - half, 0.0)
+        tensions[row] = np.linspace(lowest, ridge[TENSION] + half, _TENSIONS)
+        for column, tension in enumerate(tensions[row]):
+            start = ridge.copy()
+            start[TENSION] = tension
+            rise[row, column] = fixed.minimise(start, (TENSION,)).chi_squared - fit.chi_squared
+    return np.repeat(moduli[:, None], _TENSIONS, axis=1), tensions, rise
+
+
+def profile(fit: PooledFit, which: int, axes: Axes) -> None:
+    """Draw the profile likelihood of a pool: Δχ² against fixed values of modulus or tension."""
+    name = "reduced_modulus" if which == MODULUS else "tension"
+    estimate = fit.estimates()[name]
+    half = _OPEN_DEVIATIONS * (estimate.bound if np.isfinite(estimate.bound) else estimate.value)
+    low = max(estimate.value - half, 0.0) if estimate.low is None else estimate.low
+    high = estimate.value + half if estimate.high is None else estimate.high
+    margin = _PROFILE_MARGIN * (high - low)
+    values = np.linspace(max(low - margin, 1e-3 * estimate.value), high + margin, 15)
+    rises = np.empty_like(values)
+    for index, value in enumerate(values):
+        start = fit.parameters.copy()
+        start[which] = np.log(value) if which == MODULUS else value
+        rises[index] = fit.pool.minimise(start, (which,)).chi_squared - fit.chi_squared
+    scale, unit = axis_unit(values, estimate.unit)
+    axes.plot(values * scale, rises, "C0-")
+    axes.axhline(fit.rise, color="0.3", linewidth=0.8, linestyle="--")
+    _mark_interval(estimate, scale, axes.axvline)
+    label = f"{name.replace('_', ' ')} [{unit}]"
+    axes.set(xlabel=label, ylabel="Δχ²", ylim=(0, 3 * fit.rise))
+
+
+def estimates(rows: Rows, name: str, axes: Axes) -> None:
+    """Draw a parameter of each fitted curve with its interval.
+
+    A bar with an open end reaches down to 0, or up to a triangle at the top.
+    """
+    fitted = [(number, row[name]) for number, row in enumerate(rows, 1) if name in row]
+    numbers = np.array([number for number, _ in fitted])
+    values = np.array([estimate["value"] for _, estimate in fitted])
+    scale, unit = axis_unit(values, fitted[0][1]["unit"])
+    low = np.array([estimate["low"] or 0.0 for _, estimate in fitted])
+    # An open end is None, which becomes NaN.
+    high = np.array([estimate["high"] for _, estimate in fitted], dtype=float)
+    opened = np.isnan(high)
+    high[opened] = _OPEN_TOP * max(values.max(), high[~opened].max(initial=0.0))
+    ends = np.array([values - low, high - values]) * scale
+    axes.errorbar(numbers, values * scale, ends, fmt="o", color="C0", markersize=4, capsize=2)
+    axes.plot(numbers[opened], high[opened] * scale, "^", color="C0", markersize=6)
+    axes.set_ylabel(f"{name.replace('_', ' ')} [{unit}]")
+    axes.set_ylim(bottom=0.0)
+    axes.grid(alpha=0.3)
+
+
+def _with_residuals(fit: Fit | PooledFit, figure: FigureBase) -> None:
+    if isinstance(fit, PooledFit):
+        cells = figure.add_gridspec(4, 1)
+        upper = figure.add_subplot(cells[:3])
+        curves(fit, upper)
+    else:
+        cells = figure.add_gridspec(2, 1, height_ratios=(3, 1))
+        upper = figure.add_subplot(cells[0])
+        curve(fit, upper)
+    residuals(fit, figure.add_subplot(cells[-1], sharex=upper))
+
+
+def _profiles(fit: PooledFit, figure: FigureBase) -> None:
+    free = [which for which in SHARED if which in fit.pool.free]
+    for number, which in enumerate(free, 1):
+        profile(fit, which, figure.add_subplot(len(free), 1, number))
+
+
+def _estimates(rows: Rows, figure: FigureBase) -> None:
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    estimates(rows, "reduced_modulus", upper)
+    estimates(rows, "tension", lower)
+    if len(rows) <= _TICK_CURVES:
+        names = [Path(row["curve"]).name for row in rows]
+        lower.set_xticks(range(1, len(rows) + 1), names, rotation=45, ha="right", fontsize="small")
+    else:
+        lower.set_xlabel("curve")
+
+
+def _members(fit: PooledFit) -> list[tuple[Likelihood, Array]]:
+    """Return likelihood and parameters of each curve of a pool."""
+    return list(zip(fit.pool.members, fit.pool.parts(fit.parameters), strict=True))
+
+
+def _relative_depth(member: Likelihood, parameters: Array) -> Array:
+    depth: Array = member.position - parameters[POINT]
+    depth /= depth[-1]
+    return depth

@@ -1,0 +1,76 @@
+"""A run that is interrupted or killed leaves every finished step."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import h5py
+import pytest
+import xarray as xr
+from tests.framework.bad_input.command_line import START, says
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle.cli import app
+
+# Where tests run in the background, their processes would ignore Ctrl-C.
+LISTENING = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    "from pellicle.__main__ import main; main()"
+)
+
+
+@pytest.fixture
+def long_run(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
+    """Return a process that has written its first step and has many to go."""
+    (tmp_path / "start.toml").write_text(START, encoding="utf-8")
+    steps = "loading.depth={start='10 um', stop='20 um', num=20_000}"
+    process = subprocess.Popen(
+        [sys.executable, "-c", LISTENING, "run", "start.toml", "-o", "out", "--set", steps],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        patience = time.monotonic() + 60
+        while not (tmp_path / "out/start.h5").exists():
+            assert process.poll() is None, process.communicate()[1]
+            assert time.monotonic() < patience, "no step in a minute"
+            time.sleep(0.01)
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def test_interrupt(tmp_path: Path, long_run: subprocess.Popen[str]) -> None:
+    """Ctrl-C leaves every finished step, says where, and exits with 130."""
+    long_run.send_signal(signal.SIGINT)
+    message = long_run.communicate(timeout=60)[1]
+    assert long_run.returncode == 130
+    says(message, "interrupted; what steps were finished are in out")
+    assert "Traceback" not in message
+    done = pl.load(tmp_path / "out/start.h5").dataset
+    assert 1 <= done.sizes["step"] < 20_000
+    assert done["converged"].values.all()
+    shown = CliRunner().invoke(app, ["show", str(tmp_path / "out/start.h5")])
+    assert f"interrupted: {done.sizes['step']} of 20000 steps" in shown.stderr
+    assert shown.exit_code == 1
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
+def test_kill(tmp_path: Path, long_run: subprocess.Popen[str]) -> None:
+    """A run that is killed leaves a whole file with every finished step."""
+    long_run.kill()
+    long_run.wait(timeout=60)
+    path = tmp_path / "out/start.h5"
+    with h5py.File(path) as file:
+        assert file["pressure"].shape[1:] == (16, 16)
+    with xr.open_dataset(path, engine="h5netcdf") as opened:
+        assert opened.sizes["step"] >= 1
+    assert (pl.load(path).dataset["force"].values > 0).all()
