@@ -19,10 +19,11 @@ from pellicle.components import Component, Executor, HasForceCurve, Indenter
 from pellicle.config.component_field import FromRegistry
 from pellicle.config.study import DEFAULT_EXECUTOR
 from pellicle.errors import ConfigError, shown
+from pellicle.model.from_file import FromFile, overridden
 from pellicle.model.input_path import paths_relative_to
 from pellicle.model.messages import nearest
 from pellicle.model.paths import replaced
-from pellicle.model.toml import parse_override, read_toml
+from pellicle.model.toml import read_toml
 from pellicle.plugins import registry
 from pellicle.units import PoissonsRatio, Quantity
 
@@ -92,6 +93,21 @@ def _fixed(value: object) -> dict[str, float]:
     return values
 
 
+def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the content of a file with its paths as seen from the current folder.
+
+    Raises
+    ------
+    ConfigError
+        No file matches a pattern.
+    """
+    curves, cache = data.get("curves"), data.get("cache")
+    curves = [curves] if isinstance(curves, str) else curves
+    if isinstance(curves, list) and all(isinstance(curve, str) for curve in curves):
+        data = data | {"curves": [path for curve in curves for path in expanded(curve, folder)]}
+    return data | {"cache": folder / cache} if isinstance(cache, str) else data
+
+
 def _as_json(indenter: object) -> dict[str, Any]:
     """Return an indenter as JSON has it."""
     if isinstance(indenter, Component):
@@ -99,7 +115,7 @@ def _as_json(indenter: object) -> dict[str, Any]:
     return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
 
 
-class FitConfig(Calibration):
+class FitConfig(FromFile, Calibration):
     """What is fitted to which curves, and how.
 
     Keyword arguments of `fit`, `fit_many` and `fit_pooled`, options of ``pellicle fit`` and the
@@ -128,7 +144,9 @@ class FitConfig(Calibration):
     fix: Annotated[
         dict[str, float],
         BeforeValidator(_fixed),
-        Field(description="parameters that are not fitted, with their values", default_factory=dict),
+        Field(
+            description="parameters that are not fitted, with their values", default_factory=dict
+        ),
     ]
     baseline: Annotated[
         Baseline, Field(description="what is fitted of the force before contact")
@@ -157,9 +175,9 @@ class FitConfig(Calibration):
             default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}),
         ),
     ]
-    cache: Annotated[
-        Path | None, Field(description="folder that keeps simulated force curves")
-    ] = None
+    cache: Annotated[Path | None, Field(description="folder that keeps simulated force curves")] = (
+        None
+    )
     grid_points: Annotated[
         int, Field(description="cells along each edge of the grids of a simulation")
     ] = GRID_POINTS
@@ -176,17 +194,15 @@ class FitConfig(Calibration):
         return self
 
     @classmethod
-    def from_toml(cls, path: str | Path, overrides: Iterable[str] = (), **options: Any) -> Self:
+    def from_toml(cls, path: str | Path, overrides: Iterable[str] = ()) -> Self:
         """Return the configuration in a TOML file.
 
         Parameters
         ----------
         path
-            The file; relative paths in it are seen from its folder.
+            The file; relative paths and patterns in it start from its folder.
         overrides
-            Texts such as ``'indenter.radius="5 um"'`` that replace values of the file and options.
-        **options
-            Values in place of those of the file, as in `merged`.
+            Texts such as ``'indenter.radius="5 um"'`` that replace values of the file.
 
         Raises
         ------
@@ -195,34 +211,30 @@ class FitConfig(Calibration):
         PluginError
             A component that it names is broken.
         """
-        data, folder = read_toml(Path(path)), Path(path).parent
-        curves, cache = data.get("curves"), data.get("cache")
-        curves = [curves] if isinstance(curves, str) else curves
-        if isinstance(curves, list) and all(isinstance(curve, str) for curve in curves):
-            data["curves"] = [file for curve in curves for file in expanded(curve, folder)]
-        if isinstance(cache, str):
-            data["cache"] = folder / cache
-        with paths_relative_to(folder):
-            return cls.merged(data, overrides, **options)
+        return cls.merged(path, overrides)
 
     @classmethod
     def merged(
         cls,
-        base: FitConfig | Mapping[str, Any] | None = None,
+        base: FitConfig | Mapping[str, Any] | str | Path | None = None,
         overrides: Iterable[str] = (),
         **options: Any,
     ) -> Self:
-        """Return a configuration with options in place of the values of another.
+        """Return a configuration with options in place of the values of another or of a TOML file.
 
         An option that is None keeps the value of ``base``.  One that is not a field of the
         configuration is a field of the indenter; a list as such, or as spring_constant or
-        sensitivity, has a value for each file.
+        sensitivity, has a value for each file.  Overrides replace values and options.
 
         Raises
         ------
         ConfigError, PluginError
-            A value is not allowed.
+            A value is not allowed, or the file cannot be read.
         """
+        if isinstance(base, (str, Path)):
+            folder = Path(base).parent
+            with paths_relative_to(folder):
+                return cls.merged(_from_folder(read_toml(Path(base)), folder), overrides, **options)
         if isinstance(base, FitConfig):
             base = {name: getattr(base, name) for name in base.model_fields_set}
         data: dict[str, Any] = {
@@ -243,13 +255,7 @@ class FitConfig(Calibration):
             else:
                 data["indenter"] = _component(data.get("indenter", {}))
                 data = replaced(data, f"indenter.{name}", value)
-        for text in overrides:
-            key, value = parse_override(text)
-            try:
-                data = replaced(data, key, value)
-            except ConfigError as error:
-                raise ConfigError(f"--set {text!r}: {error}") from None
-        return cls(**data)
+        return cls(**overridden(data, overrides))
 
     def to_dict(self) -> dict[str, Any]:
         """Return the whole configuration as JSON data, defaults included, in SI."""
@@ -293,7 +299,7 @@ class FitConfig(Calibration):
             raise error.within("indenter") from None
 
     def solid_under(self, indenter: Indenter | HasForceCurve) -> Solid | None:
-        """Return the solid to simulate; None if the indenter has a force curve and no kernel is given.
+        """Return the solid to simulate; None if there is no kernel and none is needed.
 
         Raises
         ------

@@ -62,12 +62,6 @@ class Fit(FitResult):
         noise = f"noise: {self.noise:.3g} N, from {self.noise_from}; {self.points} points"
         return [noise, *super().sentences]
 
-    def save_figure(self, path: str | Path) -> Path:
-        """Write the figure of the fit, in the format of the suffix, and return its path."""
-        from .report import drawing
-
-        return drawing.save_figure(self, Path(path))
-
     def model(self) -> dict[str, Any]:
         """Return indenter and kernel that were fitted with, as JSON data.
 
@@ -99,7 +93,7 @@ def fit(
     cache: str | Path | None = None,
     executor: ExecutorLike | None = None,
     grid_points: int | None = None,
-    config: FitConfig | None = None,
+    config: FitConfig | str | Path | None = None,
     progress: bool = False,
     **fields: Any,
 ) -> Fit:
@@ -144,8 +138,8 @@ def fit(
     grid_points
         Cells of each grid of a study along x and y; 64 if not given.
     config
-        A configuration, of which the arguments that are given replace the values.  Without
-        position and force the curve is the one that it names.
+        A configuration or the TOML file that has one; the other arguments, if given, replace its
+        values.  Without position and force the curve is the one that it names.
     progress
         Show the progress of a study and of the fit on a terminal.
     **fields

@@ -90,7 +90,7 @@ def fit_many(
     cache: str | Path | None = None,
     grid_points: int | None = None,
     executor: ExecutorLike | None = None,
-    config: FitConfig | None = None,
+    config: FitConfig | str | Path | None = None,
     directory: str | Path | None = None,
     progress: bool = True,
     **fields: Any,

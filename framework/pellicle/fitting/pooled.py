@@ -19,7 +19,7 @@ from .curves.readers import Curves, Source
 from .explained import Explained, explain
 from .models.interpolated import described
 from .problem import FitProblem, problems
-from .result import FitResult, doubt_of_tension, status_line
+from .result import FitResult, doubt_of_tension, interval_text, status_line
 from .statistics.design import percent
 from .statistics.estimate import Estimate
 from .statistics.interval import allowed_rise
@@ -108,11 +108,26 @@ class PooledFit(FitResult):
         own = [f"{curve.name}: {text}" for curve in self.curves for text in curve.messages]
         return [*self.messages, *own]
 
-    def save_figure(self, path: str | Path) -> Path:
-        """Write the figure of the fit, in the format of the suffix, and return its path."""
-        from .report import pooled_drawing
-
-        return pooled_drawing.save_figure(self, Path(path))
+    def curve_rows(self) -> list[dict[str, str]]:
+        """Return a line of a table for each curve."""
+        rows = []
+        for curve in self.curves:
+            point = curve.contact_point
+            row = {"curve": curve.name, "contact_point [m]": f"{point.value:.6g}"}
+            if self.contact_points:
+                ends = "held" if point.held else interval_text(point.low, point.high)
+                row["95 % of contact_point"] = ends
+            rows.append(
+                row
+                | {
+                    "noise [N]": f"{curve.noise:.3g}",
+                    "points": str(curve.points),
+                    "chi_squared": f"{curve.chi_squared:.5g}",
+                    "alone: reduced_modulus [Pa]": f"{curve.reduced_modulus_alone:.4g}",
+                    "tension [N/m]": f"{curve.tension_alone:.4g}",
+                }
+            )
+        return rows
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
@@ -134,7 +149,7 @@ def fit_pooled(
     cache: str | Path | None = None,
     executor: ExecutorLike | None = None,
     grid_points: int | None = None,
-    config: FitConfig | None = None,
+    config: FitConfig | str | Path | None = None,
     progress: bool = False,
     contact_points: bool | None = None,
     **fields: Any,

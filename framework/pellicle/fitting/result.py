@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -31,7 +30,7 @@ def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:
 
 
 @dataclass(frozen=True)
-class FitResult(ABC):
+class FitResult:
     """Modulus and tension, and how well they explain what was measured."""
 
     _does: ClassVar[str] = "this curve does"
@@ -124,15 +123,9 @@ class FitResult(ABC):
         youngs = self.youngs_modulus
         return estimates if youngs is None else estimates | {"youngs_modulus": youngs}
 
-    @abstractmethod
-    def save_figure(self, path: str | Path) -> Path:
-        """Write the figure of the fit, in the format of the suffix, and return its path.
-
-        Raises
-        ------
-        StorageError
-            The file cannot be written.
-        """
+    def curve_rows(self) -> list[dict[str, str]]:
+        """Return a line of a table for each curve of a pool; none for a single curve."""
+        return []
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
@@ -163,6 +156,11 @@ class FitResult(ABC):
             The file cannot be written.
         """
         return write_json(self.to_dict(), Path(path))
+
+
+def interval_text(low: float | None, high: float | None) -> str:
+    """Return an interval as text, an open end as "open"."""
+    return " to ".join("open" if end is None else f"{end:.4g}" for end in (low, high))
 
 
 def as_json(value: object) -> str:

@@ -91,7 +91,9 @@ def _array(values: ArrayLike, name: str) -> Array:
     try:
         array = np.asarray(values, dtype=float)
     except (TypeError, ValueError):
-        raise ConfigError(f"{shown(values)} is not a list of numbers; give SI values", name) from None
+        raise ConfigError(
+            f"{shown(values)} is not a list of numbers; give SI values", name
+        ) from None
     if array.ndim != 1:
         raise ConfigError(f"is of shape {array.shape}; give a list, one curve at a time", name)
     return array

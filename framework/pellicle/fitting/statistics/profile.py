@@ -10,7 +10,6 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
-from pellicle.fitting.status import Report, ignore
 
 from .estimate import Estimate
 from .interval import Better, Ends, interval
@@ -57,7 +56,7 @@ def profiled(
     rise: float,
     wanted: Sequence[int],
     without_tension: Callable[[Minimum], Minimum],
-    report: Report = ignore,
+    report: Callable[[str], None] = lambda words: None,
 ) -> Profiled:
     """Return the minimum near ``best``, that without tension, and intervals of what is ``wanted``.
 
