@@ -30,6 +30,7 @@ from pellicle.units import PoissonsRatio, Quantity
 from .curves.columns import Calibration
 from .curves.curve import LARGEST, Segment
 from .curves.readers import Curves, Source, expanded, gather
+from .models.force_model import CONTACT_POINT, MODULUS, TENSION
 from .models.simulation import GRID_POINTS
 from .models.solid import DEFAULT_KERNEL, Solid, solid
 
@@ -39,11 +40,8 @@ IndenterLike = str | Mapping[str, Any] | Indenter | HasForceCurve
 ExecutorLike = str | Mapping[str, Any] | Executor
 """An executor, its table, or its type."""
 
-_FIXABLE = {
-    "contact_point": Quantity("m", at_least=-LARGEST, at_most=LARGEST),
-    "reduced_modulus": Quantity("Pa", at_least=1 / LARGEST, at_most=LARGEST),
-    "tension": Quantity("N/m", at_least=0, at_most=LARGEST),
-}
+FIXABLE = {parameter.name: parameter for parameter in (CONTACT_POINT, MODULUS, TENSION)}
+"""Parameters that can be fixed, by their names."""
 
 
 _COMPONENTS = ("indenter", "kernel", "executor")
@@ -82,13 +80,15 @@ def _fixed(value: object) -> dict[str, float]:
         raise ConfigError(f"{shown(value)} is not a table; give one such as {{tension = 0}}")
     values = {}
     for name, given in value.items():
-        if name not in _FIXABLE:
-            raise ConfigError(f"is not a parameter; {nearest(name, _FIXABLE)}", str(name))
+        if name not in FIXABLE:
+            raise ConfigError(f"is not a parameter; {nearest(name, FIXABLE)}", str(name))
+        parameter = FIXABLE[name]
+        least = 1 / LARGEST if parameter.logarithmic else max(parameter.minimum, -LARGEST)
         try:
-            values[name] = _FIXABLE[name](given)
+            values[name] = Quantity(parameter.unit, at_least=least, at_most=LARGEST)(given)
         except ValueError as error:
             raise ConfigError(str(error), name) from None
-    if {"reduced_modulus", "tension"} <= values.keys():
+    if {MODULUS.name, TENSION.name} <= values.keys():
         raise ConfigError("fixes both modulus and tension; leave one of them to the fit")
     return values
 

@@ -16,25 +16,14 @@ from pellicle.errors import ConfigError, PellicleError
 from .config import Baseline, ExecutorLike, FitConfig, IndenterLike
 from .curves.curve import Curve, Segment
 from .curves.readers import Source, fields_of_files
-from .explained import explain
-from .models.interpolated import described
+from .models.force_model import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .result import FitResult, doubt_of_tension, status_line
+from .statistics.checks import fit_single
 from .statistics.design import advice, undecided
-from .statistics.estimate import Estimate
-from .statistics.initial_guess import starts
-from .statistics.interval import allowed_rise
-from .statistics.likelihood import (
-    MODULUS,
-    OFFSET,
-    POINT,
-    SLOPE,
-    TENSION,
-    Likelihood,
-    Minimum,
-    best_minimum,
-)
-from .statistics.profile import profiled
+from .statistics.initial_guess import initial_guesses
+from .statistics.likelihood import Likelihood, Minimum, best_minimum
+from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 
 
 @dataclass(frozen=True)
@@ -67,7 +56,7 @@ class Fit(FitResult):
 
         A kernel is there only if its force curve was simulated, without modulus and tension.
         """
-        return described(self.likelihood.indenter)
+        return self.likelihood.force_model.description()
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
@@ -215,21 +204,18 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda word
         No search for the best parameters converges.
     """
     report("least squares")
-    single = explain(problem)
-    likelihood, rise = single.likelihood, allowed_rise(single.freedom)
-    profile = profiled(
+    single = fit_single(problem.likelihood(), problem.fixed)
+    likelihood, threshold = single.likelihood, chi_squared_threshold(single.freedom)
+    profile = profile_likelihood(
         likelihood,
         likelihood.minimise(single.parameters),
-        rise,
+        threshold,
         likelihood.free,
         partial(_without_tension, likelihood),
         report,
     )
     best = profile.best.parameters
-    point, modulus, tension = (
-        profile.estimate(which, unit)
-        for which, unit in ((POINT, "m"), (MODULUS, "Pa"), (TENSION, "N/m"))
-    )
+    point, modulus, tension = map(profile.estimate, (CONTACT_POINT, MODULUS, TENSION))
     return Fit(
         reduced_modulus=modulus,
         tension=tension,
@@ -238,6 +224,7 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda word
         chi_squared_without_tension=profile.without_tension.chi_squared,
         advice=advice(likelihood, best, modulus, tension),
         messages=(
+            *problem.curve.messages,
             *single.messages,
             *(check.message for check in single.failed_checks),
             *profile.messages,
@@ -246,12 +233,12 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda word
         ),
         parameters=best,
         parameters_without_tension=profile.without_tension.parameters,
-        rise=rise,
+        rise=threshold,
         failed_checks=single.failed_checks,
         doubt=doubt_of_tension(single.failed_checks),
         contact_point=point,
-        offset=profile.estimate(OFFSET, "N"),
-        slope=profile.estimate(SLOPE, "N/m"),
+        offset=profile.estimate(OFFSET),
+        slope=profile.estimate(SLOPE),
         noise=likelihood.noise,
         noise_from=single.noise_from,
         points=problem.curve.force.size,
@@ -261,7 +248,6 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda word
 
 def _without_tension(likelihood: Likelihood, best: Minimum) -> Minimum:
     """Return the least χ² without tension, near the best and near the best of a scan."""
-    start = best.parameters.copy()
-    start[TENSION] = 0.0
-    fixed = replace(likelihood, free=tuple(k for k in likelihood.free if k != TENSION))
-    return best_minimum(fixed, (start, *starts(fixed, start)[:1]))
+    start = best.parameters | {TENSION: 0.0}
+    fixed = replace(likelihood, free=tuple(p for p in likelihood.free if p != TENSION))
+    return best_minimum(fixed, (start, *initial_guesses(fixed, start)[:1]))

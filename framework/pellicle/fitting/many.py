@@ -216,9 +216,10 @@ def _identity(problem: FitProblem, grid_points: int) -> str:
             digest.update(part.model_dump_json().encode())
         else:
             digest.update(pickle.dumps(part))
-    options = problem.free, problem.poissons_ratio, grid_points if kernel else None
+    fixed = {parameter.name: value for parameter, value in problem.fixed.items()}
+    options = fixed, problem.poissons_ratio, grid_points if kernel else None
     digest.update(repr((options, curve.messages, curve.stiffness)).encode())
-    for values in (problem.fixed, curve.position, curve.force):
+    for values in (curve.position, curve.force):
         digest.update(values.tobytes())
     return digest.hexdigest()
 

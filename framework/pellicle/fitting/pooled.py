@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -16,19 +15,15 @@ from pellicle.errors import ConfigError, PellicleError
 from .config import Baseline, ExecutorLike, FitConfig, IndenterLike
 from .curves.curve import Segment
 from .curves.readers import Curves, Source
-from .explained import Explained, explain
-from .models.interpolated import described
+from .models.force_model import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .result import FitResult, doubt_of_tension, interval_text, status_line
+from .statistics.checks import SingleFit, check_pooled_shape, fit_single
 from .statistics.design import percent
-from .statistics.estimate import Estimate
-from .statistics.interval import allowed_rise
-from .statistics.likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
-from .statistics.pool_minima import alone, begin, without_tension
-from .statistics.pooled_likelihood import SHARED, Pool
-from .statistics.profile import profiled
-from .statistics.residuals import FailedCheck
-from .statistics.shape_check import check_pooled_shape
+from .statistics.likelihood import best_minimum
+from .statistics.noise import FailedCheck
+from .statistics.pooled_likelihood import Pool
+from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 
 _CHANCE = 1e-3
 """Probability below which a disagreement is not taken for chance."""
@@ -215,65 +210,64 @@ def pool_sources(config: FitConfig, sources: Sequence[Source], *, progress: bool
         )
     if len(sources) < 2:
         raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
-    simulated = []
     singles = []
     for source, problem in zip(sources, problems(config, sources), strict=True):
         try:
             if isinstance(problem, PellicleError):
                 raise problem
-            simulated.append(problem.simulated(config, progress=progress))
-            singles.append(explain(simulated[-1]))
+            problem = problem.simulated(config, progress=progress)
+            singles.append((problem, fit_single(problem.likelihood(), problem.fixed)))
         except ConfigError as error:
             raise source.named(error, "; leave it out") from None
     with status_line(progress) as report:
-        fit = _fit_pool(simulated, singles, config.contact_points, report)
+        fit = _fit_pool(singles, config.contact_points, report)
     return replace(fit, config=config)
 
 
 def _fit_pool(
-    problems: Sequence[FitProblem],
-    singles: Sequence[Explained],
+    singles: Sequence[tuple[FitProblem, SingleFit]],
     contact_points: bool,
     report: Callable[[str], None],
 ) -> PooledFit:
     report("least squares")
-    pool = Pool.of([single.likelihood for single in singles])
-    start = begin(pool, singles)
+    pool = Pool.of([single.likelihood for _, single in singles])
+    start = pool.initial_minimum([single.parameters for _, single in singles])
     own = [
-        alone(single, part)
-        for single, part in zip(singles, pool.parts(start.parameters), strict=True)
+        best_minimum(single.likelihood, (single.parameters, part))
+        for (_, single), part in zip(singles, pool.parts(start.parameters), strict=True)
     ]
-    shared = [k for k in SHARED if k in pool.free]
+    shared = [p for p in pool.free if p.shared]
     degrees = len(shared) * (len(singles) - 1)
     excess = max(start.chi_squared - sum(minimum.chi_squared for minimum in own), 0.0)
     factor = max(excess / degrees, 1.0) if chdtrc(degrees, excess) < _CHANCE else 1.0
-    rise = factor * allowed_rise(sum(single.freedom for single in singles))
-    points = [pool.place(number, POINT) for number in range(len(singles))]
-    wanted = [*shared, *(k for k in points if contact_points and k in pool.free)]
-    profile = profiled(pool, start, rise, wanted, partial(without_tension, pool), report)
-    modulus, tension = profile.estimate(MODULUS, "Pa"), profile.estimate(TENSION, "N/m")
+    threshold = factor * chi_squared_threshold(sum(single.freedom for _, single in singles))
+    points = [CONTACT_POINT.of_curve(index) for index in range(len(singles))]
+    wanted = [*shared, *(p for p in points if contact_points and p in pool.free)]
+    profile = profile_likelihood(pool, start, threshold, wanted, pool.without_tension, report)
+    modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = []
-    for number, part in enumerate(pool.parts(profile.best.parameters)):
-        single, member, minimum = singles[number], pool.members[number], own[number]
-        point = profile.estimate(points[number], "m")
+    for index, part in enumerate(pool.parts(profile.best.parameters)):
+        (problem, single), member, minimum = singles[index], pool.members[index], own[index]
+        point = profile.estimate(points[index])
         curves.append(
             PooledCurve(
-                name=problems[number].name,
-                model=described(member.indenter),
+                name=problem.name,
+                model=member.force_model.description(),
                 contact_point=point,
-                offset=float(part[OFFSET]),
-                slope=float(part[SLOPE]),
+                offset=part[OFFSET],
+                slope=part[SLOPE],
                 noise=member.noise,
                 points=member.force.size,
                 chi_squared=member.chi_squared(part),
                 chi_squared_alone=minimum.chi_squared,
                 reduced_modulus_alone=float(np.exp(minimum.parameters[MODULUS])),
-                tension_alone=float(minimum.parameters[TENSION]),
+                tension_alone=minimum.parameters[TENSION],
                 failed_checks=single.failed_checks,
                 messages=(
+                    *problem.curve.messages,
                     *single.messages,
                     *(check.message for check in single.failed_checks),
-                    *problems[number].check_plausible(point.value, modulus.value, tension.value),
+                    *problem.check_plausible(point.value, modulus.value, tension.value),
                 ),
             )
         )
@@ -281,7 +275,7 @@ def _fit_pool(
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,
-        poissons_ratio=problems[0].poissons_ratio,
+        poissons_ratio=singles[0][0].poissons_ratio,
         chi_squared=profile.best.chi_squared,
         chi_squared_without_tension=profile.without_tension.chi_squared,
         advice=_advice(modulus, tension),
@@ -292,7 +286,7 @@ def _fit_pool(
         ),
         parameters=profile.best.parameters,
         parameters_without_tension=profile.without_tension.parameters,
-        rise=rise,
+        rise=threshold,
         failed_checks=shapes,
         doubt=_doubt(curves) or doubt_of_tension(shapes),
         curves=tuple(curves),

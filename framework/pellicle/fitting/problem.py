@@ -8,21 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from pellicle.arrays import Array
 from pellicle.components import Component, HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 
-from .config import FitConfig
+from .config import FIXABLE, FitConfig
 from .curves.curve import Curve, clean
 from .curves.readers import Source
-from .models.interpolated import SimulatedCurve
+from .models.force_model import CONTACT_POINT, OFFSET, SLOPE, Coordinates, tension_model
 from .models.simulation import simulate
 from .models.solid import Solid, lengths
 from .statistics.initial_guess import BEFORE
-from .statistics.likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
+from .statistics.likelihood import Likelihood
 
-_INDEX = {"contact_point": POINT, "reduced_modulus": MODULUS, "tension": TENSION}
-_BASELINES = {"none": (), "offset": (OFFSET,), "slope": (OFFSET, SLOPE)}
+_FIXED_BASELINE = {"none": (OFFSET, SLOPE), "offset": (SLOPE,), "slope": ()}
 _PLAUSIBLE_DEPTH = (1e-3, 1.0)
 """Depth over radius."""
 _PLAUSIBLE_MODULUS = (1.0, 1e12)
@@ -39,9 +37,8 @@ class FitProblem:
     indenter: Indenter | HasForceCurve
     solid: Solid | None
     """The solid to simulate; None if the indenter has a force curve."""
-    fixed: Array
-    """Values of the fixed parameters, in the order of the likelihood; 0 for the free ones."""
-    free: tuple[int, ...]
+    fixed: Coordinates
+    """Parameters that are not fitted."""
     poissons_ratio: float | None
 
     def simulated(self, config: FitConfig, *, progress: bool) -> FitProblem:
@@ -56,8 +53,8 @@ class FitProblem:
             return self
         position = self.curve.position
         span = float(np.ptp(position))
-        fixed = POINT not in self.free
-        reach = float(position[-1]) - self.fixed[POINT] if fixed else (1 + BEFORE) * span
+        point = self.fixed.get(CONTACT_POINT)
+        reach = (1 + BEFORE) * span if point is None else float(position[-1]) - point
         # Where nothing reaches contact, the fit itself reports it.
         curve = simulate(
             self.indenter,  # type: ignore[arg-type]
@@ -70,6 +67,14 @@ class FitProblem:
         )
         return replace(self, indenter=curve, solid=None)
 
+    def likelihood(self) -> Likelihood:
+        """Return the likelihood of the curve, with a noise as large as the largest force."""
+        position, force = self.curve.position, self.curve.force
+        model = tension_model(self.indenter)  # type: ignore[arg-type]
+        noise = float(np.max(np.abs(force)))
+        whole = Likelihood(position, force, model, noise, (), self.curve.stiffness)
+        return replace(whole, free=tuple(p for p in whole.parameters if p not in self.fixed))
+
     def check_plausible(self, point: float, modulus: float, tension: float) -> list[str]:
         """Return warnings of results that a wrong unit or radius would give.
 
@@ -79,14 +84,14 @@ class FitProblem:
             The depth is beyond that of the indenter's force curve.
         """
         messages = []
-        indenter: Any = self.indenter
+        model: Any = tension_model(self.indenter)  # type: ignore[arg-type]
         depth = float(self.curve.position[-1]) - point
-        shape = indenter.indenter if isinstance(indenter, SimulatedCurve) else indenter
+        shape = model.indenter
         radius = next(iter(lengths(shape)), None) if isinstance(shape, Component) else None
-        if depth > indenter.depth_limit:
+        if depth > model.depth_limit:
             raise ConfigError(
                 f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at "
-                f"{indenter.depth_limit:.3g} m; is the radius right? If so, leave out the deepest "
+                f"{model.depth_limit:.3g} m; is the radius right? If so, leave out the deepest "
                 "part",
                 "indenter",
             )
@@ -131,18 +136,14 @@ def problems(config: FitConfig, sources: Sequence[Source]) -> list[FitProblem | 
 def _problem(config: FitConfig, source: Source, curve: Curve) -> FitProblem:
     indenter = config.indenter_with(source.fields)
     solid = config.solid_under(indenter)
-    fixed = {"contact_point": 0.0} if curve.is_depth else {}
-    fixed |= config.fix
-    values = np.zeros(5)
-    for name, value in fixed.items():
-        values[_INDEX[name]] = np.log(value) if name == "reduced_modulus" else value
-    free = tuple(index for name, index in _INDEX.items() if name not in fixed)
+    fixed: Coordinates = {CONTACT_POINT: 0.0} if curve.is_depth else {}
+    fixed |= {FIXABLE[name]: FIXABLE[name].coordinate(value) for name, value in config.fix.items()}
+    fixed |= dict.fromkeys(_FIXED_BASELINE[config.baseline], 0.0)
     return FitProblem(
         source.name,
         curve,
         indenter,
         solid,
-        values,
-        free + _BASELINES[config.baseline],
+        fixed,
         config.poissons_ratio if solid is None else solid.poissons_ratio,
     )

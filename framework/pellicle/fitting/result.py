@@ -9,13 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
 
-from pellicle.arrays import Array
 from pellicle.files import atomic_write
 
 from .config import FitConfig
-from .statistics.estimate import Estimate
-from .statistics.interval import CONFIDENCE
-from .statistics.residuals import FailedCheck
+from .models.force_model import Coordinates
+from .statistics.noise import FailedCheck
+from .statistics.profile import CONFIDENCE, Estimate
 
 
 def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:
@@ -54,9 +53,9 @@ class FitResult:
     """The Cramér–Rao bound, and the experiment that would tighten it."""
     messages: tuple[str, ...]
     """Warnings."""
-    parameters: Array
-    """Parameters of the fit, in the order of its likelihood."""
-    parameters_without_tension: Array
+    parameters: Coordinates
+    """Best coordinates: a value for each `Parameter`, of the modulus its natural logarithm."""
+    parameters_without_tension: Coordinates
     """The same with the tension fixed at 0 (Hertz, for a paraboloid)."""
     rise: float
     """Rise of χ² at the ends of the intervals."""

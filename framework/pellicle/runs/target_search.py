@@ -14,11 +14,10 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from pellicle.arrays import Array
 from pellicle.components import Monitor, Solver
 from pellicle.components.calls import solution_of
 from pellicle.numerics.problem import Force, Problem
-from pellicle.numerics.solution import Solution
+from pellicle.numerics.solution import Solution, State
 
 # Of the logarithm of the force where the area jumps across the prescribed one.
 _WIDTH: Final = 1e-4
@@ -40,7 +39,7 @@ class Reached(NamedTuple):
 
 
 def reach_area(
-    problem: Problem, area: float, solver: Solver, start: Array | None, monitor: Monitor
+    problem: Problem, area: float, solver: Solver, start: State | None, monitor: Monitor
 ) -> Reached:
     """Return the load step with a contact area [m²] > 0; the value of ``problem`` is not used.
 
@@ -77,12 +76,12 @@ def _stride(excess: float, tries: int) -> float:
     return min(1.5 * abs(excess) + 0.02 * 2.0**tries, math.log(30.0))
 
 
-def _first_force(problem: Problem, area: float, start: Array | None) -> float:
+def _first_force(problem: Problem, area: float, start: State | None) -> float:
     """Return the force of the step before, scaled as its area is, or that of an overlap."""
     cell = problem.grid.cell_area
-    if start is not None and start.any():
-        before = float(np.count_nonzero(start > 0)) * cell
-        return float(start.sum()) * cell * math.pow(area / before, 1.5)
+    if start is not None and start.contact.any():
+        before = float(np.count_nonzero(start.contact)) * cell
+        return float(start.pressure.sum()) * cell * math.pow(area / before, 1.5)
     heights = np.sort(problem.profile[np.isfinite(problem.profile)])[::-1]
     lowest = heights[min(math.ceil(area / cell + 0.5), heights.size - 1)]
     # Deeper than that by a little: at a cell's very height it is round-off whether it touches.
@@ -101,8 +100,8 @@ class _Search:
     area: float
     solver: Solver
     monitor: Monitor
-    pressure: Array | None
-    """Of the last try [Pa]."""
+    start: State | None
+    """The state of the last try, from which the next one starts."""
     tried: dict[float, float] = field(default_factory=dict)
     """log F → log A/A*, 0 where A is within half a cell of A*."""
     iterations: int = 0
@@ -118,8 +117,8 @@ class _Search:
 
     def _try(self, force: float) -> float:
         problem = replace(self.problem, control=Force(force))
-        found = solution_of(self.solver, problem, self.pressure, self.monitor)
-        self.pressure = found.pressure
+        found = solution_of(self.solver, problem, self.start, self.monitor)
+        self.start = State(found.pressure, found.pressure, math.nan)
         self.iterations += found.iterations
         cell = self.problem.grid.cell_area
         area = float(np.count_nonzero(found.pressure > 0)) * cell

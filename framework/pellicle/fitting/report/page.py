@@ -16,7 +16,7 @@ from pellicle.fitting.fit import Fit
 from pellicle.fitting.many import FITTED
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.result import as_json
-from pellicle.fitting.statistics.interval import CONFIDENCE
+from pellicle.fitting.statistics.profile import CONFIDENCE
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
 from pellicle.report.plotting import axis_unit, svg
