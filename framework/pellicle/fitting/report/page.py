@@ -19,7 +19,8 @@ from pellicle.fitting.result import as_json
 from pellicle.fitting.statistics.profile import CONFIDENCE
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
-from pellicle.report.plotting import axis_unit, svg
+from pellicle.report.plotting import svg
+from pellicle.units import axis_unit
 
 from .figures import SIZE, Rows, panels
 
