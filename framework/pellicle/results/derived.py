@@ -1,4 +1,4 @@
-"""Columns worked out of a table of runs, of the fields of its runs, and of their configuration."""
+"""Numbers derived from a table of runs, from the fields of the runs and their configuration."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ REDUCTIONS: dict[str, Callable[[Any], Any]] = {
     "min": lambda field: field.min(CELLS),
     "max": lambda field: field.max(CELLS),
 }
-"""Functions that make one number for each step of a field over the cells."""
+"""Functions that reduce a field to one number for each step."""
 
 
 FIRST_RUN = "first_run"
@@ -28,16 +28,18 @@ FIRST_RUN = "first_run"
 
 
 def names(data: xr.Dataset) -> dict[str, Any]:
-    """Return what expressions over ``data``, a result or the table of a study, may name.
+    """Return the values that expressions over a result or the table of a study may name.
 
     These are its numeric variables and coordinates, and the numbers of its configuration by their
-    dotted path, such as ``kernel.tension`` or ``grid.size.0``, where no coordinate varies them.
+    dotted path, such as ``kernel.tension`` or ``grid.size.0``, unless a coordinate varies them.
     """
-    said = json.loads(data.attrs.get(FIRST_RUN, data.attrs["configuration"]))
+    configuration = json.loads(data.attrs.get(FIRST_RUN, data.attrs["configuration"]))
     varied = tuple(f"{name}." for name in data.coords)
-    fixed = {key: value for key, value in constants(said).items() if not key.startswith(varied)}
+    fixed = {
+        key: value for key, value in constants(configuration).items() if not key.startswith(varied)
+    }
     numeric = {str(name): data[name] for name in data.variables if data[name].dtype.kind in "iuf"}
-    # Truth values are numbers here, which numpy would not subtract.
+    # numpy does not subtract truth values.
     truths = {
         str(name): data[name].astype(float)
         for name in data.variables
@@ -47,12 +49,12 @@ def names(data: xr.Dataset) -> dict[str, Any]:
 
 
 def derive(table: xr.Dataset, expressions: Mapping[str, str]) -> xr.Dataset:
-    """Return the table of a study with further columns, each of which may name those before.
+    """Return the table of a study with further columns, which may name earlier ones.
 
     Raises
     ------
     ConfigError
-        An expression is not arithmetic, or names what is not there.
+        An expression is not arithmetic, or a name in it is unknown.
     """
     for name, text in expressions.items():
         table = table.assign({name: 0.0 * table["converged"] + evaluate(text, names(table))})
@@ -70,12 +72,12 @@ def constants(configuration: object) -> dict[str, float]:
 
 
 def as_array(text: str, data: xr.Dataset) -> xr.DataArray:
-    """Return an expression over a result or a table as an array, a bare number too.
+    """Return the value of an expression over a result or a table as an array.
 
     Raises
     ------
     ConfigError
-        It is not arithmetic, or names what is not there.
+        The text is not arithmetic, or a name in it is unknown.
     """
     import xarray as xr
 
