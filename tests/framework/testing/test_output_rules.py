@@ -43,12 +43,6 @@ class LosesLast(Output):
         return depths[:-1] or ["none"]  # type: ignore[list-item]
 
 
-class LosesLastOfAll(LosesLast):
-    """Forgets the last step of a run or a study."""
-
-    scope: ClassVar[Literal["run", "study", "both"]] = "both"
-
-
 class Nameless(Output):
     """Does not return what it leaves."""
 
@@ -148,7 +142,6 @@ OUTPUTS = {
     Own: "leaves_the_files_it_returns",
     LosesFirst: "loses_no_step",
     LosesLast: "loses_no_step",
-    LosesLastOfAll: "loses_no_step",
     Nameless: "leaves_the_files_it_returns",
     Littering: "leaves_the_files_it_returns",
     Untold: "leaves_the_files_it_returns",
