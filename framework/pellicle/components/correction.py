@@ -19,8 +19,8 @@ class AreaCorrection(Component):
     def area(self, contact: Mask, spacing: tuple[float, float]) -> float:
         """Return the area of contact [m²].
 
-        ``contact``, of shape (nx, ny), is true for cells in contact; ``spacing`` is their size along
-        x and y [m].
+        ``contact``, of shape (nx, ny), is true for cells in contact; ``spacing`` is the size of a
+        cell along x and y [m].
         """
 
     def periodic_area(self, contact: Mask, spacing: tuple[float, float]) -> float:

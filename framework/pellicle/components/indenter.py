@@ -33,9 +33,9 @@ class Indenter(Component):
     def profile(self, x: Array, y: Array) -> Array:
         """Return f(x, y) [m]: 0 at the lowest point, negative elsewhere, −inf without an indenter.
 
-        ``x`` of shape (nx, 1) and ``y`` of shape (1, ny) are cell centres [m] relative to the centre
-        of the domain; the result is of shape (nx, ny). For an unbounded indenter inside `rotated`,
-        ``x`` and ``y`` are both of shape (nx, ny).
+        ``x`` of shape (nx, 1) and ``y`` of shape (1, ny) are cell centres [m], seen from the centre
+        of the domain; the result is of shape (nx, ny). An unbounded indenter that is rotated gets
+        ``x`` and ``y`` that are both of shape (nx, ny).
 
         Raises
         ------

@@ -57,31 +57,16 @@ class Chore:
         return f"chore {self.number}"
 
 
-def square(task: Chore, say: Say) -> int:
-    """Return the square of the task's number."""
-    return task.number**2
-
-
-def talk(task: Chore, say: Say) -> int:
-    """Send two messages, and return the square of the task's number."""
+def work(task: Chore, say: Say) -> int:
+    """Send two messages, leave two files if the task has a folder; return its number squared."""
     say(("begun", task.number))
     say(("nearly done", task.number))
+    if task.folder:
+        unique = uuid4().hex
+        Path(task.folder, f"{task.number} began {unique}").touch()
+        time.sleep(_DURATION)
+        Path(task.folder, f"{task.number} ended {unique}").touch()
     return task.number**2
-
-
-def mark(task: Chore, say: Say) -> int:
-    """Leave a file when the task begins and one when it ends; return the square of its number."""
-    unique = uuid4().hex
-    Path(task.folder, f"{task.number} began {unique}").touch()
-    time.sleep(_DURATION)
-    Path(task.folder, f"{task.number} ended {unique}").touch()
-    return task.number**2
-
-
-def mark_and_talk(task: Chore, say: Say) -> int:
-    """Do as `talk`, and as `mark` if the task has a folder."""
-    talk(task, say)
-    return mark(task, say) if task.folder else task.number**2
 
 
 def fail_or_exit(task: Chore, say: Say) -> int:
@@ -169,7 +154,7 @@ class Observations:
 
         with TemporaryDirectory() as folder:
             tasks, equal = _chores(folder=folder), [Chore(8), Chore(8)]
-            pairs = list(self._executor.map(mark_and_talk, [*tasks, *equal], report))
+            pairs = list(self._executor.map(work, [*tasks, *equal], report))
             return Healthy(tasks, equal, pairs, messages, callers, os.listdir(folder))
 
     @cached_property
@@ -210,7 +195,7 @@ def equal_tasks_are_two_tasks(executor: Executor, seen: Observations) -> None:
 def no_tasks_are_no_trouble(executor: Executor, seen: Observations) -> None:
     """Without tasks map() yields nothing."""
     none: list[Chore] = []
-    pairs = list(executor.map(square, none, _ignore))
+    pairs = list(executor.map(work, none, _ignore))
     require(not pairs, f"{pairs}")
 
 
@@ -269,7 +254,7 @@ def report_that_raises_ends_the_tasks(executor: Executor, seen: Observations) ->
         raise KeyboardInterrupt
 
     try:
-        list(executor.map(talk, _chores(), report))
+        list(executor.map(work, _chores(), report))
     except KeyboardInterrupt:
         return
     require(not messages, "KeyboardInterrupt raised by report does not come out of map()")
@@ -278,7 +263,7 @@ def report_that_raises_ends_the_tasks(executor: Executor, seen: Observations) ->
 def nothing_goes_on_after_closing(executor: Executor, seen: Observations) -> None:
     """After the iterator is closed early, no task goes on or begins."""
     with TemporaryDirectory() as folder:
-        running = executor.map(mark, _chores(folder=folder), _ignore)
+        running = executor.map(work, _chores(folder=folder), _ignore)
         list(islice(running, 1))
         close = getattr(running, "close", None)
         require(close is not None, "map() returns an iterator without close(); write it with yield")
