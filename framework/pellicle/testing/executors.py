@@ -128,14 +128,6 @@ class Healthy(NamedTuple):
     traces: list[str]
 
 
-class Troubled(NamedTuple):
-    """Observations of tasks of which one fails and one exits."""
-
-    outcomes: dict[int, Any]
-    exited: bool
-    """Whether the task that exits ended map()."""
-
-
 class Observations:
     """What many rules check; observed once, because starting an executor may take long."""
 
@@ -158,15 +150,15 @@ class Observations:
             return Healthy(tasks, equal, pairs, messages, callers, os.listdir(folder))
 
     @cached_property
-    def troubled(self) -> Troubled:
-        """Observations of seven tasks, executed on first use."""
+    def troubled(self) -> tuple[dict[int, Any], bool]:
+        """Outcomes of seven tasks, of which one fails and one exits, and whether that ended map."""
         outcomes = {}
         try:
             for task, outcome in self._executor.map(fail_or_exit, _chores(), _ignore):
                 outcomes[task.number] = outcome
         except SystemExit:
-            return Troubled(outcomes, True)
-        return Troubled(outcomes, False)
+            return outcomes, True
+        return outcomes, False
 
 
 def each_task_comes_once_with_its_outcome(executor: Executor, seen: Observations) -> None:

@@ -105,7 +105,7 @@ def _read(
         try:
             reader = io.open_topography(file)
             if reader.format() == "hgt" and path.suffix.lower() != ".hgt":
-                # Any file of 2n² bytes passes as this format, which is n² integers without a header.
+                # Any file of 2n² bytes passes as this format of n² integers without a header.
                 raise io.CannotDetectFileFormat
             data = _channel(reader, path, channel)
             scale = _scale(data, path, unit)
@@ -262,7 +262,7 @@ def _scale(channel: Any, path: Path, unit: float | None) -> float:
     try:
         return Quantity("m")(f"1 {channel.unit}")
     except ValueError as error:
-        raise ConfigError(f"{path} is in a unit that is no length: {error}", "path") from None
+        raise ConfigError(f"{path} is in a unit that is not a length: {error}", "path") from None
 
 
 def _size(
