@@ -316,7 +316,7 @@ def test_no_interval_is_narrower_than_its_bound() -> None:
 
 def test_fit_reports_what_it_is_at() -> None:
     """What a terminal shows names the parameter whose interval is sought."""
-    sources = gather({"a": tuple(white(1, points=100))}, "approach", {"radius": RADIUS})  # type: ignore[dict-item]
+    sources = gather({"a": tuple(white(1, points=100))}, "approach", {"radius": RADIUS})
     (problem,) = posed(sources, "paraboloid", {})
     words: list[str] = []
     fitted(problem, words.append)  # type: ignore[arg-type]
