@@ -23,8 +23,8 @@ from pellicle.fitting.models.force_model import (
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.profile import Estimate
-from pellicle.report.plotting import axis_unit
 from pellicle.report.plotting import save_figure as save_drawing
+from pellicle.units import axis_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -19,7 +19,8 @@ from pellicle.fitting.table import FITTED
 from pellicle.fitting.written import as_json
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
-from pellicle.report.plotting import axis_unit, svg
+from pellicle.report.plotting import svg
+from pellicle.units import axis_unit
 
 from .figures import SIZE, Rows, panels
 
