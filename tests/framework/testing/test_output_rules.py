@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 import pytest
-from tests.framework.testing.mutants import check_base, check_mutant, rules_of
 
 import pellicle as pl
+from tests.framework.testing.mutants import check_base, check_mutant, rules_of
 
 
 class Output(pl.Output):
@@ -25,22 +25,22 @@ class Output(pl.Output):
         path.write_text(json.dumps(self.shown(runs.table["depth"].values.tolist())))
         return (path,)
 
-    def shown(self, depths: list[float]) -> list[float]:
+    def shown(self, depths: list[float]) -> list[Any]:
         return depths
 
 
 class LosesFirst(Output):
     """Forgets the first step."""
 
-    def shown(self, depths: list[float]) -> list[float]:
-        return depths[1:] or ["none"]  # type: ignore[list-item]
+    def shown(self, depths: list[float]) -> list[Any]:
+        return depths[1:] or ["none"]
 
 
 class LosesLast(Output):
     """Forgets the last step."""
 
-    def shown(self, depths: list[float]) -> list[float]:
-        return depths[:-1] or ["none"]  # type: ignore[list-item]
+    def shown(self, depths: list[float]) -> list[Any]:
+        return depths[:-1] or ["none"]
 
 
 class Nameless(Output):
