@@ -196,13 +196,7 @@ def writers(
 
 
 def all_done(calls: Iterable[Callable[[], Value]]) -> list[Value]:
-    """Return what all calls return; one that raises does not keep the others from being made.
-
-    Raises
-    ------
-    Exception
-        The first that was raised.
-    """
+    """Make all calls, even where one raises; return the values, or raise the first exception."""
     values: list[Value] = []
     errors: list[Exception] = []
     for call in calls:
