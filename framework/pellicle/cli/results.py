@@ -1,4 +1,4 @@
-"""What is printed of results and of studies, and the exit code that they deserve."""
+"""Print results and tables of studies, and exit by how they converged."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def print_origin(data: xr.Dataset) -> None:
-    """Print where a result comes from."""
+    """Print title, date and versions of a result."""
     for name in ("title", "date", "versions"):
         typer.echo(f"{name + ':':10}{for_document(str(data.attrs.get(name, '')))}")
 
@@ -51,11 +51,11 @@ def print_steps(result: Result) -> None:
 
 
 def print_contact(result: Result) -> None:
-    """Print a second table, of the shape of the contact."""
+    """Print the shape of the contact at each step."""
     from pellicle.results.variables import names_of
 
     data = result.dataset
-    # Files of earlier versions do not say it.
+    # Files of earlier versions lack them.
     names = [name for name in names_of("contact") if name in data]
     if not names:
         return
@@ -74,18 +74,16 @@ def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
 
 
 def print_runs(table: xr.Dataset) -> None:
-    """Print a row for each run of a study: its parameters, its last step and how it ended."""
+    """Print parameters, last step and verdict of each run of a study."""
     from pellicle.studies.summary import rows
 
-    found = rows(table)
-    names = list(found[0])
-    units = {name: table[name].attrs.get("units", "1") for name in names if name in table}
-    heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
-    print_table(names, found, heads)
+    lines = rows(table)
+    names = list(lines[0])
+    print_table(names, lines, _heads(table, [name for name in names if name in table]))
 
 
 def exit_by_convergence(result: Result) -> None:
-    """Exit unless all steps of a run converged, and say which did not or are too coarse."""
+    """Print which steps did not converge or are too coarse; exit unless all converged."""
     from pellicle.results.result import said_of_steps
 
     for step, message in result.failures():
@@ -97,7 +95,7 @@ def exit_by_convergence(result: Result) -> None:
 
 
 def exit_by_status(table: xr.Dataset) -> None:
-    """Exit unless all runs of a study converged, and say which did not."""
+    """Print which runs of a study did not converge; exit unless all did."""
     from pellicle.studies.summary import failures, reasons
 
     if message := failures(table):

@@ -45,7 +45,7 @@ from pellicle.results.result import Result
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import names_of
-from pellicle.studies.summary import coarse, each_run, failures, reasons, standing
+from pellicle.studies.summary import coarse, failures, progress_of, reasons, runs_of
 from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ class Html(Output):
     def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
         """Write the page of a study."""
         said = json.loads(table.attrs[FIRST_RUN])
-        runs = list(each_run(table))
+        runs = list(runs_of(table))
         mapped = dict(self._frames_of_runs(runs, place.directory / "runs"))
         shown = {index: number for number, index in enumerate(mapped)}
         maps = (
@@ -155,13 +155,13 @@ class Html(Output):
         """Yield the maps of the last step of runs, by their place among all."""
         import xarray as xr
 
-        there = [index for index, row in enumerate(runs) if standing(row)[0]]
+        there = [index for index, row in enumerate(runs) if progress_of(row)[0]]
         chosen = self._chosen(len(there))
         points = side(self.points, len(chosen) * len(FIELDS))
         for index in (there[number] for number in chosen):
             row = runs[index]
             path = folder / f"{row['run'].item()}.h5"
-            last = standing(row)[0] - 1
+            last = progress_of(row)[0] - 1
             try:
                 attributes, fields = storage.fields(path, RESULT_FIELDS, last)
             except StorageError:
@@ -293,7 +293,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], shown: dict[int, int]) -> T
     numbers = [_column(name, table[name]) for name in found]
     rows: list[list[str | Cell]] = []
     for index, row in enumerate(runs):
-        done, wanted, word = standing(row)
+        done, wanted, word = progress_of(row)
         given = [
             _said(row[name].item(), factor) for name, (_, factor) in zip(axes, varied, strict=True)
         ]
