@@ -13,7 +13,6 @@ from scipy.special import stdtrit
 
 from pellicle.errors import ConvergenceError
 from pellicle.fitting.models.force_model import MODULUS, TENSION, Coordinates, Parameter
-from pellicle.fitting.status import Report, ignore
 
 from .likelihood import REACH, ChiSquared, Minimum, least
 
@@ -118,7 +117,7 @@ def profile_likelihood(
     threshold: float,
     wanted: Sequence[Parameter],
     without_tension: Callable[[Minimum], Minimum],
-    report: Report = ignore,
+    report: Callable[[str], None] = lambda words: None,
 ) -> ProfileResult:
     """Return the minimum near ``best``, the one without tension, and intervals of ``wanted``.
 
@@ -207,12 +206,10 @@ def confidence_interval(
 def _search_limits(
     likelihood: ChiSquared, best: Coordinates, parameter: Parameter
 ) -> tuple[float, float]:
-    value, scale = best[parameter], likelihood.scale[parameter]
+    value, (scale, low, high) = best[parameter], likelihood.ranges[parameter]
     if parameter.logarithmic:
         return value - REACH, value + REACH
-    if np.isfinite(parameter.minimum):
-        return parameter.minimum, float(np.exp(REACH)) * max(value, scale)
-    return likelihood.limits[parameter]
+    return low, float(np.exp(REACH)) * max(value, scale) if np.isinf(high) else high
 
 
 def _end(
