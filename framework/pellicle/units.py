@@ -36,8 +36,7 @@ _EXAMPLES = {
     "rad": "70 degree",
 }
 _NUMBER_AND_UNIT = re.compile(
-    r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)",
-    re.DOTALL | re.IGNORECASE,
+    r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)", re.DOTALL | re.IGNORECASE
 )
 # pint evaluates every number and power in a text, and "Pa*9**9**9**9" never ends. It only gets
 # products and quotients of names with one small power.
@@ -273,12 +272,7 @@ class Quantity:
     @property
     def bounds(self) -> list[str]:
         """The bounds as text, e.g. ``["> 0", "≤ 0.5"]``."""
-        all_four = (
-            (">", self.above),
-            ("≥", self.at_least),
-            ("<", self.below),
-            ("≤", self.at_most),
-        )
+        all_four = ((">", self.above), ("≥", self.at_least), ("<", self.below), ("≤", self.at_most))
         return [f"{sign} {bound:g}" for sign, bound in all_four if bound is not None]
 
     def _wanted(self) -> str:

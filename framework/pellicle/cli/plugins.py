@@ -9,9 +9,7 @@ import typer
 from .printing import print_json, print_table
 
 
-def plugins(
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
-) -> None:
+def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False) -> None:
     """List the components that are installed, and what is broken and why."""
     from pellicle.plugins import registry
 

@@ -34,37 +34,34 @@ def print_steps(result: Result) -> None:
         requested.insert(0, "contact_radius")
     names = ["depth", "force", *areas, *requested, "iterations"]
     coarse = dict(result.coarse())
-    rows = []
-    for number in data["step"].values.tolist():
-        step = data.sel(step=number)
-        row = {name: f"{step[name].item():.6g}" for name in names}
-        status = "converged" if step["converged"].item() else "NOT CONVERGED"
-        if number in coarse:
-            status = "too coarse"
-        rows.append({"step": str(number), **row, "status": status})
-    print_table(["step", *names, "status"], rows, _heads(data, names))
-    for number, converged, status in zip(
-        data["step"].values.tolist(), data["converged"], data["status"], strict=True
-    ):
-        if converged and status != "converged" and number not in coarse:
-            typer.echo(f"step {number}: {for_document(str(status.item()))}", err=True)
+    numbers = data["step"].values.tolist()
+    converged = dict(zip(numbers, data["converged"].values.tolist(), strict=True))
+    verdicts = [
+        "too coarse" if n in coarse else "converged" if converged[n] else "NOT CONVERGED"
+        for n in numbers
+    ]
+    _print_steps(data, names, {"status": verdicts})
+    for number, status in zip(numbers, data["status"].values.tolist(), strict=True):
+        if converged[number] and status != "converged" and number not in coarse:
+            typer.echo(f"step {number}: {for_document(status)}", err=True)
 
 
 def print_contact(result: Result) -> None:
     """Print the shape of the contact at each step."""
     from pellicle.results.variables import names_of
 
-    data = result.dataset
     # Files of earlier versions lack them.
-    names = [name for name in names_of("contact") if name in data]
-    if not names:
-        return
-    typer.echo("contact:")
-    rows = [
-        {"step": str(number), **{name: f"{data[name].values[index]:.6g}" for name in names}}
-        for index, number in enumerate(data["step"].values.tolist())
-    ]
-    print_table(["step", *names], rows, _heads(data, names))
+    if names := [name for name in names_of("contact") if name in result.dataset]:
+        typer.echo("contact:")
+        _print_steps(result.dataset, names, {})
+
+
+def _print_steps(data: xr.Dataset, names: list[str], texts: dict[str, list[str]]) -> None:
+    """Print a row for each step: numbers by their names, and further columns of texts."""
+    columns = {"step": [str(number) for number in data["step"].values.tolist()]}
+    columns |= {name: [f"{value:.6g}" for value in data[name].values] for name in names} | texts
+    rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    print_table(list(columns), rows, _heads(data, names))
 
 
 def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:

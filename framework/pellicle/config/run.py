@@ -45,11 +45,9 @@ class Run(FromFile):
     kernel: Annotated[Kernel, FromRegistry(), Field(description="how the surface yields")]
     indenter: Annotated[Indenter, FromRegistry(), Field(description="what is pressed in")]
     loading: Annotated[Loading, Field(description="the load steps")]
-    solver: Annotated[
-        Solver,
-        FromRegistry(),
-        Field(description="how it is solved"),
-    ] = Field(default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER}))
+    solver: Annotated[Solver, FromRegistry(), Field(description="how it is solved")] = Field(
+        default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER})
+    )
     corrections: Annotated[
         tuple[Annotated[AreaCorrection, FromRegistry()], ...],
         Field(description="corrections of the contact area"),

@@ -103,9 +103,7 @@ class Study(FromFile):
         Field(description="further numbers of the table: name → arithmetic expression"),
     ] = Field(default_factory=dict)
     executor: Annotated[
-        Executor,
-        FromRegistry(),
-        Field(description="what carries out the runs"),
+        Executor, FromRegistry(), Field(description="what carries out the runs")
     ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
     _points: tuple[Point, ...] = PrivateAttr()
 
