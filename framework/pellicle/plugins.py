@@ -292,11 +292,11 @@ def checked_type(component: Any, family: str) -> str:
         raise PluginError(f"{name} lacks the method {', '.join(missing)}")
     if not (component.__doc__ or "").strip():
         raise PluginError(f"{name} lacks a docstring: its first line is shown to users")
-    for key, field_info in component.model_fields.items():
-        if key != "type" and not field_info.description:
-            raise PluginError(f"{name}.{key} lacks Field(description=…) with its unit")
-        if (quantity := quantity_of(field_info)) and not quantity.has_known_unit:
-            raise PluginError(f"{name}.{key}: Quantity({quantity.unit!r}) has an unknown unit")
-    # Raises for a field without a JSON schema, which would break the schema of all components.
+    for field_, its in component.model_fields.items():
+        if field_ != "type" and not its.description:
+            raise PluginError(f"{name}.{field_} lacks Field(description=…) with its unit")
+        if (quantity := quantity_of(its)) and not quantity.has_known_unit:
+            raise PluginError(f"{name}.{field_}: Quantity({quantity.unit!r}) is of no known unit")
+    # Raises on a field whose type is unknown or has no JSON: it would spoil the schema of all.
     component.model_json_schema()
     return str(names[0])

@@ -17,26 +17,26 @@ _IN_PART = "InPart"
 
 
 def json_schema(model: type[BaseModel]) -> dict[str, Any]:
-    """Return the JSON schema of a model whose fields hold any installed component.
+    """Return the JSON schema of a model whose fields take any component that is installed.
 
-    Components in the model's own fields are written out. Within components they are references,
-    since a component may hold another of its own family, and so on without end.
+    Where such a field is the model's own the components are written out; within components, which
+    may hold others of their own family without end, they are referred to.
     """
     families = registry().components
-    installed = [registered for family in families.values() for registered in family.values()]
+    installed = [each for found in families.values() for each in found.values()]
     models = [model, *(registered.component for registered in installed)]
-    refs, schemas = models_json_schema([(m, "validation") for m in models])
-    names = {m: refs[m, "validation"]["$ref"].rpartition("/")[2] for m in models}
-    definitions: dict[str, Any] = schemas["$defs"]
-    references: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
-    full: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
+    refs, made = models_json_schema([(each, "validation") for each in models])
+    names = {each: refs[each, "validation"]["$ref"].rpartition("/")[2] for each in models}
+    definitions: dict[str, Any] = made["$defs"]
+    referred: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
+    written: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
     for registered in installed:
         component = registered.component
         required = {"required": ["type", *_required(component)]}
-        references[component.family].append(refs[component, "validation"] | required)
-        full[component.family].append(definitions[names[component]] | required)
-    top = _filled(_filled(definitions.pop(names[model]), full), references)
-    return {"$defs": _filled(definitions, references), **top}
+        referred[component.family].append(refs[component, "validation"] | required)
+        written[component.family].append(definitions[names[component]] | required)
+    top = _filled(_filled(definitions.pop(names[model]), written), referred)
+    return {"$defs": _filled(definitions, referred), **top}
 
 
 def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:

@@ -392,10 +392,10 @@ def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array
     """
     if not hasattr(kernel, "compliance"):
         raise ConfigError(
-            f"{shown(kernel)} is not a kernel; make one by pellicle.kernel(…)", "kernel"
+            f"{shown(kernel)} is not a kernel; make one with pellicle.kernel(…)", "kernel"
         )
     if not isinstance(grid, Grid):
-        raise ConfigError(f"{shown(grid)} is not a grid; make one by pellicle.Grid(…)", "grid")
+        raise ConfigError(f"{shown(grid)} is not a grid; make one with pellicle.Grid(…)", "grid")
     given = np.asarray(pressure)
     if given.shape != grid.shape or given.dtype.kind not in "fiu":
         raise ConfigError(
