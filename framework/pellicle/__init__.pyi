@@ -31,7 +31,7 @@ from .fitting.pooled import fit_pooled as fit_pooled
 from .fitting.statistics.estimate import Estimate as Estimate
 from .grid import Grid as Grid
 from .hookspecs import hookimpl as hookimpl
-from .loading import Loading as Loading
+from .config.loading import Loading as Loading
 from .numerics.operators import displacement as displacement
 from .numerics.problem import Problem as Problem
 from .numerics.solution import Solution as Solution

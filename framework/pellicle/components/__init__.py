@@ -5,6 +5,9 @@ methods are pure. The same object is configuration, code, JSON schema and proven
 pickles to workers. A concrete component declares ``type: Literal["name"] = "name"``.
 """
 
+from pellicle.numerics.problem import Depth as Depth
+from pellicle.numerics.problem import Force as Force
+
 from .base import Component as Component
 from .correction import AreaCorrection as AreaCorrection
 from .executor import AnyTask as AnyTask
@@ -23,6 +26,9 @@ from .indenter import IsShallowLimit as IsShallowLimit
 from .kernel import Kernel as Kernel
 from .output import Output as Output
 from .output import Place as Place
+from .prescription import Prescription as Prescription
+from .prescription import Search as Search
+from .prescription import Setting as Setting
 from .solver import HasMemory as HasMemory
 from .solver import IterativeSolver as IterativeSolver
 from .solver import Monitor as Monitor
@@ -31,6 +37,7 @@ from .validation import Case as Case
 from .validation import Suite as Suite
 
 FAMILIES: dict[str, type[Component]] = {
-    family.family: family for family in (Kernel, Indenter, Solver, AreaCorrection, Output, Executor)
+    family.family: family
+    for family in (Kernel, Indenter, Solver, AreaCorrection, Output, Executor, Prescription)
 }
 """The base class of each family, by name."""

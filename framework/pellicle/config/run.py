@@ -25,7 +25,6 @@ from pydantic import (
 from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid, grid_of_run
-from pellicle.loading import Loading
 from pellicle.model.base import Model
 from pellicle.model.input_path import AS_GIVEN, paths_relative_to
 from pellicle.model.paths import replaced
@@ -33,6 +32,7 @@ from pellicle.model.toml import parse_override, read_toml
 from pellicle.plugins import registry
 
 from .component_field import FromRegistry
+from .loading import Loading
 from .output_conflicts import refuse_clashes
 
 DEFAULT_SOLVER = "active_set"
@@ -74,12 +74,12 @@ class Run(Model):
             return make(given)
 
     @model_validator(mode="after")
-    def _pressure_needs_period(self) -> Self:
-        if self.loading.prescribed == "mean_pressure" and self.grid.boundary == "free":
+    def _prescription_has_a_period(self) -> Self:
+        if self.loading.prescription.needs_period and self.grid.boundary == "free":
             raise ConfigError(
                 'is not defined on an infinite surface (grid.boundary = "free"); prescribe force '
                 'or depth, or set grid.boundary = "periodic"',
-                "loading.mean_pressure",
+                f"loading.{self.loading.prescribed}",
             )
         return self
 

@@ -16,7 +16,6 @@ from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 from pellicle import memory
 from pellicle.components import Executor
 from pellicle.errors import ConfigError, Problem, shown
-from pellicle.loading import ON_DEMAND
 from pellicle.model import ranges as axes
 from pellicle.model.base import Model
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate

@@ -1,0 +1,112 @@
+"""The load steps of a run: what is prescribed, and with which options."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from functools import cache, cached_property
+from typing import Annotated, Any
+
+from pydantic import ConfigDict, Field, create_model, model_validator
+
+from pellicle.components import Prescription
+from pellicle.errors import ConfigError, Problem
+from pellicle.loading import OPTIONS, LoadSteps
+from pellicle.model.base import Model
+from pellicle.model.messages import nearest
+from pellicle.plugins import registry
+
+# Messages name these first.
+_USUAL = "depth", "force", "mean_pressure"
+
+
+class Loading(Model):
+    """The load steps: exactly one quantity is prescribed, in the order of its path.
+
+    The key is the type of a prescription; its value is one value, a list, or a ramp
+    ``{start, stop, num}``, with ``spacing = "log"`` if need be; with ``back = true`` the ramp goes
+    back to its start by the same values. The fields of the prescription are further keys.
+    """
+
+    model_config = ConfigDict(extra="allow")
+
+    stiffness: Annotated[
+        bool,
+        Field(
+            description="whether each step has its contact stiffness dF/dδ; costs one more linear "
+            "solve a step"
+        ),
+    ] = False
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read(cls, given: Any) -> Any:
+        if not isinstance(given, Mapping):
+            return given
+        data = {key: value for key, value in given.items() if value is not None}
+        return dict(loading_model(_prescribed(data))(**data))
+
+    @cached_property
+    def prescription(self) -> Prescription:
+        """What is prescribed."""
+        fields = self.__pydantic_extra__ or {}
+        type_ = self.prescribed
+        others = {name: value for name, value in fields.items() if name != type_}
+        return registry().make(Prescription, {"type": type_, **others})
+
+    @property
+    def prescribed(self) -> str:
+        """The type of what is prescribed."""
+        return _prescribed(self.__pydantic_extra__ or {})
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The load steps in order, SI."""
+        values: tuple[float, ...] = getattr(self, self.prescribed)
+        return values
+
+    @property
+    def variables(self) -> set[str]:
+        """The result variables that only this loading has."""
+        return {*self.prescription.variables, *(["stiffness"] if self.stiffness else [])}
+
+
+@cache
+def loading_model(type_: str) -> type[Model]:
+    """Return the model of the keys of ``[loading]`` where ``type_`` is prescribed."""
+    component = registry().find("prescription", type_)
+    assert issubclass(component, Prescription)
+    options = {name: Loading.model_fields[name] for name in OPTIONS}
+    fields = {n: info for n, info in component.model_fields.items() if n != "type"} | options
+    meaning = (inspect.getdoc(component) or "").partition("\n")[0]
+    steps = Annotated[
+        tuple[float, ...], LoadSteps(component.quantity()), Field(description=meaning)
+    ]
+    more: dict[str, Any] = {name: (info.annotation, info) for name, info in fields.items()}
+    made: type[Model] = create_model(
+        f"Loading_{type_}", __base__=Model, **{type_: (steps, ...)}, **more
+    )
+    return made
+
+
+def _prescribed(data: Mapping[str, Any]) -> str:
+    """Return which key of a table names its prescription, or refuse the table."""
+    families = registry().components["prescription"]
+    known = [*_USUAL, *sorted(families.keys() - {*_USUAL})]
+    given = [name for name in known if name in data]
+    if len(given) == 1:
+        return given[0]
+    if given:
+        what = f"prescribes {' and '.join(given)}"
+    else:
+        problems = []
+        for key in data.keys() - OPTIONS:
+            try:
+                registry().find("prescription", key)
+            except ConfigError:
+                message = f"is not a field here; {nearest(key, [*known, *OPTIONS])}"
+                problems.append(Problem(key, message))
+        if problems:
+            raise ConfigError(problems)
+        what = "prescribes nothing"
+    raise ConfigError(f"{what}; give exactly one of {', '.join(known)}")
