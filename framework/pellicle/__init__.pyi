@@ -35,6 +35,7 @@ from .config.loading import Loading as Loading
 from .numerics.operators import displacement as displacement
 from .numerics.problem import Problem as Problem
 from .numerics.solution import Solution as Solution
+from .numerics.solution import State as State
 from .numerics.solution import Stop as Stop
 from .plugins import registry as registry
 from .results.result import Result as Result

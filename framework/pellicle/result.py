@@ -1,6 +1,7 @@
 """Results, for plugins: the contents of `pellicle.results.result`."""
 
 from pellicle.numerics.solution import Solution as Solution
+from pellicle.numerics.solution import State as State
 from pellicle.numerics.solution import Stop as Stop
 from pellicle.results.result import Result as Result
 from pellicle.results.result import load as load

@@ -34,7 +34,8 @@ def solved(
     for _ in range(repeats):
         before, started = problem.operator.applications, time.process_time()
         solver = pl.solver("active_set", tolerance=tolerance)
-        pressure = solver.solve(problem, start, lambda *_: None).pressure
+        state = None if start is None else pl.State(start, start, problem.value)
+        pressure = solver.solve(problem, state, lambda *_: None).pressure
         best = min(best, time.process_time() - started)
         used = problem.operator.applications - before
     return pressure, used, best

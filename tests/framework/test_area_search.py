@@ -37,8 +37,9 @@ def search(cells: Callable[[float], int], area: float, start: float | None = Non
     problem = Problem(GRID, make_operator(kernel, GRID), profile, "force", 0.0)
     before = None
     if start is not None:
-        before = np.zeros(GRID.shape)
-        before.ravel()[:4] = start / 4
+        pressure = np.zeros(GRID.shape)
+        pressure.ravel()[:4] = start / 4
+        before = pl.State(pressure, pressure, 0.0)
     return reach_area(problem, area, Staircase(cells=cells), before, lambda *_: None)
 
 

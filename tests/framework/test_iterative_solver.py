@@ -2,73 +2,137 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from pellicle import Grid, IterativeSolver, Problem, Stop
+import pellicle as pl
+from pellicle import Grid, IterativeSolver, Problem, Solution, Solver, State, Stop
+from pellicle.arrays import Array
+from pellicle.numerics.solution import Progress
 from pellicle.operators import make_operator
 from pellicle_plugins.kernels.half_space import HalfSpace
 
-Array = NDArray[np.float64]
+
+class Iterate(NamedTuple):
+    """An index into what is played, and the progress up to there."""
+
+    index: int
+    progress: Progress
 
 
 class Played(IterativeSolver):
-    """Goes through residuals that are given, with so many cells wrong at each."""
+    """Goes through given residuals, and gives up after three that bring no progress."""
 
     type: Literal["played"] = "played"
     residuals: list[float]
-    wrong: list[int]
+    misclassified: list[int]
+    counts: bool = False
 
-    def begin(self, problem: Problem, start: Array | None) -> int:
-        """Return the first place."""
-        return 0
+    def begin(self, problem: Problem, start: State | None) -> Iterate:
+        """Return the first iterate."""
+        return Iterate(0, Progress().after(*self.measures(0)))
 
-    def step(self, problem: Problem, state: int) -> int:
-        """Return the next place."""
-        return state + 1
+    def step(self, problem: Problem, state: Iterate) -> Iterate:
+        """Return the next iterate."""
+        index = state.index + 1
+        return Iterate(index, state.progress.after(*self.measures(index)))
 
-    def residual(self, problem: Problem, state: int) -> float:
-        """Return the residual at a place."""
-        return self.residuals[state]
+    def measures(self, index: int) -> Sequence[float]:
+        """Return the residual, and the misclassified cells if they count as progress."""
+        return self.residuals[index], *self.misclassified[index : index + self.counts]
 
-    def pressure(self, state: int) -> Array:
-        """Return nothing."""
+    def residual(self, problem: Problem, state: Iterate) -> float:
+        """Return the residual of an iterate."""
+        return self.residuals[state.index]
+
+    def pressure(self, state: Iterate) -> Array:
+        """Return no pressure."""
         return np.zeros((4, 4))
 
-    def patience(self, problem: Problem) -> int:
-        """Return three."""
-        return 3
+    def terminate(self, problem: Problem, state: Iterate) -> Stop | None:
+        """Return whether it stalls."""
+        return Stop.STALLED if state.progress.stagnant >= 3 else None
 
 
-class PlayedByWrong(Played):
-    """Counts fewer wrong cells as progress, too."""
+class Endless(Played):
+    """Never gives up by itself."""
 
-    def merits(self, problem: Problem, state: int) -> tuple[float, ...]:
-        """Return the number of wrong cells."""
-        return (self.wrong[state],)
+    def terminate(self, problem: Problem, state: Iterate) -> Stop | None:
+        """Leave it to the loop."""
+        return IterativeSolver.terminate(self, problem, state)
 
 
-@pytest.mark.parametrize(
-    ("solver", "residuals", "stop", "iterations"),
-    [
-        (Played, [1.0, 2.0, 2.0, 2.0, 0.5, 0.0], Stop.STALLED, 3),
-        (Played, [1.0, 2.0, 0.9, 1.0, 1.0, 0.0], Stop.DONE, 5),
-        (PlayedByWrong, [1.0, 2.0, 2.0, 2.0, 2.0, 0.0], Stop.DONE, 5),
-        (PlayedByWrong, [1.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 0.0], Stop.STALLED, 7),
-        (PlayedByWrong, [1.0, np.nan], Stop.NOT_FINITE, 1),
-    ],
-)
-def test_end(solver: type[Played], residuals: list[float], stop: Stop, iterations: int) -> None:
-    """Three iterations without a new least of anything that counts end it."""
+def solve(solver: Solver) -> tuple[Solution, list[int]]:
+    """Return the solution of a problem, and the iterations that the monitor was called with."""
     grid = Grid(points=4, size=1.0, boundary="periodic")
     operator = make_operator(HalfSpace(reduced_modulus=1.0), grid)
     problem = Problem(grid, operator, np.zeros(grid.shape), "force", 1.0)
-    told: list[int] = []
-    played = solver(residuals=residuals, wrong=[9, 8, 7, 6, 5, 5, 5, 5, 0], tolerance=1e-8)
-    found = played.solve(problem, None, lambda iteration, excess: told.append(iteration))
-    assert found.stop is stop
-    assert found.iterations == iterations
-    assert told == list(range(iterations + 1))
+    iterations: list[int] = []
+    solution = solver.solve(problem, None, lambda iteration, ratio: iterations.append(iteration))
+    return solution, iterations
+
+
+@pytest.mark.parametrize(
+    ("counts", "residuals", "stop", "iterations"),
+    [
+        (False, [1.0, 2.0, 2.0, 2.0, 0.5, 0.0], Stop.STALLED, 3),
+        (False, [1.0, 2.0, 0.9, 1.0, 1.0, 0.0], Stop.DONE, 5),
+        (True, [1.0, 2.0, 2.0, 2.0, 2.0, 0.0], Stop.DONE, 5),
+        (True, [1.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 0.0], Stop.STALLED, 7),
+        (True, [1.0, np.nan], Stop.NOT_FINITE, 1),
+    ],
+)
+def test_end(counts: bool, residuals: list[float], stop: Stop, iterations: int) -> None:
+    """Three iterations without a new least of anything that counts end it."""
+    solution, monitored = solve(
+        Played(
+            residuals=residuals,
+            misclassified=[9, 8, 7, 6, 5, 5, 5, 5, 0],
+            counts=counts,
+            tolerance=1e-8,
+        )
+    )
+    assert solution.stop is stop
+    assert solution.iterations == iterations
+    assert monitored == list(range(iterations + 1))
+
+
+@pytest.mark.parametrize(
+    ("residuals", "stop", "iterations"),
+    [
+        ([1.0] * 300, Stop.STALLED, 208),
+        ([1.0] * 200 + [0.9] * 300, Stop.STALLED, 408),
+        ([1.0] * 200 + [0.9] * 200 + [0.0], Stop.DONE, 400),
+    ],
+)
+def test_end_by_default(residuals: list[float], stop: Stop, iterations: int) -> None:
+    """The sum of the grid's edges and 200 more iterations without a new least residual end it."""
+    solution, _ = solve(Endless(residuals=residuals, misclassified=[], tolerance=1e-8))
+    assert (solution.stop, solution.iterations) == (stop, iterations)
+
+
+@pytest.mark.parametrize("limit", [1, 5])
+def test_limit(limit: int) -> None:
+    """No more iterations than allowed, and one that ends it is not lost."""
+    residuals = [1.0] * 5 + [0.0]
+    solver = Endless(residuals=residuals, misclassified=[], max_iterations=limit, tolerance=1e-8)
+    stop = Stop.DONE if limit == 5 else Stop.ITERATION_LIMIT
+    solution, _ = solve(solver)
+    assert (solution.stop, solution.iterations) == (stop, limit)
+
+
+@pytest.mark.parametrize(
+    ("name", "replacement"),
+    [
+        ("punch_pressure", r"response\(problem, state, monitor\)"),
+        ("patience", r"terminate\(problem, state\)"),
+        ("merits", r"terminate\(problem, state\)"),
+    ],
+)
+def test_a_method_of_the_contract_before_is_refused(name: str, replacement: str) -> None:
+    """Nothing calls it any more, so the class cannot be made; the message names the new method."""
+    with pytest.raises(pl.PluginError, match=rf"Outdated.{name}\(\) .*; write {replacement}"):
+        type("Outdated", (pl.Solver,), {name: lambda self, *arguments: None})

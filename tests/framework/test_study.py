@@ -20,7 +20,6 @@ import pellicle as pl
 from pellicle import files
 from pellicle.cli import app
 from pellicle.components import Monitor
-from pellicle.operators import Array
 from pellicle.results import storage
 from pellicle.studies import runner as study_module
 
@@ -45,7 +44,7 @@ class Counting(pl.Solver):
     solved: ClassVar[list[tuple[float, float]]] = []
     fails_at: ClassVar[Callable[[pl.Problem], Exception | None]] = lambda problem: None
 
-    def solve(self, problem: pl.Problem, start: Array | None, monitor: Monitor) -> pl.Solution:
+    def solve(self, problem: pl.Problem, start: pl.State | None, monitor: Monitor) -> pl.Solution:
         """Let another solver do it."""
         if (error := type(self).fails_at(problem)) is not None:
             raise error

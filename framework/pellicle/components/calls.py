@@ -6,6 +6,7 @@ far below that of the call. A kernel is called by `pellicle.operators` in the sa
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import replace
@@ -27,7 +28,7 @@ from pellicle.checks import (
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import LARGEST, Grid
 from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
-from pellicle.numerics.solution import Solution, Stop
+from pellicle.numerics.solution import Solution, State, Stop
 
 from .correction import AreaCorrection
 from .executor import AnyTask, Executor, Outcome, Report, Say
@@ -148,7 +149,7 @@ def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> Forc
 
 
 def solution_of(
-    solver: Solver, problem: Problem, start: Array | None, monitor: Monitor
+    solver: Solver, problem: Problem, start: State | None, monitor: Monitor
 ) -> Solution:
     """Return the solution of a load step, its pressure in an array of its own.
 
@@ -157,17 +158,28 @@ def solution_of(
     Raises
     ------
     PluginError
-        It is not a `Solution` of the grid's shape, or the solver changed the problem.
+        It is not a `Solution` of the grid's shape, the solver changed the problem, or it takes
+        ``start`` for an array, which it was in earlier versions.
     """
     if not problem.touches:
         return Solution(np.zeros(problem.grid.shape), 0)
+    name = component_name(solver)
     view = _read_only_problem(problem)
     fields, parts = dict(vars(view)), problem.operator.parts()
-    with blamed(solver):
-        value = solver.solve(view, None if start is None else read_only(start), monitor)
+    try:
+        with blamed(solver):
+            value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
+    except (AttributeError, TypeError, ValueError) as error:
+        outdated = "'State'|tuple|sequence|inhomogeneous" if start else "argument 'pressure'"
+        if not re.search(outdated, str(error)):
+            raise
+        raise PluginError(
+            f"{' '.join(error.__notes__)}: {error}; solve() starts from None or a pellicle.State, "
+            "not an array: its pressure is start.pressure; it returns "
+            "pellicle.Solution(pressure or state, iterations, stop)"
+        ) from error
     _require_unchanged(solver, "solve()", fields, dict(vars(view)), "problem")
     _require_unchanged(solver, "solve()", parts, problem.operator.parts(), "problem.operator")
-    name = component_name(solver)
     if not isinstance(value, Solution):
         raise PluginError(
             f"{name}: solve() returned {shown(value)}; it has to return a pellicle.Solution"
@@ -179,11 +191,11 @@ def solution_of(
             f"{shown(value.stop)}; they have to be a whole number and a pellicle.Stop"
         )
     # The solver may use the memory of what it returned again.
-    return replace(value, pressure=pressure.copy(), iterations=int(value.iterations))
+    return Solution(pressure.copy(), int(value.iterations), value.stop)
 
 
-def punch_pressure_of(solver: Solver, problem: Problem, contact: Mask, monitor: Monitor) -> Array:
-    """Return the pressure per depth [Pa/m] under a flat punch whose footprint is ``contact``.
+def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor) -> Array:
+    """Return dp/dδ [Pa/m] with the contact of ``state`` fixed.
 
     Raises
     ------
@@ -192,21 +204,23 @@ def punch_pressure_of(solver: Solver, problem: Problem, contact: Mask, monitor: 
     """
     view, parts = _read_only_problem(problem), problem.operator.parts()
     with blamed(solver):
-        value = solver.punch_pressure(view, read_only(contact), monitor)
-    _require_unchanged(
-        solver, "punch_pressure()", parts, problem.operator.parts(), "problem.operator"
-    )
-    pressure = real_array(solver, "punch_pressure()", value, problem.grid.shape)
-    if pressure[~contact].any():
+        value = solver.response(view, _read_only_state(state), monitor)
+    _require_unchanged(solver, "response()", parts, problem.operator.parts(), "problem.operator")
+    pressure = real_array(solver, "response()", value, problem.grid.shape)
+    if pressure[~state.contact].any():
         raise PluginError(
-            f"{component_name(solver)}: punch_pressure() returned a pressure off the contact; it "
-            "has to be 0 there"
+            f"{component_name(solver)}: response() returned a pressure off the contact; it has to "
+            "be 0 there"
         )
     return pressure
 
 
 def _read_only_problem(problem: Problem) -> Problem:
     return replace(problem, profile=read_only(problem.profile))
+
+
+def _read_only_state(state: State) -> State:
+    return State(read_only(state.pressure), read_only(state.wall), state.depth)
 
 
 def _require_unchanged(

@@ -4,22 +4,16 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
-from operator import lt
-from typing import (
-    Annotated,
-    Any,
-    ClassVar,
-    Protocol,
-    runtime_checkable,
-)
+from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 from pydantic import Field
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array
+from pellicle.errors import PluginError
 from pellicle.grid import Grid
 from pellicle.numerics.problem import Problem, round_off
-from pellicle.numerics.solution import Solution, Stop
+from pellicle.numerics.solution import Progress, Solution, State, Stop
 from pellicle.units import Quantity
 
 from .base import Component
@@ -27,9 +21,14 @@ from .base import Component
 Monitor = Callable[[int, float], None]
 """Called by a solver with its iteration and its residual over the tolerance, to show progress."""
 
-
-# Residuals of an iteration that has gone as far as rounding lets it, over that of an application.
+# A residual up to this multiple of the rounding of one operator application is put down to it.
 _ROUNDINGS = 30.0
+# Methods of earlier versions, and what took their place.
+_REPLACED = {
+    "punch_pressure": "response(problem, state, monitor), for the contact state.pressure > 0",
+    "patience": "terminate(problem, state), which returns Stop.STALLED to end the iteration",
+    "merits": "terminate(problem, state), which returns Stop.STALLED to end the iteration",
+}
 
 
 @runtime_checkable
@@ -37,9 +36,9 @@ class HasMemory(Protocol):
     """A solver that states its memory; the estimate before a run uses it."""
 
     def arrays(self, grid: Grid) -> float:
-        """Return the number of arrays of the grid's shape that a solve holds at its peak.
+        """Return the number of arrays of the grid's shape that a solve needs at its peak.
 
-        Arrays of eight bytes a cell, beside operator and indenter.
+        Arrays of eight bytes per cell, in addition to operator and indenter.
         """
         ...
 
@@ -55,45 +54,57 @@ class Solver(Component):
         Field(description="bound on every residual, relative to the indenter's height range"),
     ] = 1e-8
 
-    @abstractmethod
-    def solve(self, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
-        """Return the pressure that solves ``problem``.
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        """Refuse a class that was written for the contract of an earlier version."""
+        super().__pydantic_init_subclass__(**options)
+        for name, replacement in _REPLACED.items():
+            if name in vars(cls):
+                raise PluginError(
+                    f"{cls.__name__}.{name}() belongs to the contract of an earlier version, and "
+                    f"nothing calls it any more; write {replacement}"
+                )
 
-        ``start`` is the pressure [Pa] of the step before, or None. The framework measures the
-        result afresh; what a solver believes of its accuracy is not used.
+    @abstractmethod
+    def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
+        """Return the solution of one load step.
+
+        ``start`` is the state at the end of the step before, or None. The framework measures the
+        result afresh; the solver's own estimate of its accuracy is not used.
         """
 
-    def punch_pressure(self, problem: Problem, contact: Mask, monitor: Monitor) -> Array:
-        """Return the pressure per depth [Pa/m] under a flat punch whose footprint is ``contact``.
+    def response(self, problem: Problem, state: State, monitor: Monitor) -> Array:
+        """Return dp/dδ [Pa/m] of the grid's shape, with the contact of ``state`` fixed.
 
-        It displaces the surface there by 1, to `tolerance`, and is of either sign; elsewhere it is
-        0. What else ``problem`` says of indenter and load does not matter. The framework makes the
-        contact stiffness of it. Here by conjugate gradients (`scipy.sparse.linalg.cg`); a solver
+        It is the pressure under a flat punch whose footprint is the contact, per depth: it
+        displaces the contact by 1, to `tolerance`, is of either sign there and 0 elsewhere. The
+        profile and the load of ``problem`` do not matter. The contact stiffness is its sum times
+        the area of a cell. By default by conjugate gradients (`scipy.sparse.linalg.cg`); a solver
         that has a preconditioner overrides this.
         """
         from scipy.sparse.linalg import LinearOperator, cg
 
-        cells = np.flatnonzero(contact)
-        whole = np.zeros(problem.grid.shape)
-        done = 0
+        cells = np.flatnonzero(state.contact)
+        pressure = np.zeros(problem.grid.shape)
+        iteration = 0
 
-        def displaced(pressure: Array) -> Array:
-            whole.ravel()[cells] = pressure
-            return problem.operator(whole).ravel()[cells]
+        def displacement(on_contact: Array) -> Array:
+            pressure.ravel()[cells] = on_contact
+            return problem.operator(pressure).ravel()[cells]
 
-        def tell(_: Array) -> None:
-            nonlocal done
-            done += 1
-            monitor(done, 1.0)
+        def count(_: Array) -> None:
+            nonlocal iteration
+            iteration += 1
+            monitor(iteration, 1.0)
 
-        operator = LinearOperator((cells.size, cells.size), matvec=displaced, dtype=np.float64)
-        found, _ = cg(operator, np.ones(cells.size), rtol=self.tolerance / 2, callback=tell)
-        whole.ravel()[cells] = found
-        return whole
+        operator = LinearOperator((cells.size, cells.size), matvec=displacement, dtype=np.float64)
+        on_contact, _ = cg(operator, np.ones(cells.size), rtol=self.tolerance / 2, callback=count)
+        pressure.ravel()[cells] = on_contact
+        return pressure
 
 
 class IterativeSolver(Solver):
-    """A solver that is a start, a step and a residual; one loop does the rest."""
+    """A solver given by a start, a step and a residual; one loop does the rest."""
 
     max_iterations: Annotated[
         int,
@@ -101,56 +112,55 @@ class IterativeSolver(Solver):
     ] = 20_000
 
     @abstractmethod
-    def begin(self, problem: Problem, start: Array | None) -> Any:
-        """Return the first state."""
+    def begin(self, problem: Problem, start: State | None) -> Any:
+        """Return the first iterate; ``start`` is the state of the step before, or None."""
 
     @abstractmethod
     def step(self, problem: Problem, state: Any) -> Any:
-        """Return the next state; it may reuse the memory of ``state``."""
+        """Return the next iterate; it may reuse the memory of ``state``."""
 
     @abstractmethod
     def residual(self, problem: Problem, state: Any) -> float:
-        """Return the largest residual of a state, relative as `tolerance` is."""
+        """Return the largest residual of an iterate, relative as `tolerance` is."""
 
     @abstractmethod
     def pressure(self, state: Any) -> Array:
-        """Return the pressure [Pa] of a state."""
+        """Return the pressure [Pa] of an iterate."""
 
-    def patience(self, problem: Problem) -> int:
-        """Return how many iterations end it if none brings a new least residual or merit.
+    def terminate(self, problem: Problem, state: Any) -> Stop | None:
+        """Return why the iteration ends above the tolerance, or None to go on, as by default.
 
-        A multiple of N here: a gradient method needs O(N) iterations, some of them in vain.
+        `Stop.STALLED` becomes `Stop.ROUND_OFF` where the residual is no more than rounding. In any
+        case the loop ends where the residual has had no new least value for N + 200 iterations, N
+        being the sum of the grid's edges in cells: gradient methods need O(N) iterations, and
+        their residual does not fall in each.
         """
-        return sum(problem.grid.shape) + 200
+        return None
 
-    def merits(self, problem: Problem, state: Any) -> tuple[float, ...]:
-        """Return what else than the residual falls while the iteration gets on: here nothing."""
-        return ()
-
-    def solve(self, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
+    def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
         """Iterate until the tolerance is met, or it is plain that it will not be."""
         state = self.begin(problem, start)
-        patience = self.patience(problem)
-        best: tuple[float, ...] = ()
-        best_at = iteration = 0
+        iteration, progress = 0, Progress()
         while True:
             residual = self.residual(problem, state)
             monitor(iteration, residual / self.tolerance)
-            merits = (residual, *self.merits(problem, state))
-            if any(map(lt, merits, best)):
-                best_at = iteration
-            best = tuple(map(min, merits, best or merits))
+            progress = progress.after(residual)
+            stop: Stop | None
             if not np.isfinite(residual):
                 stop = Stop.NOT_FINITE
             elif residual <= self.tolerance:
                 stop = Stop.DONE
-            elif iteration - best_at >= patience:
-                at_rounding = residual <= _ROUNDINGS * round_off(problem, self.pressure(state))
-                stop = Stop.ROUND_OFF if at_rounding else Stop.STALLED
-            elif iteration >= self.max_iterations:
-                stop = Stop.ITERATION_LIMIT
+            elif progress.stagnant >= sum(problem.grid.shape) + 200:
+                stop = Stop.STALLED
             else:
-                state = self.step(problem, state)
-                iteration += 1
-                continue
-            return Solution(self.pressure(state), iteration, stop)
+                stop = self.terminate(problem, state)
+            if stop is None and iteration >= self.max_iterations:
+                stop = Stop.ITERATION_LIMIT
+            if stop is not None:
+                break
+            state = self.step(problem, state)
+            iteration += 1
+        pressure = self.pressure(state)
+        if stop is Stop.STALLED and residual <= _ROUNDINGS * round_off(problem, pressure):
+            stop = Stop.ROUND_OFF
+        return Solution(pressure, iteration, stop)

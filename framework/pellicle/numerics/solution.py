@@ -1,11 +1,28 @@
-"""What a solver returns for one load step."""
+"""What a solver starts from and returns."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
+
+
+class State(NamedTuple):
+    """The surface at the end of a load step, from which the next step starts."""
+
+    pressure: Array
+    """Traction p = w + σ(g) on the surface [Pa], of the grid's shape."""
+    wall: Array
+    """Wall pressure w ≥ 0 [Pa]: `pressure` itself where nothing acts across the gap."""
+    depth: float
+    """Depth δ of the indenter [m]."""
+
+    @property
+    def contact(self) -> Mask:
+        """The cells on which the indenter presses, w > 0; bool of the grid's shape."""
+        return self.wall > 0
 
 
 class Stop(Enum):
@@ -23,11 +40,33 @@ class Stop(Enum):
 
 @dataclass(frozen=True)
 class Solution:
-    """What a solver returns for one step."""
+    """What a solver returns for one load step."""
 
-    pressure: Array
-    """Contact pressure ≥ 0 [Pa], of the grid's shape."""
+    state: State | Array
+    """The state; the pressure ≥ 0 [Pa] alone says as much where nothing acts across the gap."""
     iterations: int
     """Steps of the solver's outermost loop."""
     stop: Stop = Stop.DONE
-    """Why it ended."""
+    """Why the solver stopped."""
+
+    @property
+    def pressure(self) -> Array:
+        """The pressure [Pa], of the grid's shape."""
+        return self.state.pressure if isinstance(self.state, State) else self.state
+
+
+class Progress(NamedTuple):
+    """How long an iteration has made no progress, judged by measures that fall while it does."""
+
+    least: tuple[float, ...] = ()
+    """The least value of each measure so far."""
+    stagnant: int = 0
+    """Iterations since one of them fell below its least value."""
+
+    def after(self, *measures: float) -> Progress:
+        """Return the progress after one more iteration with these measures."""
+        if not self.least:
+            return Progress(measures)
+        pairs = tuple(zip(measures, self.least, strict=True))
+        improved = any(measure < least for measure, least in pairs)
+        return Progress(tuple(map(min, pairs)), 0 if improved else self.stagnant + 1)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.analysis import ellipse, patches, perimeter
-from pellicle.arrays import Array
 from pellicle.grid import Grid
 from pellicle.numerics.problem import Equilibrium
+from pellicle.numerics.solution import State
 
 from . import storage
 
@@ -91,9 +91,12 @@ class Steps:
         return len(self._scalars)
 
     @property
-    def pressure(self) -> Array | None:
-        """The pressure of the last step [Pa], or None before the first step."""
-        return self._fields["pressure"].values[len(self) - 1] if self._scalars else None
+    def state(self) -> State | None:
+        """The state at the end of the last step, or None before the first step."""
+        if not self._scalars:
+            return None
+        pressure = self._fields["pressure"].values[len(self) - 1]
+        return State(pressure, pressure, self._scalars[-1]["depth"].item())
 
     def append(self, step: xr.Dataset) -> xr.Dataset:
         """Copy a step of `step_dataset` into the arrays, and return it as a view of them."""

@@ -8,17 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellicle.arrays import Array
 from pellicle.components import Monitor
 from pellicle.components.calls import (
     corrected_area,
-    punch_pressure_of,
+    response_of,
     solution_of,
 )
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
 from pellicle.numerics.problem import Equilibrium, Problem, Stiffness, measure, measure_stiffness
-from pellicle.numerics.solution import Solution
+from pellicle.numerics.solution import Solution, State
 from pellicle.results.step import Steps, step_dataset
 
 from .progress import Bar
@@ -37,14 +36,14 @@ def solve_steps(
     origin = provenance(run)
     first = len(steps)
     for index, problem in enumerate(problems[first:], first):
-        # Only the copy in ``steps`` outlives a solve; the next one starts from its pressure.
+        # Only the copy in ``steps`` outlives a solve; the next one starts from its state.
         yield steps.append(
-            _solved_step(run, index, problem, steps.pressure, bar.step(index)).assign_attrs(origin)
+            _solved_step(run, index, problem, steps.state, bar.step(index)).assign_attrs(origin)
         )
 
 
 def _solved_step(
-    run: Run, index: int, problem: Problem, start: Array | None, monitor: Monitor
+    run: Run, index: int, problem: Problem, start: State | None, monitor: Monitor
 ) -> xr.Dataset:
     """Return a load step, solved and judged."""
     started = time.perf_counter()
@@ -67,9 +66,9 @@ def _solved_step(
 
 
 def solve_step(
-    run: Run, index: int, problem: Problem, start: Array | None, monitor: Monitor
+    run: Run, index: int, problem: Problem, start: State | None, monitor: Monitor
 ) -> Reached:
-    """Return the solution of load step ``index``, started from the pressure ``start`` [Pa]."""
+    """Return the solution of load step ``index``, started from ``start``."""
     areas = prescribed_areas(run)
     if areas and areas[index] > 0:
         return reach_area(problem, areas[index], run.solver, start, monitor)
@@ -90,8 +89,8 @@ def _stiffness(
         return Stiffness(np.inf, 0.0)
     if not contact.any():
         return Stiffness(0.0, 0.0)
-    punch = punch_pressure_of(run.solver, problem, contact, monitor)
-    return measure_stiffness(problem, contact, punch)
+    state = State(found.pressure, found.pressure, found.depth)
+    return measure_stiffness(problem, contact, response_of(run.solver, problem, state, monitor))
 
 
 def _asked(

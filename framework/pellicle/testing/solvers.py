@@ -13,7 +13,7 @@ from pellicle.components.calls import solution_of
 from pellicle.config.run import Run
 from pellicle.numerics.operators import make_operator
 from pellicle.numerics.problem import Problem, measure, measure_stiffness
-from pellicle.numerics.solution import Stop
+from pellicle.numerics.solution import State, Stop
 
 from .component import check
 from .rules import Rule, require, require_close
@@ -59,8 +59,8 @@ def check_solver(solver: Solver) -> None:
     Beside what all components keep: paraboloid, punch and rough surface, on free and periodic
     grids, with depth, force and mean pressure prescribed, are solved to the solver's
     ``tolerance``, with pressure ≥ 0; the answer depends on neither the step before nor the unit of
-    stiffness; arguments are as they were; progress is told; and ``punch_pressure`` is that of a
-    flat punch.
+    stiffness; arguments are as they were; progress is told; and ``response`` is that of a flat
+    punch.
 
     Raises
     ------
@@ -179,12 +179,13 @@ def _require_same_pressure(
 def start_belongs_to_the_caller(solver: Solver) -> None:
     """The start given to a solver is as it was, and the result is not the same array."""
     for problem in _problems():
-        start = np.full(problem.grid.shape, 100.0)
+        pressure = np.full(problem.grid.shape, 100.0)
+        start = State(pressure, pressure, 0.0)
         profile = problem.profile.copy()
         found = solver.solve(problem, start, _ignore).pressure
-        require((start == 100.0).all(), "solve() changes start")
+        require((pressure == 100.0).all(), "solve() changes start.pressure")
         require(np.array_equal(profile, problem.profile), "solve() changes problem.profile")
-        require(not np.shares_memory(found, start), "the pressure returned is the array start")
+        require(not np.shares_memory(found, pressure), "the pressure returned is start.pressure")
 
 
 def progress_is_told(solver: Solver) -> None:
@@ -202,17 +203,19 @@ def progress_is_told(solver: Solver) -> None:
         require(told[-1][1] <= 1, f"the last residual told is {told[-1][1]:g} of the tolerance")
 
 
-def punch_is_flat(solver: Solver) -> None:
-    """punch_pressure() displaces the contact by 1 and acts nowhere else."""
+def response_is_that_of_a_flat_punch(solver: Solver) -> None:
+    """response() displaces the contact of a state by 1 and acts nowhere else."""
     for problem in _problems():
         contact = problem.profile > 0.1 * problem.profile.min()
-        pressure = solver.punch_pressure(problem, contact, _ignore)
+        any_pressure = contact.astype(np.float64)
+        state = State(any_pressure, any_pressure, 0.0)
+        pressure = solver.response(problem, state, _ignore)
         require(np.shape(pressure) == problem.grid.shape, f"shape {np.shape(pressure)}")
-        require(not pressure[~contact].any(), "punch_pressure() presses off the contact")
+        require(not pressure[~contact].any(), "response() presses off the contact")
         require(
             (residual := measure_stiffness(problem, contact, pressure).residual)
             <= solver.tolerance,
-            f"punch_pressure() misses the displacement 1 by {residual:.1e}, over the tolerance "
+            f"response() misses the displacement 1 by {residual:.1e}, over the tolerance "
             f"{solver.tolerance:.1e}",
         )
 
@@ -222,7 +225,7 @@ RULES: list[Rule] = [
     pressure_is_nowhere_negative,
     done_means_solved,
     start_belongs_to_the_caller,
-    punch_is_flat,
+    response_is_that_of_a_flat_punch,
     what_is_prescribed_is_solved,
     start_does_not_matter,
     pressure_is_proportional_to_the_stiffness,

@@ -14,6 +14,7 @@ from pellicle.components import Monitor, Solver
 from pellicle.errors import ConfigError
 from pellicle.numerics.grid_transfer import highest, prolong
 from pellicle.numerics.problem import Depth, Problem
+from pellicle.numerics.solution import Progress, State, Stop
 
 from .contact_cg import Inner, inner_solve
 from .initial_guess import first_guess, with_force
@@ -44,7 +45,7 @@ _DEEPEST: Final = 0.5
 # Cells that settled have gone astray where the error is above this share of the height range.
 _ASTRAY: Final = 0.5
 # Outer iterations without progress after which the solve is abandoned.
-_PATIENCE: Final = 30
+_STAGNATION: Final = 30
 # Where as many looks find no fewer cells wrong, cells are no longer left to settle together.
 _SETTLING: Final = 10
 
@@ -90,6 +91,8 @@ class _State:
     """max(|gap| under pressure, penetration) of ``start`` [m]."""
     preconditioner: Preconditioner
     history: History
+    progress: Progress
+    """Of the error over `scale` and of the fewest misclassified cells."""
     relaxes: bool
     """Whether cells may settle together; not once that has led away from the solution."""
 
@@ -121,16 +124,17 @@ class ActiveSet(ScaledSolver):
 
     type: Literal["active_set"] = "active_set"
 
-    def begin(self, problem: Problem, start: Array | None) -> _State:
+    def begin(self, problem: Problem, start: State | None) -> _State:
         """Return the state of the last step's pressure, or of the solution on a coarser grid."""
         preconditioner = Preconditioner(problem.operator)
-        if start is not None and start.any():
-            state = _measured(problem, start, preconditioner.on(start > 0), preconditioner)
+        if start is not None and start.contact.any():
+            on_start = preconditioner.on(start.contact)
+            state = _measured(problem, start.pressure, on_start, preconditioner)
             if state.error <= _CLOSE * state.scale:
                 return state
         prolonged = self._prolonged(problem)
-        start = first_guess(problem) if prolonged is None else prolonged
-        state = _measured(problem, start, preconditioner.on(start > 0), preconditioner)
+        pressure = first_guess(problem) if prolonged is None else prolonged
+        state = _measured(problem, pressure, preconditioner.on(pressure > 0), preconditioner)
         return state if prolonged is None else _without_hanging(problem, state)
 
     def step(self, problem: Problem, state: _State) -> _State:
@@ -178,19 +182,16 @@ class ActiveSet(ScaledSolver):
         """Return the pressure of a state."""
         return state.pressure
 
-    def patience(self, problem: Problem) -> int:
-        """Return how many looks may bring no progress, as while a contact goes round."""
-        return _PATIENCE
+    def terminate(self, problem: Problem, state: _State) -> Stop | None:
+        """Return whether the iteration stalls: neither the error nor the misclassified cells fall.
 
-    def merits(self, problem: Problem, state: _State) -> tuple[float, ...]:
-        """Return the least number of cells found wrong.
-
-        A contact that is wrong by a row of cells errs by more than one that is wrong everywhere.
+        The error of a contact with a row of misclassified cells may exceed that of one with many.
         """
-        return (state.history.fewest,)
+        return Stop.STALLED if state.progress.stagnant >= _STAGNATION else None
 
-    def punch_pressure(self, problem: Problem, contact: Mask, monitor: Monitor) -> Array:
-        """Return the pressure per depth [Pa/m] under a flat punch, by the same inner solves."""
+    def response(self, problem: Problem, state: State, monitor: Monitor) -> Array:
+        """Return dp/dδ [Pa/m] with the contact fixed, by the same inner solves."""
+        contact = state.contact
         profile = np.where(contact, 0.0, -np.inf)
         unit = 1 / problem.operator.unit
         operator = problem.operator.scaled(unit)
@@ -286,7 +287,8 @@ def _after(
 ) -> _State:
     """Return the state after ``state`` with another pressure [Pa] and contact."""
     measured = _measured(problem, start, on_contact, state.preconditioner, history)
-    return replace(measured, relaxes=state.relaxes)
+    progress = state.progress.after(measured.error / measured.scale, history.fewest)
+    return replace(measured, relaxes=state.relaxes, progress=progress)
 
 
 def _measured(
@@ -304,15 +306,18 @@ def _measured(
     depth = problem.depth(gap[pressed])
     gap -= depth
     inside = float(np.abs(gap[pressed]).max(initial=0.0))
+    scale = problem.height_scale(pressed, depth, float(start.sum()))
+    error = max(inside, -float(gap.min(initial=0.0)))
     return _State(
         problem=problem,
         start=start,
         displacement=displacement,
         on_contact=on_contact,
-        scale=problem.height_scale(pressed, depth, float(start.sum())),
-        error=max(inside, -float(gap.min(initial=0.0))),
+        scale=scale,
+        error=error,
         preconditioner=preconditioner,
         history=history,
+        progress=Progress().after(error / scale, history.fewest),
         relaxes=True,
     )
 

@@ -13,6 +13,7 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import Solver
 from pellicle.grid import Grid
 from pellicle.numerics.problem import Problem
+from pellicle.numerics.solution import State
 
 from .initial_guess import first_guess, with_force
 from .products import dot
@@ -62,10 +63,12 @@ class ConjugateGradient(ScaledSolver):
 
     type: Literal["conjugate_gradient"] = "conjugate_gradient"
 
-    def begin(self, problem: Problem, start: Array | None) -> _State:
+    def begin(self, problem: Problem, start: State | None) -> _State:
         """Return the state of a first guess: the last step's pressure, or one from the profile."""
-        pressure = first_guess(problem) if start is None or not start.any() else start.copy()
-        pressure = with_force(problem, pressure)
+        if start is not None and start.contact.any():
+            pressure = with_force(problem, start.pressure.copy())
+        else:
+            pressure = with_force(problem, first_guess(problem))
         state = _State(
             profile=np.maximum(problem.profile, _NO_INDENTER),
             pressure=pressure,

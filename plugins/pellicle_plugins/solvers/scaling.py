@@ -7,10 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from pellicle.arrays import Array
 from pellicle.components import IterativeSolver, Monitor
 from pellicle.numerics.problem import Problem
-from pellicle.numerics.solution import Solution
+from pellicle.numerics.solution import Solution, State
 
 # Greatest exponent of a unit: what is greater than that by 2^100 is still a number.
 _LARGEST = 900
@@ -25,16 +24,19 @@ class ScaledSolver(IterativeSolver):
     displacement on a domain of 1e-12 m is one. The units are powers of two, which change no digit.
     """
 
-    def solve(self, problem: Problem, start: Array | None, monitor: Monitor) -> Solution:
+    def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
         """Iterate until the tolerance is met, or it is plain that it will not be."""
         height = height_unit(problem)
         pressure = height / problem.operator.unit
         scaled = problem.scaled(height, pressure)
         # Of a pressure beyond all that this step can have, squares are no numbers any more.
-        known = start is not None and float(start.max()) / pressure < 2.0**_FAR
-        before = start / pressure if start is not None and known else None
-        solution = super().solve(scaled, before, monitor)
-        return replace(solution, pressure=solution.pressure * pressure)
+        if start is not None and float(start.pressure.max()) / pressure < 2.0**_FAR:
+            before = start.pressure / pressure
+            start = State(before, before, start.depth / height)
+        else:
+            start = None
+        solution = super().solve(scaled, start, monitor)
+        return replace(solution, state=solution.pressure * pressure)
 
 
 def height_unit(problem: Problem) -> float:

@@ -47,7 +47,7 @@ class Transposed(Solver):
 
     def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
         """Return the transpose."""
-        return replace(solution, pressure=solution.pressure.T)
+        return replace(solution, state=solution.pressure.T)
 
 
 class ComplexPressure(Solver):
@@ -55,7 +55,7 @@ class ComplexPressure(Solver):
 
     def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
         """Return an imaginary part."""
-        return replace(solution, pressure=solution.pressure + 1j)
+        return replace(solution, state=solution.pressure + 1j)
 
 
 class PressureAsText(Solver):
@@ -63,7 +63,7 @@ class PressureAsText(Solver):
 
     def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
         """Return text."""
-        return replace(solution, pressure="10 Pa")
+        return replace(solution, state="10 Pa")
 
 
 class NoStop(Solver):
@@ -134,12 +134,50 @@ class WorksInStart(Solver):
     def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
         """Write to the start."""
         if start is not None:
-            start[...] = solution.pressure
-            return replace(solution, pressure=start)
+            start.pressure[...] = solution.pressure
+            return replace(solution, state=start)
         return solution
 
 
+class StartAsArray(Solver):
+    """Takes the state that it starts from for an array, which it was in earlier versions."""
+
+    def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
+        """Scale the start."""
+        return super().solve(problem, None if start is None else 0.5 * start, monitor)
+
+
+class CopiesStart(Solver):
+    """Copies the state that it starts from as if it were an array."""
+
+    def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
+        """Copy the start."""
+        return super().solve(problem, None if start is None else start.copy(), monitor)
+
+
+class ClipsStart(Solver):
+    """Clips the state that it starts from as if it were an array."""
+
+    def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
+        """Clip the start."""
+        return super().solve(problem, None if start is None else np.maximum(start, 0), monitor)
+
+
+class NamesPressure(Solver):
+    """Names the argument of a solution that is a state by now."""
+
+    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+        """Make a solution by keyword."""
+        made: Any = pl.Solution
+        return made(pressure=solution.pressure, iterations=1)
+
+
+OUTDATED = ["not an array: its pressure is start.pressure", "pellicle.Solution(pressure or state"]
 SOLVERS = {
+    StartAsArray: OUTDATED,
+    CopiesStart: OUTDATED,
+    ClipsStart: OUTDATED,
+    NamesPressure: OUTDATED,
     NoSolution: ["solve() returned None", "pellicle.Solution"],
     BarePressure: ["solve() returned array(", "pellicle.Solution"],
     Transposed: ["solve().pressure returned an array of float64 of shape (10, 12)", "(12, 10)"],
@@ -191,47 +229,47 @@ def test_a_solver_that_uses_its_memory_again_changes_no_earlier_step() -> None:
         def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
             """Write into one array."""
             memory[...] = solution.pressure
-            return replace(solution, pressure=memory)
+            return replace(solution, state=memory)
 
     thrifty = run(solver=Thrifty(tolerance=1e-6)).dataset
     plain = run(solver=Solver(tolerance=1e-6)).dataset
     np.testing.assert_array_equal(thrifty["pressure"], plain["pressure"])
 
 
-class WidePunch(Solver):
+class WideResponse(Solver):
     """Presses off the contact."""
 
-    def punch_pressure(self, problem: Problem, contact: Any, monitor: Any) -> Any:
+    def response(self, problem: Problem, state: Any, monitor: Any) -> Any:
         """Return a pressure everywhere."""
-        return super().punch_pressure(problem, contact, monitor) + 1.0
+        return super().response(problem, state, monitor) + 1.0
 
 
-class NoPunch(Solver):
+class NoResponse(Solver):
     """Has no pressure under a punch."""
 
-    def punch_pressure(self, problem: Problem, contact: Any, monitor: Any) -> Any:
+    def response(self, problem: Problem, state: Any, monitor: Any) -> Any:
         """Return None."""
 
 
 class FillsContact(Solver):
     """Makes the footprint larger."""
 
-    def punch_pressure(self, problem: Problem, contact: Any, monitor: Any) -> Any:
+    def response(self, problem: Problem, state: Any, monitor: Any) -> Any:
         """Write to the contact."""
-        contact[...] = True
-        return super().punch_pressure(problem, contact, monitor)
+        state.pressure[...] = 1.0
+        return super().response(problem, state, monitor)
 
 
-PUNCHES = {
-    WidePunch: "punch_pressure() returned a pressure off the contact",
-    NoPunch: "punch_pressure() returned None",
+RESPONSES = {
+    WideResponse: "response() returned a pressure off the contact",
+    NoResponse: "response() returned None",
     FillsContact: "changes what it is given",
 }
 
 
-@pytest.mark.parametrize("lie", PUNCHES)
-def test_a_punch_pressure_that_lies_is_refused(lie: Any) -> None:
+@pytest.mark.parametrize("lie", RESPONSES)
+def test_a_response_that_lies_is_refused(lie: Any) -> None:
     """The contact stiffness of a result is not made of a pressure that is none."""
     with pytest.raises(pl.PluginError, match="solver 'liar'") as error:
         run(solver=lie(tolerance=1e-6), loading={"depth": "4 um", "stiffness": True})
-    assert PUNCHES[lie] in str(error.value)
+    assert RESPONSES[lie] in str(error.value)

@@ -24,7 +24,7 @@ class Sucking(Solver):
         found = super().solve(problem, start, monitor)
         pressure = found.pressure.copy()
         pressure[0, 0] = -1e-9 * pressure.max()
-        return replace(found, pressure=pressure)
+        return replace(found, state=pressure)
 
 
 class Lying(Solver):
@@ -32,7 +32,7 @@ class Lying(Solver):
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
         found = super().solve(problem, start, monitor)
-        return replace(found, pressure=1.0001 * found.pressure)
+        return replace(found, state=1.0001 * found.pressure)
 
 
 class GivingUp(Solver):
@@ -51,7 +51,7 @@ class Overwritten(Solver):
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
         found = super().solve(problem, start, monitor)
         if start is not None:
-            start[...] = found.pressure
+            start.pressure[...] = found.pressure
         return found
 
 
@@ -62,10 +62,7 @@ class Shared(Solver):
         found = super().solve(problem, start, monitor)
         if start is None:
             return found
-        kept = start.copy()
-        result = start
-        result[...] = kept
-        return replace(found, pressure=result, stop=pl.Stop.STALLED)
+        return replace(found, state=start, stop=pl.Stop.STALLED)
 
 
 class Stale(Solver):
@@ -73,9 +70,9 @@ class Stale(Solver):
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
         found = super().solve(problem, start, monitor)
-        return (
-            found if start is None else replace(found, pressure=start * 1.0, stop=pl.Stop.STALLED)
-        )
+        if start is None:
+            return found
+        return replace(found, state=start.pressure.copy(), stop=pl.Stop.STALLED)
 
 
 class Absolute(Solver):
@@ -85,7 +82,7 @@ class Absolute(Solver):
         found = super().solve(problem, start, monitor)
         soft = problem.operator.kernel.reduced_modulus < 1.5e4
         stop = pl.Stop.STALLED
-        return found if soft else replace(found, pressure=0.9 * found.pressure, stop=stop)
+        return found if soft else replace(found, state=0.9 * found.pressure, stop=stop)
 
 
 class Silent(Solver):
@@ -106,15 +103,15 @@ class Miscounting(Solver):
 class Round(Solver):
     """Takes every punch for a round one."""
 
-    def punch_pressure(self, problem: Any, contact: Any, monitor: Any) -> Any:
-        return 1.01 * super().punch_pressure(problem, contact, monitor)
+    def response(self, problem: Any, state: Any, monitor: Any) -> Any:
+        return 1.01 * super().response(problem, state, monitor)
 
 
 class Wide(Solver):
     """Presses off the contact."""
 
-    def punch_pressure(self, problem: Any, contact: Any, monitor: Any) -> Any:
-        return super().punch_pressure(problem, contact, monitor) + 1e-3
+    def response(self, problem: Any, state: Any, monitor: Any) -> Any:
+        return super().response(problem, state, monitor) + 1e-3
 
 
 class Mute(Solver):
@@ -129,7 +126,7 @@ class Rowwise(Solver):
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
         found = super().solve(problem, start, monitor)
-        return replace(found, pressure=found.pressure.ravel())
+        return replace(found, state=found.pressure.ravel())
 
 
 class OutOfPhase(Solver):
@@ -137,7 +134,7 @@ class OutOfPhase(Solver):
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
         found = super().solve(problem, start, monitor)
-        return replace(found, pressure=found.pressure + 0j)
+        return replace(found, state=found.pressure + 0j)
 
 
 class Meddling(Solver):
@@ -163,8 +160,8 @@ SOLVERS = {
     Absolute: "pressure_is_proportional_to_the_stiffness",
     Silent: "progress_is_told",
     Miscounting: "progress_is_told",
-    Round: "punch_is_flat",
-    Wide: "punch_is_flat",
+    Round: "response_is_that_of_a_flat_punch",
+    Wide: "response_is_that_of_a_flat_punch",
 }
 
 

@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 
-from pellicle import ConfigError, Grid, Kernel, Problem, Solver, Stop
+from pellicle import ConfigError, Grid, Kernel, Problem, Solver, State, Stop
 from pellicle.operators import Array, make_operator
 from pellicle.problem import Equilibrium, measure
 from pellicle_plugins.indenters.self_affine import SelfAffine
@@ -134,7 +134,8 @@ def make(
 def solve(problem: Problem, solver: Solver, start: Array | None = None) -> Solved:
     """Return what a solver finds, measured afresh."""
     before = problem.operator.applications
-    solution = solver.solve(problem, start, lambda iteration, excess: None)
+    state = None if start is None else State(start, start, 0.0)
+    solution = solver.solve(problem, state, lambda iteration, excess: None)
     applications = problem.operator.applications - before
     assert solution.pressure.min() >= 0
     return Solved(measure(problem, solution.pressure), applications, solution.stop)

@@ -199,7 +199,7 @@ class InOtherUnits:
             value=problem.value * (self.length if problem.prescribed == "depth" else of_force),
         )
         solution = self.solver.solve(scaled, None, lambda iteration, residual_ratio: None)
-        return replace(solution, pressure=solution.pressure / self.modulus)
+        return replace(solution, state=solution.pressure / self.modulus)
 
 
 UNITS = st.tuples(

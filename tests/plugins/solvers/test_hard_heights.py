@@ -184,9 +184,9 @@ class Wandering(ConjugateGradient):
         """Return the state as it is."""
         return state
 
-    def patience(self, problem: Problem) -> int:
-        """Return three."""
-        return 3
+    def terminate(self, problem: Problem, state: object) -> Stop:
+        """Return that it stalls."""
+        return Stop.STALLED
 
 
 def test_a_solver_that_wanders_is_not_said_to_be_at_round_off() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle import Grid, Problem, Solver, Stop
+from pellicle import Grid, Problem, Solver, State, Stop
 from pellicle.operators import make_operator
 from pellicle.problem import measure
 from pellicle_plugins.solvers.active_set import ActiveSet
@@ -132,7 +132,8 @@ def test_stiffness_of_a_contact_scales_as_its_dimension(solver: Solver) -> None:
     expected = None
     for length, modulus in [(1.0, 1.0), *SCALES]:
         problem = Case("tensed_membrane", "free", "depth").problem(length, modulus)
-        pressure = solver.punch_pressure(problem, contact, lambda iteration, ratio: None)
+        state = State(contact.astype(np.float64), contact.astype(np.float64), 0.0)
+        pressure = solver.response(problem, state, lambda iteration, ratio: None)
         share = pressure * (length / modulus)
         expected = share if expected is None else expected
         np.testing.assert_allclose(share, expected, rtol=0, atol=1e-6 * expected.max())
@@ -163,7 +164,8 @@ def test_a_start_far_above_the_load_is_not_used() -> None:
     x, y = grid.coordinates()
     problem = Problem(grid, operator, -(x**2 + y**2), "depth", 1e-200)
     for solver in SOLVERS:
-        start = np.full(grid.shape, 1e-2)
+        pressure = np.full(grid.shape, 1e-2)
+        start = State(pressure, pressure, 1e-2)
         solution = solver.solve(problem, start, lambda iteration, residual_ratio: None)
         assert solution.stop is Stop.DONE
 
