@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 
 import pellicle as pl
 from pellicle.model import Model
-from pellicle.results.variables import DESCRIPTIONS
+from pellicle.results.variables import VARIABLES
 from pellicle.units import Quantity, quantity_of
 
 _HEADINGS = {
@@ -77,10 +77,9 @@ def fields(model: Any) -> str:
 
 def variables() -> str:
     """Return a table of the variables of a result."""
-    fields_of_cells = ("pressure", "displacement", "gap", "contact")
     rows = [
-        (f"`{name}`", "step, x, y" if name in fields_of_cells else "step", unit, meaning)
-        for name, (unit, meaning) in DESCRIPTIONS.items()
+        (f"`{v.name}`", "step, x, y" if v.kind == "field" else "step", v.unit, v.meaning)
+        for v in VARIABLES.values()
     ]
     return _table(("variable", "dimensions", "unit", "meaning"), rows)
 

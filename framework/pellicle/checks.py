@@ -30,7 +30,7 @@ _REFUSALS = "read-only", "cannot assign to field", "Instance is frozen"
 def component_name(component: object) -> str:
     """Return what messages call a component, such as ``kernel 'half_space'``."""
     family = getattr(component, "family", "component")
-    return f"{family} {getattr(component, 'type', type(component).__name__)!r}"
+    return f"{family} {getattr(component, 'type_name', type(component).__name__)!r}"
 
 
 @contextmanager

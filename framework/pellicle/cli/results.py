@@ -25,12 +25,14 @@ def print_origin(data: xr.Dataset) -> None:
 
 def print_steps(result: Result) -> None:
     """Print a row for each step."""
+    from pellicle.results.variables import names_of
+
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    asked = [name for name in ("mean_plane_depth", "stiffness") if name in data]
+    requested = [name for name in names_of("requested") if name in data]
     if "contact_radius" in result.configuration["loading"]:
-        asked.insert(0, "contact_radius")
-    names = ["depth", "force", *areas, *asked, "iterations"]
+        requested.insert(0, "contact_radius")
+    names = ["depth", "force", *areas, *requested, "iterations"]
     coarse = dict(result.coarse())
     rows = []
     for number in data["step"].values.tolist():
@@ -50,11 +52,11 @@ def print_steps(result: Result) -> None:
 
 def print_contact(result: Result) -> None:
     """Print a second table, of the shape of the contact."""
-    from pellicle.results.variables import OF_THE_CONTACT
+    from pellicle.results.variables import names_of
 
     data = result.dataset
     # Files of earlier versions do not say it.
-    names = [name for name in OF_THE_CONTACT if name in data]
+    names = [name for name in names_of("contact") if name in data]
     if not names:
         return
     typer.echo("contact:")

@@ -1,4 +1,4 @@
-"""What all components share."""
+"""The base class of all components."""
 
 from __future__ import annotations
 
@@ -8,8 +8,14 @@ from pellicle.model.base import Model
 
 
 class Component(Model):
-    """What all families share."""
+    """A frozen model with a field ``type: Literal["…"]``, by which configurations name it."""
 
     family: ClassVar[str]
     libraries: ClassVar[tuple[str, ...]] = ()
-    """Distributions that it computes with, beside numpy and scipy; results say their versions."""
+    """Distributions that it computes with, beside numpy and scipy; results state their versions."""
+
+    @property
+    def type_name(self) -> str:
+        """The component's type, such as ``half_space``."""
+        # A base class with a field ``type: str`` would not let components narrow it to a literal.
+        return str(getattr(self, "type", type(self).__name__))

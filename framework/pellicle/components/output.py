@@ -61,7 +61,7 @@ class Output(Component):
         ``*`` stands for anything, as the number of a step. Outputs that would write the same file
         are refused. Here ``-type*``, or ``-name*`` if there is a field ``name`` that says one.
         """
-        return (f"-{getattr(self, 'name', '') or getattr(self, 'type', '')}*",)
+        return (f"-{getattr(self, 'name', '') or self.type_name}*",)
 
     def open(self, place: Place) -> None:
         """Prepare; raise StorageError if it is plain that nothing can be written.

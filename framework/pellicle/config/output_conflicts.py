@@ -37,7 +37,7 @@ def refuse_clashes_with_study(outputs: Sequence[Output]) -> None:
         Names the output and the file.
     """
     for index, output in enumerate(outputs):
-        if _type(output) == "hdf5":
+        if output.type_name == "hdf5":
             continue
         taken, name, whose = (
             (_TABLE, "study", "the table of the study")
@@ -46,7 +46,7 @@ def refuse_clashes_with_study(outputs: Sequence[Output]) -> None:
         )
         if ending := _common(taken, endings_of(output)):
             raise ConfigError(
-                f"{_type(output)!r} would write {name}{ending}, {whose}; leave it out",
+                f"{output.type_name!r} would write {name}{ending}, {whose}; leave it out",
                 f"outputs.{index}.type",
             )
 
@@ -77,11 +77,7 @@ def _refusal(ending: str, *both: tuple[int, Output]) -> ConfigError:
     )
     named = "name" in type(output).model_fields
     return ConfigError(
-        f"{_type(output)!r} would write NAME{ending}, as outputs.{other_index} "
-        f"({_type(other)!r}) does; {'give it another name' if named else 'leave one out'}",
+        f"{output.type_name!r} would write NAME{ending}, as outputs.{other_index} "
+        f"({other.type_name!r}) does; {'give it another name' if named else 'leave one out'}",
         f"outputs.{index}.{'name' if named else 'type'}",
     )
-
-
-def _type(output: Output) -> str:
-    return str(getattr(output, "type", ""))

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-import tomli_w
 from pydantic import (
     Field,
     ValidationInfo,
@@ -26,9 +25,7 @@ from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid, grid_of_run
 from pellicle.model.base import Model
-from pellicle.model.input_path import AS_GIVEN, paths_relative_to
-from pellicle.model.paths import replaced
-from pellicle.model.toml import parse_override, read_toml
+from pellicle.model.from_file import FromFile
 from pellicle.plugins import registry
 
 from .component_field import FromRegistry
@@ -40,7 +37,7 @@ DEFAULT_SOLVER = "active_set"
 _NUMBERS_VERSION = 1
 
 
-class Run(Model):
+class Run(FromFile):
     """One contact problem with its load steps."""
 
     title: Annotated[str, Field(description="a line for figures and listings")] = ""
@@ -85,7 +82,7 @@ class Run(Model):
 
     @model_validator(mode="after")
     def _each_correction_once(self) -> Self:
-        types = [getattr(correction, "type", "") for correction in self.corrections]
+        types = [correction.type_name for correction in self.corrections]
         for index, type_ in enumerate(types):
             if type_ in types[:index]:
                 raise ConfigError(
@@ -101,43 +98,20 @@ class Run(Model):
         return self
 
     @classmethod
-    def from_toml(cls, path: str | Path, overrides: Iterable[str] = ()) -> Self:
-        """Return the run that a TOML file describes.
-
-        Parameters
-        ----------
-        path
-            The file; relative paths in it are seen from its folder.
-        overrides
-            Texts such as ``'kernel.tension="5 mN/m"'`` that replace what the file says.
+    def from_mapping(cls, data: Mapping[str, Any]) -> Self:
+        """Return the run that a mapping of the form of a run file describes.
 
         Raises
         ------
-        ConfigError
-            The file cannot be read or used; all its problems are named at once.
-        PluginError
-            A component that it asks for is broken.
+        ConfigError, PluginError
+            As for `from_toml`; a study is refused.
         """
-        data = read(path, overrides)
-        refuse_study(data)
-        with paths_relative_to(Path(path).parent):
-            return cls(**data)
-
-    @classmethod
-    def from_json(cls, text: str) -> Self:
-        """Return the run that a JSON text describes, such as `to_json` gives.
-
-        Raises
-        ------
-        ConfigError
-            The text is not JSON, or not a run.
-        """
-        try:
-            data = json.loads(text)
-        except json.JSONDecodeError as error:
-            raise ConfigError(f"not JSON: {error}") from None
-        if not isinstance(data, dict):
-            raise ConfigError("a run is a JSON object with the keys grid, kernel, …")
+        if "study" in data:
+            raise ConfigError(
+                "makes this a study: use run_study, or Study, in place of run, or leave the table "
+                "out",
+                "study",
+            )
         return cls(**data)
 
     @property
@@ -150,51 +124,6 @@ class Run(Model):
         said = _identifying(self, without=("title", "outputs")) | {"schema": _NUMBERS_VERSION}
         text = json.dumps(said, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
-
-    def to_json(self, *, as_given: bool = False) -> str:
-        """Return the whole configuration as JSON, defaults included, SI floats.
-
-        Paths of files to read are absolute, or as the run's own file has them: such a text can be
-        given away with the files, and does not say where they lay.
-        """
-        return self.model_dump_json(exclude_none=True, context=AS_GIVEN if as_given else None)
-
-    def to_toml(self) -> str:
-        """Return the whole configuration as TOML, defaults included, SI floats."""
-        return tomli_w.dumps(json.loads(self.to_json()))
-
-
-def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
-    """Return the content of a run or study file, with what ``--set`` replaces.
-
-    Raises
-    ------
-    ConfigError
-        It cannot be read, or an override cannot be applied.
-    """
-    data = read_toml(Path(path))
-    for text in overrides:
-        key, value = parse_override(text)
-        try:
-            data = replaced(data, key, value)
-        except ConfigError as error:
-            raise ConfigError(f"--set {text!r}: {error}") from None
-    return data
-
-
-def refuse_study(data: Mapping[str, Any]) -> None:
-    """Refuse what is a study where a run is wanted.
-
-    Raises
-    ------
-    ConfigError
-        There is a table ``study``.
-    """
-    if "study" in data:
-        raise ConfigError(
-            "makes this a study: use run_study, or Study, in place of run, or leave the table out",
-            "study",
-        )
 
 
 def _identifying(model: Model, without: Collection[str] = ()) -> dict[str, Any]:

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
-import tomli_w
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from pellicle import memory
@@ -19,18 +18,19 @@ from pellicle.errors import ConfigError, Problem, shown
 from pellicle.model import ranges as axes
 from pellicle.model.base import Model
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate
+from pellicle.model.from_file import FromFile, read
 from pellicle.model.input_path import AS_GIVEN, paths_relative_to
 from pellicle.model.input_path import as_given as path_as_given
 from pellicle.model.paths import replaced
 from pellicle.plugins import registry
-from pellicle.results.derived import FIELDS, constants
-from pellicle.results.variables import DESCRIPTIONS
+from pellicle.results.derived import constants
+from pellicle.results.variables import FIELDS, VARIABLES, corrected_area
 from pellicle.units import quantity_of, split
 
 from .component_field import FromRegistry
 from .json_schema import json_schema
 from .output_conflicts import refuse_clashes_with_study
-from .run import Run, read
+from .run import Run
 
 DEFAULT_EXECUTOR = "serial"
 _BYTES_PER_RUN = 40_000
@@ -140,7 +140,7 @@ def _same_length(table: Axes) -> None:
         raise ConfigError(f"{said}; give axes of as many values as each other")
 
 
-class Study(Model):
+class Study(FromFile):
     """A run whose parameters vary: one run for each combination of values.
 
     The runs are made, and so checked, at once; `points` has them.
@@ -226,27 +226,6 @@ class Study(Model):
         return made
 
     @classmethod
-    def from_toml(cls, path: str | Path, overrides: Iterable[str] = ()) -> Self:
-        """Return the study that a TOML file describes: a run file with a table ``study``.
-
-        Parameters
-        ----------
-        path
-            The file; relative paths in it are seen from its folder.
-        overrides
-            Texts such as ``'kernel.tension="5 mN/m"'`` that replace what the file says.
-
-        Raises
-        ------
-        ConfigError
-            The file cannot be read or used; all its problems are named at once.
-        PluginError
-            A component that it asks for is broken.
-        """
-        with paths_relative_to(Path(path).parent):
-            return cls.from_mapping(read(path, overrides))
-
-    @classmethod
     def from_mapping(cls, data: Mapping[str, Any]) -> Self:
         """Return the study that a mapping of the form of a study file describes.
 
@@ -273,23 +252,6 @@ class Study(Model):
                 for field, message in error.problems
             ) from None
 
-    @classmethod
-    def from_json(cls, text: str) -> Self:
-        """Return the study that a JSON text describes, such as `to_json` gives.
-
-        Raises
-        ------
-        ConfigError
-            The text is not JSON, or not a study.
-        """
-        try:
-            data = json.loads(text)
-        except json.JSONDecodeError as error:
-            raise ConfigError(f"not JSON: {error}") from None
-        if not isinstance(data, dict):
-            raise ConfigError("a study is a JSON object with the keys grid, kernel, …, study")
-        return cls.from_mapping(data)
-
     def to_json(self, *, as_given: bool = False) -> str:
         """Return the study as JSON of the form of a study file; ranges are lists.
 
@@ -313,10 +275,6 @@ class Study(Model):
             key: _said(value, getattr(run, key, None), as_given) for key, value in self.run.items()
         }
         return json.dumps({**said, "study": {"executor": executor, **kept}}, ensure_ascii=False)
-
-    def to_toml(self) -> str:
-        """Return the study as a TOML file."""
-        return tomli_w.dumps(json.loads(self.to_json()))
 
     def _along(self, key: str, values: axes.Values) -> Iterator[tuple[Any, Run]]:
         """Yield each value of an axis with a run that has it."""
@@ -348,8 +306,8 @@ class Study(Model):
         """Refuse expressions that name what a table will not have, before anything is run."""
         run = self.points[0].run
         absent = {"status", "status_code"} | (ON_DEMAND - run.loading.brings)
-        there = {*DESCRIPTIONS, *constants(json.loads(run.to_json()))} - absent
-        there |= {f"contact_area_{getattr(each, 'type', '')}" for each in run.corrections}
+        there = {*VARIABLES, *constants(json.loads(run.to_json()))} - absent
+        there |= {corrected_area(c.type_name).name for c in run.corrections}
         there |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         taken = {*FUNCTIONS, *CONSTANTS, "status", "status_code", "run", "step", "x", "y"}
         problems: list[Problem] = []

@@ -14,14 +14,13 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.model.expression import evaluate, names_in
 
 from . import storage
+from .variables import FIELDS
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from .result import Result
 
-FIELDS = ("pressure", "displacement", "gap", "contact")
-"""What a result has for each cell, besides the coordinates x and y."""
 _CELLS = ["x", "y"]
 REDUCTIONS: dict[str, Callable[[Any], Any]] = {
     "mean": lambda field: field.mean(_CELLS),

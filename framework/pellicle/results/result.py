@@ -13,6 +13,7 @@ from pellicle.grid import Grid
 
 from . import storage
 from .status import Status
+from .variables import FIELDS, REQUIRED, damage
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -89,33 +90,16 @@ def load(path: str | Path) -> Result:
     return Result(dataset)
 
 
-_FIELDS = "pressure", "displacement", "gap", "contact"
-
-
-_SCALARS = "depth", "force", "contact_area", "iterations", "converged", "status_code", "status"
-
-
-_KINDS = {"contact": "b", "converged": "b", "status_code": "UO", "status": "UO"}
-
-
-_NUMBERS = "fiu"
-
-
 def _damage(dataset: xr.Dataset) -> str:
     """Return what keeps a dataset from being a result, whatever the version that wrote it."""
-    always = {"step", "x", "y", *_FIELDS, *_SCALARS}
-    if missing := always - {*map(str, dataset.variables)}:
-        return f"lacks {', '.join(sorted(missing))}"
-    for name in always:
-        variable = dataset[name]
-        expected = ("step", "x", "y") if name in _FIELDS else (name,)
-        dims = ("step",) if name in _SCALARS else expected
-        if variable.dims != dims:
-            return f"has {name} over {', '.join(map(str, variable.dims)) or 'nothing'}"
-        if variable.dtype.kind not in _KINDS.get(name, _NUMBERS):
-            return f"has {name} of type {variable.dtype}"
-    if unknown := {*dataset["status_code"].values} - {*Status.__members__}:
-        return f"has the status_code {min(map(str, unknown))!r}"
+    coordinates = "step", "x", "y"
+    variables = {name: dataset[name] for name in dataset.variables}
+    if problem := damage(variables, (*coordinates, *REQUIRED)):
+        return problem
+    for name in (*coordinates, *REQUIRED):
+        dims = coordinates if name in FIELDS else (name,) if name in coordinates else ("step",)
+        if dataset[name].dims != dims:
+            return f"has {name} over {', '.join(map(str, dataset[name].dims)) or 'nothing'}"
     configuration = json.loads(dataset.attrs["configuration"])
     try:
         grid = Grid(**configuration["grid"])

@@ -16,63 +16,76 @@ from . import storage
 
 if TYPE_CHECKING:
     import xarray as xr
-from .variables import attributes
+from .variables import VARIABLES, Variable
 
 
 def step_dataset(
-    grid: Grid, number: int, found: Equilibrium, scalars: Mapping[str, object]
+    grid: Grid,
+    number: int,
+    equilibrium: Equilibrium,
+    scalars: Mapping[str, object],
+    variables: Iterable[Variable] = (),
 ) -> xr.Dataset:
     """Return load step ``number``, counted from 1, with dimensions (step: 1, x: nx, y: ny).
 
-    ``scalars`` adds what is not in the equilibrium; an unknown name is taken to be an area [m²].
+    Parameters
+    ----------
+    grid, number, equilibrium
+        The step as solved.
+    scalars
+        Values that the equilibrium does not have, by the name of their variable.
+    variables
+        Describe the names in ``scalars`` that `VARIABLES` does not have.
     """
     import xarray as xr
 
-    contact = found.contact
+    contact = equilibrium.contact
     area = np.count_nonzero(contact) * grid.cell_area
     shape = ellipse(contact, grid)
     fields = {
-        "pressure": found.pressure,
-        "displacement": found.displacement,
-        "gap": found.gap,
+        "pressure": equilibrium.pressure,
+        "displacement": equilibrium.displacement,
+        "gap": equilibrium.gap,
         "contact": contact,
     }
     values: dict[str, object] = {
-        "depth": found.depth,
-        "force": found.force,
-        "mean_pressure": found.force / grid.area,
+        "depth": equilibrium.depth,
+        "force": equilibrium.force,
+        "mean_pressure": equilibrium.force / grid.area,
         "contact_area": area,
         "contact_fraction": area / grid.area,
-        "mean_contact_pressure": found.force / area if area else np.nan,
+        "mean_contact_pressure": equilibrium.force / area if area else np.nan,
         "contact_radius": np.sqrt(area / np.pi),
         "semi_major_axis": shape.semi_major_axis,
         "semi_minor_axis": shape.semi_minor_axis,
         "major_axis_angle": shape.angle,
         "patches": patches(contact, grid).count,
         "perimeter": perimeter(contact, grid),
-        "residual_contact": found.residual_contact,
-        "residual_penetration": found.residual_penetration,
-        "residual_complementarity": found.residual_complementarity,
-        "residual_load": found.residual_load,
+        "residual_contact": equilibrium.residual_contact,
+        "residual_penetration": equilibrium.residual_penetration,
+        "residual_complementarity": equilibrium.residual_complementarity,
+        "residual_load": equilibrium.residual_load,
         **scalars,
     }
+    described = {**VARIABLES, **{variable.name: variable for variable in variables}}
     x, y = grid.coordinates()
     coordinates = {
         "step": ("step", [number], {"long_name": "load step, counted from 1"}),
         "x": ("x", x[:, 0], {"units": "m", "long_name": "x of the cell centres"}),
         "y": ("y", y[0], {"units": "m", "long_name": "y of the cell centres"}),
     }
-    variables = {
-        name: (("step", "x", "y"), value[None], attributes(name)) for name, value in fields.items()
+    data = {
+        name: (("step", "x", "y"), value[None], described[name].attributes)
+        for name, value in fields.items()
     } | {
         name: (
             ("step",),
             np.array([value], dtype=object if isinstance(value, str) else None),
-            attributes(name),
+            described[name].attributes,
         )
         for name, value in values.items()
     }
-    return xr.Dataset(variables, coordinates)
+    return xr.Dataset(data, coordinates)
 
 
 class Steps:

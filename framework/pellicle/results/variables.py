@@ -1,56 +1,109 @@
-"""The variables of a result: name, unit and meaning."""
+"""The variables of a result: name, unit, meaning, kind and type of each."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+from .status import Status
 
 if TYPE_CHECKING:
     import xarray as xr
 
-DESCRIPTIONS = {
-    "pressure": ("Pa", "contact pressure"),
-    "displacement": ("m", "surface displacement, positive into the solid"),
-    "gap": ("m", "gap between surface and indenter"),
-    "contact": ("1", "whether the cell is in contact"),
-    "depth": ("m", "depth of the indenter's lowest point"),
-    "force": ("N", "force on the indenter"),
-    "mean_pressure": ("Pa", "force over the area of the domain"),
-    "contact_area": ("m2", "area of the cells in contact"),
-    "contact_fraction": ("1", "contact area over the area of the domain"),
-    "mean_contact_pressure": ("Pa", "force over the contact area"),
-    "contact_radius": ("m", "radius of the circle that has the contact area"),
-    "semi_major_axis": ("m", "major semi-axis of the ellipse with the contact's second moments"),
-    "semi_minor_axis": ("m", "minor semi-axis of the ellipse with the contact's second moments"),
-    "major_axis_angle": ("rad", "angle from x to the major axis"),
-    "patches": ("1", "parts of the contact; cells that share an edge are of one part"),
-    "perimeter": ("m", "length of the border of the contact"),
-    "mean_plane_depth": ("m", "depth of the indenter's mean plane, where that is prescribed"),
-    "stiffness": ("N/m", "contact stiffness dF/dδ, where loading.stiffness asks for it"),
-    "iterations": ("1", "iterations of the solver"),
-    "operator_applications": ("1", "applications of the operator on the finest grid"),
-    "residual_contact": ("1", "largest gap in contact over the indenter's height range there"),
-    "residual_penetration": ("1", "largest penetration outside the contact over the same"),
-    "residual_complementarity": ("1", "pressure-weighted mean gap over the same"),
-    "residual_load": ("1", "relative error of the prescribed force"),
-    "residual_area": ("1", "relative error of the contact area or radius, where prescribed"),
-    "converged": ("1", "whether every residual is under the tolerance"),
-    "status_code": ("", "how the step ended, a name of pellicle.Status"),
-    "status": ("", "how the step ended, in a sentence"),
-    "wall_time": ("s", "time that the step took"),
+Kind = Literal["field", "main", "requested", "other", "contact", "effort", "residual", "status"]
+"""``field`` has a value for each cell, ``main`` is listed for each run of a study, ``requested``
+exists only where the loading asks for it, ``contact`` describes the shape of the contact."""
+Type = Literal["number", "count", "truth", "text"]
+
+
+class Variable(NamedTuple):
+    """A number, a truth value or a text that a result has for each step, or for each cell."""
+
+    name: str
+    unit: str
+    """SI unit as datasets write it: ``"1"`` for pure numbers, empty for texts."""
+    meaning: str
+    kind: Kind = "requested"
+    type: Type = "number"
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """Meaning and unit, as attributes of an xarray variable."""
+        return {"long_name": self.meaning} | ({"units": self.unit} if self.unit else {})
+
+
+_BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type], ...]] = {
+    "field": (
+        ("pressure", "Pa", "contact pressure"),
+        ("displacement", "m", "surface displacement, positive into the solid"),
+        ("gap", "m", "gap between surface and indenter"),
+        ("contact", "1", "whether the cell is in contact", "truth"),
+    ),
+    "main": (
+        ("depth", "m", "depth of the indenter's lowest point"),
+        ("force", "N", "force on the indenter"),
+        ("contact_area", "m2", "area of the cells in contact"),
+        ("contact_fraction", "1", "contact area over the area of the domain"),
+    ),
+    "other": (("mean_pressure", "Pa", "force over the area of the domain"),),
+    "requested": (
+        ("mean_plane_depth", "m", "depth of the indenter's mean plane, where that is prescribed"),
+        ("stiffness", "N/m", "contact stiffness dF/dδ, where loading.stiffness asks for it"),
+    ),
+    "contact": (
+        ("mean_contact_pressure", "Pa", "force over the contact area"),
+        ("contact_radius", "m", "radius of the circle that has the contact area"),
+        (
+            "semi_major_axis",
+            "m",
+            "major semi-axis of the ellipse with the contact's second moments",
+        ),
+        (
+            "semi_minor_axis",
+            "m",
+            "minor semi-axis of the ellipse with the contact's second moments",
+        ),
+        ("major_axis_angle", "rad", "angle from x to the major axis"),
+        ("patches", "1", "parts of the contact; cells that share an edge are of one part", "count"),
+        ("perimeter", "m", "length of the border of the contact"),
+    ),
+    "effort": (
+        ("iterations", "1", "iterations of the solver", "count"),
+        ("operator_applications", "1", "applications of the operator on the finest grid", "count"),
+        ("wall_time", "s", "time that the step took"),
+    ),
+    "residual": (
+        ("residual_contact", "1", "largest gap in contact over the indenter's height range there"),
+        ("residual_penetration", "1", "largest penetration outside the contact over the same"),
+        ("residual_complementarity", "1", "pressure-weighted mean gap over the same"),
+        ("residual_load", "1", "relative error of the prescribed force"),
+        ("residual_area", "1", "relative error of the contact area or radius, where prescribed"),
+    ),
+    "status": (
+        ("converged", "1", "whether every residual is under the tolerance", "truth"),
+        ("status_code", "", "how the step ended, a name of pellicle.Status", "text"),
+        ("status", "", "how the step ended, in a sentence", "text"),
+    ),
 }
-"""Unit and meaning of each variable of a result."""
+VARIABLES: Mapping[str, Variable] = {
+    row[0]: Variable(*row[:3], kind, *row[3:]) for kind, rows in _BY_KIND.items() for row in rows
+}
+"""The variables of a result by name, besides contact areas by correction (`corrected_area`)."""
 
 
-OF_THE_CONTACT = (
-    "mean_contact_pressure",
-    "contact_radius",
-    "semi_major_axis",
-    "semi_minor_axis",
-    "major_axis_angle",
-    "patches",
-    "perimeter",
-)
-"""What is told of the contact beside its area, in a table of its own."""
+def names_of(*kinds: Kind) -> tuple[str, ...]:
+    """Return the names of the variables of some kinds."""
+    return tuple(name for name, variable in VARIABLES.items() if variable.kind in kinds)
+
+
+FIELDS = names_of("field")
+REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "iterations")
+"""Variables in the result files of every version."""
+
+
+def corrected_area(type_: str) -> Variable:
+    """Return the variable of the contact area by the correction ``type_``."""
+    return Variable(f"contact_area_{type_}", "m2", f"contact area, {type_} correction", "other")
 
 
 def header(name: str, variable: xr.DataArray) -> str:
@@ -59,8 +112,26 @@ def header(name: str, variable: xr.DataArray) -> str:
     return name if unit == "1" else f"{name} [{unit}]"
 
 
-def attributes(name: str) -> dict[str, str]:
-    """Return meaning and unit of a variable, as attributes of an xarray variable."""
-    corrected = ("m2", f"contact area, {name.removeprefix('contact_area_')} correction")
-    unit, meaning = DESCRIPTIONS.get(name, corrected)
-    return {"long_name": meaning} | ({"units": unit} if unit else {})
+_DTYPES: Mapping[Type, str] = {"number": "fiu", "count": "fiu", "truth": "b", "text": "UO"}
+
+
+def damage(
+    variables: Mapping[Any, xr.DataArray],
+    required: Collection[str],
+    codes: Collection[str] = Status.__members__,
+) -> str:
+    """Return what is missing or of a wrong type among the variables of a file; empty if nothing is.
+
+    What is not in `VARIABLES` has to be numbers, but for ``run``, the name of a run's file;
+    ``codes`` are what ``status_code`` may be.
+    """
+    if missing := {*required} - {*map(str, variables)}:
+        return f"lacks {', '.join(sorted(missing))}"
+    for name, variable in variables.items():
+        known = VARIABLES.get(str(name))
+        allowed = _DTYPES[known.type] if known else "UO" if name == "run" else "fiub"
+        if variable.dtype.kind not in allowed:
+            return f"has {name} of type {variable.dtype}"
+    if unknown := {*variables["status_code"].values.ravel()} - {*codes}:
+        return f"has the status_code {min(map(str, unknown))!r}"
+    return ""

@@ -16,7 +16,7 @@ from pellicle.errors import ConfigError
 from pellicle.numerics.grid_checks import warn_of_cells, warn_of_seam
 from pellicle.numerics.operators import Operator, make_operator
 from pellicle.numerics.problem import Depth, Force, Problem
-from pellicle.results.variables import DESCRIPTIONS
+from pellicle.results.variables import VARIABLES
 
 
 def problems_of(run: Run) -> list[Problem]:
@@ -107,7 +107,7 @@ def _check_areas(run: Run, profile: Array) -> None:
     there = int(np.count_nonzero(np.isfinite(profile)))
     first = int(np.count_nonzero(profile == profile.max()))
     name = run.loading.prescribed
-    unit = DESCRIPTIONS[name][0]
+    unit = VARIABLES[name].unit
     for index, (given, area) in enumerate(
         zip(run.loading.values, prescribed_areas(run) or (), strict=True)
     ):

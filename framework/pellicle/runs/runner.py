@@ -18,7 +18,7 @@ from pellicle.components.calls import (
     files_of,
     hand_over,
 )
-from pellicle.config.run import Run, refuse_study
+from pellicle.config.run import Run
 from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
 from pellicle.plugins import registry
@@ -199,13 +199,10 @@ def _resume(outputs: Sequence[Output], place: Place, number: int) -> list[xr.Dat
 
 
 def _as_run(configuration: Run | Mapping[str, Any] | str | Path) -> tuple[Run, str]:
-    if isinstance(configuration, Run):
-        return configuration, _file_stem(configuration.title)
-    if isinstance(configuration, Mapping):
-        refuse_study(configuration)
-        made = Run(**configuration)
-        return made, _file_stem(made.title)
-    return Run.from_toml(configuration), Path(configuration).stem
+    made = Run.of(configuration)
+    if isinstance(configuration, (str, Path)):
+        return made, Path(configuration).stem
+    return made, _file_stem(made.title)
 
 
 def _file_stem(title: str) -> str:

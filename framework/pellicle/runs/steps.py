@@ -19,6 +19,7 @@ from pellicle.config.run import Run
 from pellicle.numerics.problem import Equilibrium, Problem, Stiffness, measure, measure_stiffness
 from pellicle.numerics.solution import Solution, State
 from pellicle.results.step import Steps, step_dataset
+from pellicle.results.variables import corrected_area as area_variable
 
 from .progress import Bar
 from .target_search import Reached, reach_area
@@ -62,7 +63,8 @@ def _solved_step(
         "status": message,
         "wall_time": time.perf_counter() - started,
     }
-    return step_dataset(run.grid, index + 1, found, scalars)
+    areas = [area_variable(correction.type_name) for correction in run.corrections]
+    return step_dataset(run.grid, index + 1, found, scalars, areas)
 
 
 def solve_step(
@@ -103,7 +105,7 @@ def _asked(
         "stiffness": stiffness.value if stiffness else np.nan,
     }
     corrected = {
-        f"contact_area_{correction.type}": corrected_area(  # type: ignore[attr-defined]
+        area_variable(correction.type_name).name: corrected_area(
             correction, found.contact, run.grid
         )
         for correction in run.corrections

@@ -8,7 +8,7 @@ from pellicle.arrays import Mask
 from pellicle.config.run import Run
 from pellicle.numerics.problem import Equilibrium, Stiffness
 from pellicle.results.status import Status
-from pellicle.results.variables import DESCRIPTIONS
+from pellicle.results.variables import VARIABLES
 
 from .target_search import Reached
 
@@ -49,7 +49,7 @@ def judge(
         value, name = run.loading.values[index], run.loading.prescribed
         return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
             size=f"{nx:g} × {ny:g} m",
-            prescribed=f"loading.{name} = {value:g} {DESCRIPTIONS[name][0]}",
+            prescribed=f"loading.{name} = {value:g} {VARIABLES[name].unit}",
         )
     if step.how == "not found" or step.missed > _AREA_TOLERANCE:
         remedy = "use more points" if step.how == "nearest" else "no load was found that brings it"

@@ -12,11 +12,10 @@ from xarray.core import indexing
 
 from pellicle.errors import StorageError
 from pellicle.results import netcdf, storage
+from pellicle.results.variables import FIELDS
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_FIELDS = ("pressure", "displacement", "gap", "contact")
 
 
 def add_fields(table: xr.Dataset, runs: Path) -> xr.Dataset:
@@ -36,11 +35,11 @@ def add_fields(table: xr.Dataset, runs: Path) -> xr.Dataset:
     first = np.argwhere(there.any(axis=-1))[0]
     with storage.opened(runs / f"{table['run'].values[tuple(first)]}.h5") as one:
         cells = netcdf.dataset(one, without=["step"])
-        attributes = {name: _description(netcdf.attributes(one[name])) for name in _FIELDS}
+        attributes = {name: _description(netcdf.attributes(one[name])) for name in FIELDS}
     dimensions = [*table["status"].dims, "x", "y"]
     shape = *there.shape, cells.sizes["x"], cells.sizes["y"]
     fields = {}
-    for name in _FIELDS:
+    for name in FIELDS:
         array = _Field(runs, table["run"].values, there, name, shape)
         lazy = indexing.LazilyIndexedArray(array)
         fields[name] = Variable(dimensions, lazy, attributes[name])

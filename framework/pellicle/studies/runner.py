@@ -140,7 +140,7 @@ def run_study(
     from .lazy_fields import add_fields
 
     threads = checked_threads(threads)
-    study = as_study(configuration)
+    study = Study.of(configuration)
     if fields:
         if directory is None:
             raise ConfigError("fields are read from files: give a directory", "fields")
@@ -160,21 +160,6 @@ def run_study(
     if message := failures(made):
         warnings.warn(f"{message}; see status", ConvergenceWarning, stacklevel=2)
     return add_fields(made, Path(directory) / "runs") if fields and directory else made
-
-
-def as_study(configuration: Study | Mapping[str, Any] | str | Path) -> Study:
-    """Return a study, whichever way it is given.
-
-    Raises
-    ------
-    ConfigError, PluginError
-        It cannot be made.
-    """
-    if isinstance(configuration, Study):
-        return configuration
-    if isinstance(configuration, Mapping):
-        return Study.from_mapping(configuration)
-    return Study.from_toml(configuration)
 
 
 def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
@@ -315,7 +300,7 @@ def is_table(path: Path) -> bool:
 
 def _by_run(named: Sequence[Output]) -> tuple[Output, ...]:
     """Return the outputs that each run calls itself: its file is there in any case."""
-    return tuple(o for o in named if not o.draws_studies and getattr(o, "type", "") != "hdf5")
+    return tuple(o for o in named if not o.draws_studies and o.type_name != "hdf5")
 
 
 def _collect(task: RunTask, rows: table.Table) -> int:

@@ -9,13 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.results.status import Status
+from pellicle.results.variables import names_of
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_SHOWN = ("depth", "force", "contact_area", "contact_fraction")
-"""Numbers of the last step that the list of runs has, besides derived ones."""
-
 
 _WITHOUT_NUMBERS = (Status.NOT_RUN, Status.FAILED)
 
@@ -28,7 +25,7 @@ def rows(made: xr.Dataset) -> list[dict[str, str]]:
         done, wanted, verdict = standing(row)
         last = {
             name: f"{row[name].values[done - 1]:.6g}" if done and name in row else ""
-            for name in (*_SHOWN, *derived)
+            for name in (*names_of("main"), *derived)
         }
         found.append(
             {

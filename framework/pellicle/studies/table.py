@@ -15,7 +15,8 @@ from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN, derive
 from pellicle.results.status import Status
-from pellicle.results.variables import header
+from pellicle.results.variables import VARIABLES, header
+from pellicle.results.variables import damage as damage_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,28 +93,21 @@ class Table:
         return derive(made, self._study.derived) if self._numbers else made
 
 
-_TEXTS = ("status_code", "status")
-_COUNTS = ("iterations", "operator_applications", "patches")
+_TEXTS = "status_code", "status"
 
 
 def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any, np.dtype[Any]]:
     """Return a copy, in whole numbers where they count something and none is missing."""
-    return values.astype(int) if name in _COUNTS and np.isfinite(values).all() else values.copy()
+    counts = name in VARIABLES and VARIABLES[name].type == "count"
+    return values.astype(int) if counts and np.isfinite(values).all() else values.copy()
 
 
 def damage(table: xr.Dataset) -> str:
     """Return what keeps a dataset from being the table of a study."""
-    texts = {*_TEXTS, "run"}
     numbers = any(variable.dtype.kind in "fiu" for variable in table.data_vars.values())
-    expected = {*texts, "converged"} if numbers else texts
-    if missing := expected - {*map(str, table.data_vars)}:
-        return f"lacks {', '.join(sorted(missing))}"
-    for name, variable in table.data_vars.items():
-        kinds = "UO" if name in texts else "b" if name == "converged" else "fiub"
-        if variable.dtype.kind not in kinds:
-            return f"has {name} of type {variable.dtype}"
-    if unknown := {*table["status_code"].values.ravel()} - {"", *Status.__members__}:
-        return f"has the status_code {min(map(str, unknown))!r}"
+    required = (*_TEXTS, "run", *(["converged"] if numbers else []))
+    if problem := damage_of(table.data_vars, required, ("", *Status.__members__)):
+        return problem
     try:
         study, axes, run = (
             json.loads(table.attrs[name]) for name in ("configuration", "axes", FIRST_RUN)

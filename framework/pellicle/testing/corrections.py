@@ -124,7 +124,7 @@ def goes_into_the_result(correction: AreaCorrection) -> None:
             "corrections": [correction],
         }
     )
-    area = found[f"contact_area_{correction.type}"].item()  # type: ignore[attr-defined]
+    area = found[f"contact_area_{correction.type_name}"].item()
     require(area > 0, f"{area:g} m² for {found['contact_area'].item():g} m² of cells")
 
 

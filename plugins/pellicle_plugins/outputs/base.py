@@ -99,7 +99,7 @@ class Drawing(Output):
 
     @property
     def _ending(self) -> str:
-        return f"-{self.name or self.type}"  # type: ignore[attr-defined]
+        return f"-{self.name or self.type_name}"
 
 
 class Graph(Drawing):

@@ -44,7 +44,8 @@ from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.result import Result
 from pellicle.results.status import Status
-from pellicle.results.variables import OF_THE_CONTACT
+from pellicle.results.variables import FIELDS as RESULT_FIELDS
+from pellicle.results.variables import names_of
 from pellicle.studies.summary import coarse, each_run, failures, reasons, standing
 
 if TYPE_CHECKING:
@@ -56,9 +57,7 @@ FIELDS = {
     "gap": Shown("gap", "m", "Blues", power=0.5),
 }
 """What is mapped, by the name of its variable."""
-_MEASURED = "pressure", "displacement", "gap", "contact"
-_EFFORT = ("iterations", "operator_applications", "wall_time")
-_WORDS = ("status", "converged", "run")
+_EFFORT = names_of("effort", "residual")
 _CURVES = {
     "profile": "Pressure and gap of the last step along x through the centre.",
     "force_depth": "Force against depth over the load steps.",
@@ -164,12 +163,15 @@ class Html(Output):
             path = folder / f"{row['run'].item()}.h5"
             last = standing(row)[0] - 1
             try:
-                attributes, fields = storage.fields(path, _MEASURED, last)
+                attributes, fields = storage.fields(path, RESULT_FIELDS, last)
             except StorageError:
                 continue
             grid = Grid(**json.loads(attributes["configuration"])["grid"])
             step = xr.Dataset(
-                {name: (("x", "y"), field) for name, field in zip(_MEASURED, fields, strict=True)},
+                {
+                    name: (("x", "y"), field)
+                    for name, field in zip(RESULT_FIELDS, fields, strict=True)
+                },
                 attrs=attributes,
             ).assign(depth=row["depth"][last])
             drawn = without_round_off(step)
@@ -246,8 +248,8 @@ def _numbers(data: xr.Dataset) -> list[str]:
 
 def _steps(data: xr.Dataset) -> list[Table]:
     """Return the numbers of each load step: what was found, of what shape, and at what effort."""
-    effort = [n for n in _numbers(data) if n in _EFFORT or n.startswith("residual_")]
-    shape = [n for n in _numbers(data) if n in OF_THE_CONTACT]
+    effort = [n for n in _numbers(data) if n in _EFFORT]
+    shape = [n for n in _numbers(data) if n in names_of("contact")]
     found = [n for n in _numbers(data) if n not in (*effort, *shape)]
     tables = {
         "What was found in each load step.": found,
@@ -287,7 +289,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], shown: dict[int, int]) -> T
     """Return a row for each run: what is varied, and the numbers of its last step."""
     axes = [str(name) for name in table.coords if name != "step"]
     varied = [_column(name, table[name]) for name in axes]
-    found = [n for n in _numbers(table) if n not in _EFFORT and not n.startswith("residual_")]
+    found = [n for n in _numbers(table) if n not in _EFFORT]
     numbers = [_column(name, table[name]) for name in found]
     rows: list[list[str | Cell]] = []
     for index, row in enumerate(runs):

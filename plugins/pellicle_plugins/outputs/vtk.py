@@ -19,8 +19,8 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Output, Place
 from pellicle.files import atomic_write
-from pellicle.results.derived import FIELDS
 from pellicle.results.result import Result
+from pellicle.results.variables import FIELDS
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -18,7 +18,7 @@ from pellicle.components import Executor, Indenter
 from pellicle.config.study import Study
 from pellicle.errors import ConfigError, ConvergenceError
 from pellicle.plugins import registry
-from pellicle.studies.runner import as_study, carry_out, is_table, read
+from pellicle.studies.runner import carry_out, is_table, read
 from pellicle.studies.summary import failures
 
 from .extent import half_widths
@@ -120,7 +120,7 @@ class Plan:
         slope, intercept = self.width
         widths = np.exp(intercept + slope * np.log(self.depths))
         count = _RATIOS.size
-        return as_study(
+        return Study.from_mapping(
             {
                 "title": f"force curve of {self.indenter['type']} on {self.kernel['type']}",
                 "grid": {"points": self.grid_points, "size": 1.0},
