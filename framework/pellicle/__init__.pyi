@@ -10,6 +10,7 @@ from .components import Kernel as Kernel
 from .components import Output as Output
 from .components import Place as Place
 from .components import Solver as Solver
+from .config.loading import Loading as Loading
 from .config.run import Run as Run
 from .config.study import Study as Study
 from .config.study import schema as schema
@@ -31,7 +32,6 @@ from .fitting.pooled import fit_pooled as fit_pooled
 from .fitting.statistics.estimate import Estimate as Estimate
 from .grid import Grid as Grid
 from .hookspecs import hookimpl as hookimpl
-from .config.loading import Loading as Loading
 from .numerics.operators import displacement as displacement
 from .numerics.problem import Problem as Problem
 from .numerics.solution import Solution as Solution

@@ -6,7 +6,16 @@ from collections.abc import Callable
 
 import pluggy
 
-from .components import AreaCorrection, Executor, Indenter, Kernel, Output, Prescription, Solver, Suite
+from .components import (
+    AreaCorrection,
+    Executor,
+    Indenter,
+    Kernel,
+    Output,
+    Prescription,
+    Solver,
+    Suite,
+)
 
 hookspec = pluggy.HookspecMarker("pellicle")
 hookimpl = pluggy.HookimplMarker("pellicle")

@@ -302,5 +302,3 @@ def _check_prescription(component: type[Prescription], type_: str) -> None:
         raise PluginError(f"{name}: {min(taken)!r} is an option of [loading]; choose another name")
     if type_ in component.model_fields:
         raise PluginError(f"{name} has a field of the name of its type; choose another name")
-    if component.residual and component.residual not in component.variables:
-        raise PluginError(f"{name}.residual is {component.residual!r}, not one of its variables")

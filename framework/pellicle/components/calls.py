@@ -249,9 +249,7 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
         raise error.within(field) from None
 
 
-def target_of(
-    prescription: Prescription, setting: Setting, value: float
-) -> Depth | Force | Search:
+def target_of(prescription: Prescription, setting: Setting, value: float) -> Depth | Force | Search:
     """Return the depth, the force or the search for a prescribed value.
 
     Raises
@@ -267,16 +265,15 @@ def target_of(
             f"{name}: {call} returned {shown(target)}; it has to return a pellicle.Depth, Force "
             "or Search"
         )
-    for field in ("value", "compliance", "goal", "resolution", "guess"):
+    for field in ("value", "compliance", "goal", "resolution", "width", "guess"):
         number = getattr(target, field, None)
         if number is None:
             continue
         number = real_number(prescription, f"{call}.{field}", number)
         signed = field in ("goal", "guess") or (field == "value" and isinstance(target, Depth))
-        if not (-np.inf if signed else 0) <= number < np.inf or number == -np.inf:
-            raise PluginError(
-                f"{name}: {call}.{field} is {number:g}; it has to be finite{'' if signed else ' and ≥ 0'}"
-            )
+        if not np.isfinite(number) or (number < 0 and not signed):
+            allowed = "finite" if signed else "finite and ≥ 0"
+            raise PluginError(f"{name}: {call}.{field} is {number:g}; it has to be {allowed}")
     if not isinstance(target, Search):
         return target
     quantity = target.measure
@@ -292,9 +289,7 @@ def target_of(
     return replace(target, measure=measure)
 
 
-def report_of(
-    prescription: Prescription, setting: Setting, step: Equilibrium
-) -> dict[str, float]:
+def report_of(prescription: Prescription, setting: Setting, step: Equilibrium) -> dict[str, float]:
     """Return the variables that a prescription adds to a step.
 
     Raises
@@ -304,7 +299,7 @@ def report_of(
     """
     with blamed(prescription):
         report = prescription.report(setting, step)
-    declared = prescription.variables.keys() - {prescription.residual}
+    declared = {v.name for v in prescription.variables if v.kind != "residual"}
     if not isinstance(report, dict) or report.keys() != declared:
         raise PluginError(
             f"{component_name(prescription)}: report() returned {shown(report)}; it has to return "

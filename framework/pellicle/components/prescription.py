@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -12,7 +12,9 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.grid import Grid
 from pellicle.numerics.operators import Operator
-from pellicle.numerics.problem import Depth, Equilibrium, Force
+from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
+from pellicle.numerics.solution import State
+from pellicle.results.variables import Variable
 from pellicle.units import Quantity
 
 from .base import Component
@@ -29,8 +31,8 @@ class Setting:
     profile: Array
     """Indenter profile f ≤ 0 [m] of the grid's shape; −inf where there is no indenter."""
     footprint: Footprint
-    pressure: Array | None = None
-    """Pressure of the step before [Pa], of the grid's shape; None before the first step."""
+    state: State | None = None
+    """The state at the end of the step before; None at the first step."""
 
     @property
     def mean_height(self) -> float:
@@ -39,6 +41,10 @@ class Setting:
         −inf where the indenter does not fill its domain.
         """
         return float(self.profile.mean())
+
+    def problem(self, control: Depth | Force) -> Problem:
+        """Return the problem of a load step."""
+        return Problem(self.grid, self.operator, self.profile, control)
 
     def force_at(self, depth: float) -> float:
         """Return an estimate of the force [N] at a depth [m], by one application of the operator.
@@ -61,6 +67,8 @@ class Search:
     control: type[Depth] | type[Force] = Force
     resolution: float = 0.0
     """The difference from the goal that counts as none."""
+    width: float = 1e-9
+    """Relative width of controls within which the quantity counts as jumping."""
     guess: float | None = None
     """Control of the first trial [m or N]; None for that of the step before."""
     quantity: str = "quantity"
@@ -79,10 +87,8 @@ class Prescription(Component):
     """The least value that makes sense."""
     needs_period: ClassVar[bool] = False
     """Whether it is defined on periodic grids only."""
-    variables: ClassVar[Mapping[str, tuple[str, str]]] = {}
-    """Unit and meaning of each variable that it adds to a result, by name."""
-    residual: ClassVar[str] = ""
-    """The one of `variables` that is the relative error of a search."""
+    variables: ClassVar[tuple[Variable, ...]] = ()
+    """What it adds to a result. One of kind ``residual`` is the relative error of its search."""
 
     @classmethod
     def quantity(cls) -> Quantity:
@@ -103,7 +109,7 @@ class Prescription(Component):
         """
 
     def report(self, setting: Setting, step: Equilibrium) -> dict[str, float]:
-        """Return the `variables` of a solved step but for `residual`."""
+        """Return the `variables` of a solved step, except that of kind ``residual``."""
         return {}
 
 

@@ -67,8 +67,9 @@ class Loading(Model):
 
     @property
     def variables(self) -> set[str]:
-        """The result variables that only this loading has."""
-        return {*self.prescription.variables, *(["stiffness"] if self.stiffness else [])}
+        """The names of the result variables that only this loading has."""
+        names = {variable.name for variable in self.prescription.variables}
+        return names | ({"stiffness"} if self.stiffness else set())
 
 
 @cache
@@ -79,14 +80,12 @@ def loading_model(type_: str) -> type[Model]:
     options = {name: Loading.model_fields[name] for name in OPTIONS}
     fields = {n: info for n, info in component.model_fields.items() if n != "type"} | options
     meaning = (inspect.getdoc(component) or "").partition("\n")[0]
-    steps = Annotated[
+    steps: Any = Annotated[
         tuple[float, ...], LoadSteps(component.quantity()), Field(description=meaning)
     ]
-    more: dict[str, Any] = {name: (info.annotation, info) for name, info in fields.items()}
-    made: type[Model] = create_model(
-        f"Loading_{type_}", __base__=Model, **{type_: (steps, ...)}, **more
-    )
-    return made
+    definitions: dict[str, Any] = {type_: (steps, ...)}
+    definitions |= {name: (info.annotation, info) for name, info in fields.items()}
+    return create_model(f"Loading_{type_}", __base__=Model, **definitions)
 
 
 def _prescribed(data: Mapping[str, Any]) -> str:

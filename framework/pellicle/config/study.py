@@ -24,7 +24,7 @@ from pellicle.model.input_path import as_given as path_as_given
 from pellicle.model.paths import replaced
 from pellicle.plugins import registry
 from pellicle.results.derived import constants
-from pellicle.results.variables import FIELDS, VARIABLES, corrected_area
+from pellicle.results.variables import FIELDS, VARIABLES, corrected_area, names_of
 from pellicle.units import quantity_of, split
 
 from .component_field import FromRegistry
@@ -305,8 +305,9 @@ class Study(FromFile):
     def _check_derived(self) -> None:
         """Refuse expressions that name what a table will not have, before anything is run."""
         run = self.points[0].run
-        absent = {"status", "status_code"} | (ON_DEMAND - run.loading.brings)
+        absent = {"status", "status_code", *names_of("requested")} - run.loading.variables
         there = {*VARIABLES, *constants(json.loads(run.to_json()))} - absent
+        there |= run.loading.variables
         there |= {corrected_area(c.type_name).name for c in run.corrections}
         there |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         taken = {*FUNCTIONS, *CONSTANTS, "status", "status_code", "run", "step", "x", "y"}

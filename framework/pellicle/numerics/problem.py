@@ -196,12 +196,12 @@ class Equilibrium:
 
     @cached_property
     def gap(self) -> Array:
-        """u − δ − f [m]; +inf where there is no indenter."""
+        """U − δ − f [m]; +inf where there is no indenter."""
         return self.displacement - self.problem.profile - self.depth
 
     @property
     def residual_contact(self) -> float:
-        """max |gap| in contact, over the height range of the indenter in contact."""
+        """Max |gap| in contact, over the height range of the indenter in contact."""
         return float(self._inside.max(initial=0.0)) / self._scale
 
     @property

@@ -30,7 +30,7 @@ from .progress import Bar, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
-from .compose import problems_of
+from .compose import compose
 from .steps import solve_steps
 
 STANDARD_OUTPUTS = ("hdf5", "csv", "figures")
@@ -128,16 +128,16 @@ def execute(
     files: list[Path] = []
     with scipy.fft.set_workers(threads or default_threads(run.grid)), bar, ExitStack() as stack:
         try:
-            problems = problems_of(run)
+            solved = solve_steps(run, compose(run), steps, bar)
             if outputs and lock:
                 stack.enter_context(locked(place.directory, place.name))
             for output in outputs:
                 with blamed(output):
                     output.open(place)
-            steps.extend(_resume(outputs, place, len(problems)))
+            steps.extend(_resume(outputs, place, len(run.loading.values)))
             taken = len(steps)
-            # closing: the generator's arrays go before the outputs draw.
-            with closing(solve_steps(run, problems, steps, bar)) as solved:
+            # closing frees the operator before the outputs draw.
+            with closing(solved):
                 for step in solved:
                     hand_over(outputs, place, step)
         except MemoryError:
@@ -146,8 +146,6 @@ def execute(
             ) from None
         finally:
             if steps:
-                # What has been solved with makes room.
-                problems.clear()
                 result = Result(steps.joined())
                 files = left_by(
                     outputs,

@@ -1,8 +1,8 @@
 """The load step at which a measured quantity has a prescribed value.
 
 A contact area is a staircase of the force, so the quantity may jump. The search ends at any control
-whose value is within the resolution of the goal, or else at the jump across the goal, known to
-`_WIDTH`, on its nearer side.
+whose value is within the resolution of the goal, or else at the jump across the goal, known to a
+width, on its nearer side.
 """
 
 from __future__ import annotations
@@ -17,11 +17,9 @@ from scipy.optimize import brentq
 from pellicle.components import Monitor, Solver
 from pellicle.components.calls import solution_of
 from pellicle.components.prescription import Search, Setting
-from pellicle.numerics.problem import Depth, Equilibrium, Problem, measure
+from pellicle.numerics.problem import Depth, Equilibrium, measure
 from pellicle.numerics.solution import Solution, Stop
 
-# Relative width of the interval of controls in which the quantity jumps across the goal.
-_WIDTH: Final = 1e-4
 # Trials after which no control is expected to bring the goal.
 _MOST_TRIALS: Final = 40
 
@@ -29,7 +27,7 @@ _MOST_TRIALS: Final = 40
 class Reached(NamedTuple):
     """A load step, with the trial of a search that came nearest to its goal."""
 
-    found: Equilibrium
+    equilibrium: Equilibrium
     iterations: int
     """Of all trials."""
     stop: Stop
@@ -60,7 +58,7 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
         high += _stride(above, len(trials.excess))
         above = trials(high)
     if jumps := below < 0 < above:
-        brentq(trials, low, high, xtol=_WIDTH, rtol=1e-15)
+        brentq(trials, low, high, xtol=search.width, rtol=1e-15)
     how: Literal["met", "nearest", "not found"] = "nearest" if jumps else "not found"
     return Reached(
         trials.found,
@@ -102,15 +100,15 @@ class _Trials:
 
     def first(self) -> float:
         """Return where the first trial is: at the guess, or at the control of the step before."""
-        profile, pressure = self.setting.profile, self.setting.pressure
+        profile, state = self.setting.profile, self.setting.state
         heights = profile[np.isfinite(profile)]
         reach = 0.5 * float(np.ptp(heights)) or 1e-3 * min(self.setting.grid.spacing)
         guess = self.search.guess
         if self.search.control is Depth:
             self.scale = reach
             return (guess if guess is not None else reach - float(profile.max())) / reach
-        if guess is None and pressure is not None and pressure.any():
-            guess = float(pressure.sum()) * self.setting.grid.cell_area
+        if guess is None and state is not None:
+            guess = float(state.pressure.sum()) * self.setting.grid.cell_area
         if guess is None or guess <= 0:
             guess = self.setting.force_at(reach - float(profile.max()))
         return math.log(guess)
@@ -122,11 +120,9 @@ class _Trials:
         return self.excess[place]
 
     def _try(self, control: float) -> float:
-        setting, goal = self.setting, self.search.goal
-        problem = Problem(
-            setting.grid, setting.operator, setting.profile, self.search.control(control)
-        )
-        solution = solution_of(self.solver, problem, setting.pressure, self.monitor)
+        goal = self.search.goal
+        problem = self.setting.problem(self.search.control(control))
+        solution = solution_of(self.solver, problem, self.setting.state, self.monitor)
         found = measure(problem, solution.pressure)
         self.iterations += solution.iterations
         value = self.search.measure(found)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid, Loading, hookimpl
+from pellicle import Grid, hookimpl
 from pellicle.components import Output, Place
 from pellicle.config.describe import Input, in_words, inputs
 from pellicle.errors import StorageError
@@ -204,7 +204,7 @@ def _write(
 
 
 def _status(result: Result) -> Notice:
-    wanted = len(Loading(**result.configuration["loading"]).values)
+    wanted = result.planned_steps
     done, failed = result.dataset.sizes["step"], result.failures()
     said = []
     if done < wanted:
