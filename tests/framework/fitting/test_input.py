@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from click.testing import Result
 from numpy.typing import NDArray
+from tests.pictures import drawn_width
 
 import pellicle as pl
 from pellicle.fitting.curves.columns import Measured
@@ -67,7 +68,11 @@ def test_command_leaves_files(cli: Cli) -> None:
     _write(position, force)
     shown = cli("curve.csv", "-i", "flat_punch", "--radius", "10 um", "-o", "out").stdout
     assert "wrote out/curve-fit.json" in shown
-    assert Path("out/curve-fit.png").stat().st_size > 10_000
+    figure = Path("out/curve-fit.png")
+    # Data with the fit, residuals below them, beside both the confidence region.
+    assert drawn_width(figure, columns=(0, 0.5), rows=(0, 0.68)) > 0.6
+    assert drawn_width(figure, columns=(0, 0.5), rows=(0.72, 1)) > 0.3
+    assert drawn_width(figure, columns=(0.5, 0.88)) > 0.2
     said = json.loads(Path("out/curve-fit.json").read_text(encoding="utf-8"))
     assert said["tension"]["low"] is None
     assert any("does not describe the curve" in message for message in said["messages"])

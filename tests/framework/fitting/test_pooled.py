@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from click.testing import Result
 from numpy.typing import NDArray
+from tests.pictures import drawn_width
 
 import pellicle as pl
 from pellicle.fitting.models import simulation
@@ -257,7 +258,14 @@ def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Re
     assert "95 % of contact_point" in shown
     said = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
     assert said["reduced_modulus"]["low"] < TRUE_MODULUS < said["reduced_modulus"]["high"]
-    assert Path("out/pool.png").stat().st_size > 10_000
+    # The curves, their residuals, and what each parameter costs.
+    for columns, rows in (
+        ((0.0, 0.5), (0.0, 0.68)),
+        ((0.0, 0.5), (0.72, 1.0)),
+        ((0.5, 1.0), (0.0, 0.5)),
+        ((0.5, 1.0), (0.5, 1.0)),
+    ):
+        assert drawn_width(Path("out/pool.png"), columns, rows) > 0.6
     page = Path("out/pool.html").read_text(encoding="utf-8")
     for words in (
         "The curves agree",
