@@ -1,7 +1,9 @@
 from . import analysis as analysis
 from .components import AreaCorrection as AreaCorrection
 from .components import Case as Case
+from .components import Depth as Depth
 from .components import Executor as Executor
+from .components import Force as Force
 from .components import ForceCurve as ForceCurve
 from .components import HasForceCurve as HasForceCurve
 from .components import Indenter as Indenter
@@ -9,6 +11,9 @@ from .components import IterativeSolver as IterativeSolver
 from .components import Kernel as Kernel
 from .components import Output as Output
 from .components import Place as Place
+from .components import Prescription as Prescription
+from .components import Search as Search
+from .components import Setting as Setting
 from .components import Solver as Solver
 from .config.loading import Loading as Loading
 from .config.run import Run as Run

@@ -235,7 +235,9 @@ def _require_unchanged(
 
 
 def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
-    """Refuse a prescribed value that its prescription refuses; ``field`` has it.
+    """Refuse a prescribed value that its prescription refuses, as an error of ``field``.
+
+    An error of the prescription that names a field of its own keeps it.
 
     Raises
     ------
@@ -246,7 +248,8 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
         with blamed(prescription):
             prescription.check(setting, value)
     except ConfigError as error:
-        raise error.within(field) from None
+        named = any(problem.field for problem in error.problems)
+        raise (error if named else error.within(field)) from None
 
 
 def target_of(prescription: Prescription, setting: Setting, value: float) -> Depth | Force | Search:

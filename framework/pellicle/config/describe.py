@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple, get_args
 
 import numpy as np
 from pydantic import BaseModel
 
 from pellicle.components import Component
-from pellicle.errors import shown
+from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.plugins import Origin, Registered, registry
 from pellicle.report.plotting import axis_unit
 from pellicle.units import quantity_of
 
+from .loading import Loading, model_of
 from .run import Run
 
 _MOST = 8
@@ -80,6 +82,9 @@ def _one(said: Mapping[str, Any], annotation: Any, name: str) -> Iterator[Input]
     """Yield the inputs in a table: a component, or a part of the run."""
     model = _model(annotation)
     if "type" not in said:
+        if model is Loading:
+            with suppress(ConfigError, PluginError):
+                model = model_of(said)
         yield from _table(said, model, f"{name}.")
         return
     found = _registered(model, said["type"])

@@ -44,7 +44,7 @@ class Loading(Model):
         if not isinstance(given, Mapping):
             return given
         data = {key: value for key, value in given.items() if value is not None}
-        return dict(loading_model(_prescribed(data))(**data))
+        return dict(model_of(data)(**data))
 
     @cached_property
     def prescription(self) -> Prescription:
@@ -57,7 +57,7 @@ class Loading(Model):
     @property
     def prescribed(self) -> str:
         """The type of what is prescribed."""
-        return _prescribed(self.__pydantic_extra__ or {})
+        return prescribed_in(self.__pydantic_extra__ or {})
 
     @property
     def values(self) -> tuple[float, ...]:
@@ -70,6 +70,17 @@ class Loading(Model):
         """The names of the result variables that only this loading has."""
         names = {variable.name for variable in self.prescription.variables}
         return names | ({"stiffness"} if self.stiffness else set())
+
+
+def model_of(loading: Mapping[str, Any]) -> type[Model]:
+    """Return the model of the keys of a table ``[loading]``.
+
+    Raises
+    ------
+    ConfigError, PluginError
+        It does not name exactly one prescription that is installed.
+    """
+    return loading_model(prescribed_in(loading))
 
 
 @cache
@@ -88,7 +99,7 @@ def loading_model(type_: str) -> type[Model]:
     return create_model(f"Loading_{type_}", __base__=Model, **definitions)
 
 
-def _prescribed(data: Mapping[str, Any]) -> str:
+def prescribed_in(data: Mapping[str, Any]) -> str:
     """Return which key of a table names its prescription, or refuse the table."""
     families = registry().components["prescription"]
     known = [*_USUAL, *sorted(families.keys() - {*_USUAL})]

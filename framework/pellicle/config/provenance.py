@@ -12,6 +12,7 @@ from pellicle.files import for_document
 from pellicle.model.base import Model
 from pellicle.plugins import registry
 
+from .loading import Loading
 from .run import Run
 
 
@@ -49,7 +50,8 @@ def now_with(runs: Iterable[Run]) -> dict[str, str]:
 def _components(model: Model) -> Iterator[Component]:
     """Yield the components in the fields of a model, and those in theirs."""
     for _, value in model:
-        for each in value if isinstance(value, tuple) else (value,):
-            if isinstance(each, Component):
-                yield each
-                yield from _components(each)
+        for part in value if isinstance(value, tuple) else (value,):
+            component = part.prescription if isinstance(part, Loading) else part
+            if isinstance(component, Component):
+                yield component
+                yield from _components(component)

@@ -29,6 +29,7 @@ from pellicle.units import quantity_of, split
 
 from .component_field import FromRegistry
 from .json_schema import json_schema
+from .loading import Loading, loading_model
 from .output_conflicts import refuse_clashes_with_study
 from .run import Run
 
@@ -468,7 +469,8 @@ def _unit_of(run: Run, key: str) -> str | None:
     while last.isdecimal() and path:
         last = path.pop()
     owner = _reach(run, ".".join(path)) if path else run
-    info = type(owner).model_fields.get(last) if isinstance(owner, Model) else None
+    model = loading_model(owner.prescribed) if isinstance(owner, Loading) else type(owner)
+    info = model.model_fields.get(last) if issubclass(model, Model) else None
     quantity = quantity_of(info) if info else None
     # As datasets write areas, not as units are multiplied.
     return quantity.unit.replace("m**2", "m2") if quantity else None

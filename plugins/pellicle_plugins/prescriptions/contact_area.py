@@ -48,8 +48,8 @@ def unreachable(setting: Setting, area: float) -> str:
         return f"more than {whose} has, {covered * cell:g} m²; give less"
     if area > 0 and first == covered:
         return (
-            f"impossible: the indenter is flat, and all its {covered * cell:g} m² touch at once, "
-            "under any load; prescribe depth or force"
+            f"not within reach: the indenter is flat, and all its {covered * cell:g} m² touch at "
+            "once, under any load; prescribe depth or force"
         )
     if 0 < area < (first - 0.5) * cell:
         return (

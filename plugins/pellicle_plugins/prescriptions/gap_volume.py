@@ -30,7 +30,8 @@ class GapVolume(Prescription):
         if most == float("inf"):
             raise ConfigError(
                 "is not defined for an indenter that does not fill its domain: the gap beside it "
-                "has no end; prescribe depth or force"
+                "has no end; prescribe depth or force",
+                "loading.gap_volume",
             )
         if value > most:
             raise ConfigError(

@@ -30,7 +30,8 @@ class MeanPlaneDepth(Prescription):
         if endless or mean == -float("inf"):
             raise ConfigError(
                 "is not defined for an indenter that goes on beyond a free domain, or does not "
-                "fill its domain: it has no mean plane; prescribe depth"
+                "fill its domain: it has no mean plane; prescribe depth",
+                "loading.mean_plane_depth",
             )
         if value < mean:
             raise ConfigError(
