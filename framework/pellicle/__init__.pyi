@@ -15,10 +15,10 @@ from .components import Prescription as Prescription
 from .components import Search as Search
 from .components import Setting as Setting
 from .components import Solver as Solver
+from .config.json_schema import schema as schema
 from .config.loading import Loading as Loading
 from .config.run import Run as Run
 from .config.study import Study as Study
-from .config.study import schema as schema
 from .errors import ConfigError as ConfigError
 from .errors import ConvergenceError as ConvergenceError
 from .errors import ConvergenceWarning as ConvergenceWarning
@@ -34,7 +34,7 @@ from .fitting.many import fit_many as fit_many
 from .fitting.pooled import PooledCurve as PooledCurve
 from .fitting.pooled import PooledFit as PooledFit
 from .fitting.pooled import fit_pooled as fit_pooled
-from .fitting.statistics.estimate import Estimate as Estimate
+from .fitting.statistics.profile import Estimate as Estimate
 from .grid import Grid as Grid
 from .hookspecs import hookimpl as hookimpl
 from .numerics.operators import displacement as displacement

@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from blocks import ROOT
+from tests.docs.blocks import ROOT
 from tests.pictures import pixels
 from typer.testing import CliRunner
 
 from pellicle.cli import app
 from pellicle.config.study import Study, from_toml
 from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.axisymmetric_indenters import Paraboloid
+from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.outputs.compliance import of_cells_along_x
 
 STUDIES = ROOT / "docs/studies"
@@ -87,7 +87,11 @@ def test_fig2_agreement_is_what_the_page_says() -> None:
 def test_fig3_the_correction_helps_on_every_grid(tmp_path: Path) -> None:
     """The corrected area is nearer to the true one, and both get there as N grows."""
     run("fig3.toml", tmp_path, 'study.vary={"grid.points"=[32,64,128]}')
-    true = np.pi * indent(Paraboloid(RADIUS), MODULUS, 1.0, depth=DEPTH).contact_radius ** 2 * 1e6
+    true = (
+        np.pi
+        * indent(Paraboloid(radius=RADIUS), MODULUS, 1.0, depth=DEPTH).contact_radius ** 2
+        * 1e6
+    )
     path = tmp_path / "study-curves.csv"
     counted, corrected = (
         abs(column(drawn(path, series=series), "y") / true - 1)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from pellicle.fitting.fit import Fit
     from pellicle.fitting.pooled import PooledFit
-    from pellicle.fitting.statistics.estimate import Estimate
+    from pellicle.fitting.statistics.profile import Estimate
 
 
 def print_fit(fit: Fit | PooledFit) -> None:

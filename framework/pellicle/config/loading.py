@@ -8,6 +8,7 @@ from functools import cache, cached_property
 from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, create_model, model_validator
+from pydantic.fields import FieldInfo
 
 from pellicle.components import Prescription
 from pellicle.errors import ConfigError, Problem
@@ -58,6 +59,11 @@ class Loading(Model):
     def prescribed(self) -> str:
         """The type of what is prescribed."""
         return prescribed_in(self.__pydantic_extra__ or {})
+
+    @property
+    def described_fields(self) -> Mapping[str, FieldInfo]:
+        """The options, what is prescribed and the fields of that."""
+        return loading_model(self.prescribed).model_fields
 
     @property
     def values(self) -> tuple[float, ...]:

@@ -16,28 +16,17 @@ from pellicle.errors import ConfigError, PellicleError
 from .curves.columns import Calibration, Measured
 from .curves.curve import Segment
 from .curves.sources import Source
-from .explained import explain
-from .models.interpolated import described
+from .models.force_model import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .models.simulation import GRID_POINTS
 from .plausible import plausible
-from .posed import Posed, posed
+from .posed import Posed, likelihood, posed
 from .problem import Baseline
 from .result import Answer, doubt
+from .statistics.checks import fit_single
 from .statistics.design import advice, undecided
-from .statistics.estimate import Estimate
-from .statistics.initial_guess import starts
-from .statistics.interval import allowed_rise
-from .statistics.likelihood import (
-    MODULUS,
-    OFFSET,
-    POINT,
-    SLOPE,
-    TENSION,
-    Likelihood,
-    Minimum,
-    best_minimum,
-)
-from .statistics.profile import profiled
+from .statistics.initial_guess import initial_guesses
+from .statistics.likelihood import Likelihood, Minimum, best_minimum
+from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 from .status import Report, ignore, status
 
 
@@ -65,7 +54,7 @@ class Fit(Answer):
 
         A kernel is there only if its force curve was simulated, without modulus and tension.
         """
-        return described(self.likelihood.indenter)
+        return self.likelihood.force_model.description()
 
     def to_dict(self) -> dict[str, Any]:
         """Return what JSON can hold."""
@@ -199,53 +188,50 @@ def fitted(posed: Posed, report: Report = ignore) -> Fit:
         The curve cannot be fitted.
     """
     report("least squares")
-    alone = explain(posed)
-    likelihood, rise = alone.likelihood, allowed_rise(alone.freedom)
-    found = profiled(
-        likelihood,
-        likelihood.minimise(alone.parameters),
-        rise,
-        likelihood.free,
-        partial(_without_tension, likelihood),
+    single = fit_single(likelihood(posed), posed.asked.fixed)
+    chi_squared, threshold = single.likelihood, chi_squared_threshold(single.freedom)
+    profile = profile_likelihood(
+        chi_squared,
+        chi_squared.minimise(single.parameters),
+        threshold,
+        chi_squared.free,
+        partial(_without_tension, chi_squared),
         report,
     )
-    best = found.best.parameters
-    point, modulus, tension = (
-        found.estimate(which, unit)
-        for which, unit in ((POINT, "m"), (MODULUS, "Pa"), (TENSION, "N/m"))
-    )
+    best = profile.best.parameters
+    point, modulus, tension = map(profile.estimate, (CONTACT_POINT, MODULUS, TENSION))
     return Fit(
         reduced_modulus=modulus,
         tension=tension,
         poissons_ratio=posed.asked.poissons_ratio,
-        chi_squared=found.best.chi_squared,
-        chi_squared_without_tension=found.without_tension.chi_squared,
-        advice=advice(likelihood, best, modulus, tension),
+        chi_squared=profile.best.chi_squared,
+        chi_squared_without_tension=profile.without_tension.chi_squared,
+        advice=advice(chi_squared, best, modulus, tension),
         messages=(
-            *alone.messages,
-            *(check.message for check in alone.failed_checks),
-            *found.messages,
+            *posed.curve.messages,
+            *single.messages,
+            *(check.message for check in single.failed_checks),
+            *profile.messages,
             *plausible(posed, point.value, modulus.value, tension.value),
-            *undecided(modulus, tension, likelihood, best),
+            *undecided(modulus, tension, chi_squared, best),
         ),
         parameters=best,
-        parameters_without_tension=found.without_tension.parameters,
-        rise=rise,
-        failed_checks=alone.failed_checks,
-        doubt=doubt(alone.failed_checks),
+        parameters_without_tension=profile.without_tension.parameters,
+        rise=threshold,
+        failed_checks=single.failed_checks,
+        doubt=doubt(single.failed_checks),
         contact_point=point,
-        offset=found.estimate(OFFSET, "N"),
-        slope=found.estimate(SLOPE, "N/m"),
-        noise=likelihood.noise,
-        noise_from=alone.noise_from,
+        offset=profile.estimate(OFFSET),
+        slope=profile.estimate(SLOPE),
+        noise=chi_squared.noise,
+        noise_from=single.noise_from,
         points=posed.curve.force.size,
-        likelihood=likelihood,
+        likelihood=chi_squared,
     )
 
 
 def _without_tension(likelihood: Likelihood, best: Minimum) -> Minimum:
     """Return the least χ² without tension, near the best and near the best of a scan."""
-    begun = best.parameters.copy()
-    begun[TENSION] = 0.0
-    held = replace(likelihood, free=tuple(k for k in likelihood.free if k != TENSION))
-    return best_minimum(held, (begun, *starts(held, begun)[:1]))
+    start = best.parameters | {TENSION: 0.0}
+    fixed = replace(likelihood, free=tuple(p for p in likelihood.free if p != TENSION))
+    return best_minimum(fixed, (start, *initial_guesses(fixed, start)[:1]))

@@ -229,9 +229,10 @@ def _identity(posed: Posed, grid_points: int) -> str:
             known.update(part.model_dump_json().encode())
         else:
             known.update(pickle.dumps(part))
-    said = asked.free, asked.segment, asked.poissons_ratio, grid_points if kernel else None
+    fixed = {parameter.name: value for parameter, value in asked.fixed.items()}
+    said = fixed, asked.segment, asked.poissons_ratio, grid_points if kernel else None
     known.update(repr((said, curve.messages, curve.stiffness)).encode())
-    for values in (asked.held, curve.position, curve.force):
+    for values in (curve.position, curve.force):
         known.update(values.tobytes())
     return known.hexdigest()
 

@@ -7,7 +7,7 @@ from typing import Any
 from pellicle.components import Component
 from pellicle.errors import ConfigError
 
-from .models.interpolated import SimulatedCurve
+from .models.force_model import tension_model
 from .models.solid import lengths
 from .posed import Posed
 
@@ -25,14 +25,14 @@ def plausible(posed: Posed, point: float, modulus: float, tension: float) -> lis
         The depth is beyond that of the indenter's force curve.
     """
     messages = []
-    indenter: Any = posed.asked.indenter
+    model: Any = tension_model(posed.asked.indenter)
     depth = float(posed.curve.position[-1]) - point
-    shape = indenter.indenter if isinstance(indenter, SimulatedCurve) else indenter
+    shape = model.indenter
     radius = next(iter(lengths(shape)), None) if isinstance(shape, Component) else None
-    if depth > indenter.depth_limit:
+    if depth > model.depth_limit:
         raise ConfigError(
             f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at "
-            f"{indenter.depth_limit:.3g} m; is the radius right? If so, leave out the deepest part",
+            f"{model.depth_limit:.3g} m; is the radius right? If so, leave out the deepest part",
             "indenter",
         )
     if radius is not None and not _PLAUSIBLE_DEPTH[0] <= depth / radius <= _PLAUSIBLE_DEPTH[1]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -16,22 +15,18 @@ from pellicle.errors import ConfigError, PellicleError
 
 from .curves.curve import Segment
 from .curves.sources import Curves, Source, gather
-from .explained import Explained, explain
-from .models.interpolated import described
+from .models.force_model import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .models.simulation import GRID_POINTS
 from .plausible import plausible
-from .posed import posed
+from .posed import Posed, likelihood, posed
 from .problem import Baseline
 from .result import Answer, doubt
+from .statistics.checks import SingleFit, check_pooled_shape, fit_single
 from .statistics.design import percent
-from .statistics.estimate import Estimate
-from .statistics.interval import allowed_rise
-from .statistics.likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
-from .statistics.pool_minima import alone, begin, without_tension
-from .statistics.pooled_likelihood import SHARED, Pool
-from .statistics.profile import profiled
-from .statistics.residuals import FailedCheck
-from .statistics.shape_check import check_pooled_shape
+from .statistics.likelihood import best_minimum
+from .statistics.noise import FailedCheck
+from .statistics.pooled_likelihood import Pool
+from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 from .status import Report, status
 
 _CHANCE = 1e-3
@@ -197,70 +192,77 @@ def pool_sources(
         try:
             if isinstance(each, PellicleError):
                 raise each
-            every.append(explain(each.modelled(**study)))
+            modelled = each.modelled(**study)
+            every.append((modelled, fit_single(likelihood(modelled), modelled.asked.fixed)))
         except ConfigError as error:
             raise source.named(error, "; leave it out") from None
     with status(study.get("progress", False)) as report:
         return _fitted(every, contact_points, report)
 
 
-def _fitted(every: Sequence[Explained], contact_points: bool, report: Report) -> PooledFit:
+def _fitted(
+    every: Sequence[tuple[Posed, SingleFit]], contact_points: bool, report: Report
+) -> PooledFit:
     report("least squares")
-    pool = Pool.of([each.likelihood for each in every])
-    begun = begin(pool, every)
+    pool = Pool.of([single.likelihood for _, single in every])
+    start = pool.initial_minimum([single.parameters for _, single in every])
+    parts = pool.parts(start.parameters)
     singles = [
-        alone(each, part) for each, part in zip(every, pool.parts(begun.parameters), strict=True)
+        best_minimum(single.likelihood, (single.parameters, part))
+        for (_, single), part in zip(every, parts, strict=True)
     ]
-    shared = [k for k in SHARED if k in pool.free]
+    shared = [p for p in pool.free if p.shared]
     degrees = len(shared) * (len(every) - 1)
-    spread = max(begun.chi_squared - sum(single.chi_squared for single in singles), 0.0)
+    spread = max(start.chi_squared - sum(single.chi_squared for single in singles), 0.0)
     factor = max(spread / degrees, 1.0) if chdtrc(degrees, spread) < _CHANCE else 1.0
-    rise = factor * allowed_rise(sum(each.freedom for each in every))
-    points = [pool.place(number, POINT) for number in range(len(every))]
-    wanted = [*shared, *(k for k in points if contact_points and k in pool.free)]
-    found = profiled(pool, begun, rise, wanted, partial(without_tension, pool), report)
-    modulus, tension = found.estimate(MODULUS, "Pa"), found.estimate(TENSION, "N/m")
+    freedom = sum(single.freedom for _, single in every)
+    threshold = factor * chi_squared_threshold(freedom)
+    points = [CONTACT_POINT.of_curve(index) for index in range(len(every))]
+    wanted = [*shared, *(p for p in points if contact_points and p in pool.free)]
+    profile = profile_likelihood(pool, start, threshold, wanted, pool.without_tension, report)
+    modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = []
-    for number, part in enumerate(pool.parts(found.best.parameters)):
-        each, member, single = every[number], pool.members[number], singles[number]
-        point = found.estimate(points[number], "m")
+    for number, part in enumerate(pool.parts(profile.best.parameters)):
+        (posed, own), member, single = every[number], pool.members[number], singles[number]
+        point = profile.estimate(points[number])
         curves.append(
             PooledCurve(
-                name=each.posed.name,
-                model=described(member.indenter),
+                name=posed.name,
+                model=member.force_model.description(),
                 contact_point=point,
-                offset=float(part[OFFSET]),
-                slope=float(part[SLOPE]),
+                offset=part[OFFSET],
+                slope=part[SLOPE],
                 noise=member.noise,
                 points=member.force.size,
                 chi_squared=member.chi_squared(part),
                 chi_squared_alone=single.chi_squared,
                 reduced_modulus_alone=float(np.exp(single.parameters[MODULUS])),
-                tension_alone=float(single.parameters[TENSION]),
-                failed_checks=each.failed_checks,
+                tension_alone=single.parameters[TENSION],
+                failed_checks=own.failed_checks,
                 messages=(
-                    *each.messages,
-                    *(check.message for check in each.failed_checks),
-                    *plausible(each.posed, point.value, modulus.value, tension.value),
+                    *posed.curve.messages,
+                    *own.messages,
+                    *(check.message for check in own.failed_checks),
+                    *plausible(posed, point.value, modulus.value, tension.value),
                 ),
             )
         )
-    shapes = tuple(check_pooled_shape(pool, found.best))
+    shapes = tuple(check_pooled_shape(pool, profile.best))
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,
-        poissons_ratio=every[0].posed.asked.poissons_ratio,
-        chi_squared=found.best.chi_squared,
-        chi_squared_without_tension=found.without_tension.chi_squared,
+        poissons_ratio=every[0][0].asked.poissons_ratio,
+        chi_squared=profile.best.chi_squared,
+        chi_squared_without_tension=profile.without_tension.chi_squared,
         advice=_advice(modulus, tension),
         messages=(
             *(check.message for check in shapes),
-            *found.messages,
+            *profile.messages,
             *_open(modulus, tension),
         ),
-        parameters=found.best.parameters,
-        parameters_without_tension=found.without_tension.parameters,
-        rise=rise,
+        parameters=profile.best.parameters,
+        parameters_without_tension=profile.without_tension.parameters,
+        rise=threshold,
         failed_checks=shapes,
         doubt=_doubt(curves) or doubt(shapes),
         curves=tuple(curves),

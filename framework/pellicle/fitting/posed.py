@@ -14,10 +14,11 @@ from pellicle.errors import ConfigError, PellicleError
 from .curves.columns import Measured
 from .curves.curve import Curve, Segment, clean
 from .curves.sources import Source
+from .models.force_model import CONTACT_POINT, tension_model
 from .models.simulation import simulate
 from .problem import Question, question
 from .statistics.initial_guess import BEFORE
-from .statistics.likelihood import POINT
+from .statistics.likelihood import Likelihood
 
 
 @dataclass(frozen=True)
@@ -42,12 +43,24 @@ class Posed:
         if asked.material is None:
             return self
         span = float(np.ptp(position))
-        held = POINT not in asked.free
-        reach = float(position[-1]) - asked.held[POINT] if held else (1 + BEFORE) * span
+        point = asked.fixed.get(CONTACT_POINT)
+        reach = (1 + BEFORE) * span if point is None else float(position[-1]) - point
         # Where nothing reaches contact, the fit itself says so.
         deepest = reach if reach > 0 else span
         made = simulate(asked.indenter, asked.material, deepest, **study)
         return replace(self, asked=replace(asked, indenter=made, material=None))
+
+
+def likelihood(curve: Posed) -> Likelihood:
+    """Return the likelihood of a curve by an indenter that has a force curve.
+
+    Its noise, which is not known yet, is set to the largest force.
+    """
+    data, model = curve.curve, tension_model(curve.asked.indenter)
+    noise = float(np.max(np.abs(data.force)))
+    whole = Likelihood(data.position, data.force, model, noise, (), data.stiffness)
+    free = tuple(p for p in whole.parameters if p not in curve.asked.fixed)
+    return replace(whole, free=free)
 
 
 def posed(

@@ -6,9 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import numpy as np
-
-from pellicle.arrays import Array
 from pellicle.components import HasForceCurve, Indenter
 from pellicle.errors import ConfigError
 from pellicle.model.messages import nearest
@@ -16,17 +13,21 @@ from pellicle.plugins import registry
 from pellicle.units import Quantity
 
 from .curves.curve import LARGEST, Segment
+from .models.force_model import (
+    CONTACT_POINT,
+    MODULUS,
+    OFFSET,
+    SLOPE,
+    TENSION,
+    Coordinates,
+    Parameter,
+)
 from .models.solid import DEFAULT_KERNEL, Solid, solid
-from .statistics.likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
 
 Baseline = Literal["none", "offset", "slope"]
 
-_NAMES = {
-    "contact_point": (POINT, Quantity("m", at_least=-LARGEST, at_most=LARGEST)),
-    "reduced_modulus": (MODULUS, Quantity("Pa", at_least=1 / LARGEST, at_most=LARGEST)),
-    "tension": (TENSION, Quantity("N/m", at_least=0, at_most=LARGEST)),
-}
-_BASELINES: dict[str, tuple[int, ...]] = {
+_FIXABLE = {parameter.name: parameter for parameter in (CONTACT_POINT, MODULUS, TENSION)}
+_BASELINES: dict[str, tuple[Parameter, ...]] = {
     "none": (),
     "offset": (OFFSET,),
     "slope": (OFFSET, SLOPE),
@@ -41,9 +42,8 @@ class Question:
     """It has a force curve, or is pressed into `material`."""
     material: Solid | None
     """What is to be simulated; None if nothing is."""
-    held: Array
-    """Parameters, in the order of `likelihood`; of the free ones, anything."""
-    free: tuple[int, ...]
+    fixed: Coordinates
+    """Parameters that are not fitted."""
     segment: Segment
     poissons_ratio: float | None
 
@@ -75,21 +75,17 @@ def question(
         if not isinstance(shape, Indenter):
             raise ConfigError("is given beside a force curve, which has one already", "kernel")
         ratio = material.poissons_ratio
-    held = _held(fix or {}, is_depth)
-    free = tuple(k for k in range(3) if k not in held)
+    fixed = _fixed(fix or {}, is_depth)
     if segment not in ("approach", "retract"):
         raise ConfigError(f"{segment!r} is not allowed; give approach or retract", "segment")
     if baseline not in _BASELINES:
         raise ConfigError(
             f"{baseline!r} is not allowed; {nearest(baseline, _BASELINES)}", "baseline"
         )
-    if not {MODULUS, TENSION} & set(free):
-        raise ConfigError("holds both modulus and tension; leave one of them to the fit", "fix")
-    values = np.zeros(5)
-    for k, value in held.items():
-        values[k] = value
-    free += _BASELINES[baseline]
-    return Question(shape, material, values, free, segment, ratio)
+    if {MODULUS, TENSION} <= set(fixed):
+        raise ConfigError("fixes both modulus and tension; leave one of them to the fit", "fix")
+    fixed |= {p: 0.0 for p in (OFFSET, SLOPE) if p not in _BASELINES[baseline]}
+    return Question(shape, material, fixed, segment, ratio)
 
 
 def _indenter(
@@ -109,18 +105,19 @@ def _indenter(
         raise error.within("indenter") from None
 
 
-def _held(fix: Mapping[str, Any], is_depth: bool) -> dict[int, float]:
-    held: dict[int, float] = {POINT: 0.0} if is_depth else {}
+def _fixed(fix: Mapping[str, Any], is_depth: bool) -> Coordinates:
+    fixed: Coordinates = {CONTACT_POINT: 0.0} if is_depth else {}
     for name, value in fix.items():
-        if name not in _NAMES:
-            raise ConfigError(f"is no parameter; {nearest(name, _NAMES)}", f"fix.{name}")
-        which, quantity = _NAMES[name]
+        if name not in _FIXABLE:
+            raise ConfigError(f"is no parameter; {nearest(name, _FIXABLE)}", f"fix.{name}")
+        parameter = _FIXABLE[name]
+        least = 1 / LARGEST if parameter.logarithmic else max(parameter.minimum, -LARGEST)
         try:
-            number = quantity(value)
+            number = Quantity(parameter.unit, at_least=least, at_most=LARGEST)(value)
         except ValueError as error:
             raise ConfigError(str(error), f"fix.{name}") from None
-        held[which] = float(np.log(number)) if which == MODULUS else number
-    return held
+        fixed[parameter] = parameter.coordinate(number)
+    return fixed
 
 
 def _ratio(given: float | None) -> float | None:

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from pellicle.arrays import Array
-
-from .statistics.estimate import Estimate
-from .statistics.interval import CONFIDENCE
-from .statistics.residuals import FailedCheck
+from .models.force_model import Coordinates
+from .statistics.noise import FailedCheck
+from .statistics.profile import CONFIDENCE, Estimate
 from .written import as_json, write_json
 
 
@@ -51,9 +49,9 @@ class Answer:
     """The bound that was reached, and what would tighten it."""
     messages: tuple[str, ...]
     """What to be careful of."""
-    parameters: Array
-    """Parameters of the fit, in the order of its likelihood."""
-    parameters_without_tension: Array
+    parameters: Coordinates
+    """Best coordinates: a value for each `Parameter`, of the modulus its natural logarithm."""
+    parameters_without_tension: Coordinates
     """The same with tension held at 0 (Hertz, for a paraboloid)."""
     rise: float
     """Rise of χ² at the ends of the intervals."""

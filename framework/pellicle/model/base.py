@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic import (
@@ -9,6 +10,7 @@ from pydantic import (
     ConfigDict,
     ValidationError,
 )
+from pydantic.fields import FieldInfo
 
 from pellicle.errors import ConfigError
 
@@ -26,3 +28,8 @@ class Model(BaseModel):
             super().__init__(**data)
         except ValidationError as error:
             raise ConfigError(problems(type(self), error.errors(), data)) from None
+
+    @property
+    def described_fields(self) -> Mapping[str, FieldInfo]:
+        """The fields by name, with those that only this object has."""
+        return type(self).model_fields

@@ -18,6 +18,7 @@ import pellicle as pl
 from pellicle.fitting import status
 from pellicle.fitting.curves.sources import gather
 from pellicle.fitting.fit import fitted
+from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.posed import posed
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.noise import resolution
@@ -259,7 +260,7 @@ def test_slope_of_the_baseline_cannot_reproduce_any_curve() -> None:
     """The baseline runs along the base of the cantilever, which holds no measured force."""
     position, force = _cantilever(1e-3)
     bead = pl.indenter("paraboloid", radius=RADIUS)
-    likelihood = Likelihood(position, force, bead, 1e-10, (0, 1, 2, 3, 4), 1e-3)  # type: ignore[arg-type]
+    likelihood = Likelihood(position, force, tension_model(bead), 1e-10, (), 1e-3)  # type: ignore[arg-type]
     steps = np.diff(likelihood.travel)
     assert np.ptp(steps) < 1e-9 * steps.mean()
 

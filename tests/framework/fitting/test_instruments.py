@@ -5,14 +5,25 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import instruments
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.framework.fitting import instruments
 
 import pellicle as pl
 from pellicle.fitting.curves.columns import Calibration, Measured
 from pellicle.fitting.curves.readers import read
+from pellicle.fitting.models.force_model import (
+    CONTACT_POINT,
+    OFFSET,
+    SLOPE,
+    TENSION,
+    Coordinates,
+    tension_model,
+)
+from pellicle.fitting.models.force_model import (
+    MODULUS as REDUCED_MODULUS,
+)
 from pellicle.fitting.statistics.likelihood import Likelihood
 
 Array = NDArray[np.float64]
@@ -172,23 +183,31 @@ def test_columns_of_a_cantilever(tmp_path: Path, header: str) -> None:
         assert is_curve(only(path), position, force)
 
 
+TRUTH: Coordinates = {
+    CONTACT_POINT: 0.0,
+    REDUCED_MODULUS: float(np.log(MODULUS)),
+    TENSION: MODULUS * LENGTH / 2,
+    OFFSET: 0.0,
+    SLOPE: 0.0,
+}
+
+
 def test_noise_of_the_deflection_is_in_the_position_too() -> None:
     """With a spring as soft as the contact errors are those of the bound, and nothing is widened.
 
     Without its spring constant the same curve is thought not to be described by the model.
     """
     random = np.random.default_rng(7)
-    truth = np.array([0.0, np.log(MODULUS), MODULUS * LENGTH / 2, 0.0, 0.0])
     errors = []
     for _ in range(8):
         noise = 0.005 * FORCE.max() * random.standard_normal(FORCE.size)
         seen = POSITION - noise / SPRING, FORCE + noise
         fit = pl.fit(*seen, indenter=BEAD, spring_constant=SPRING)
         assert not fit.failed_checks
-        bound = fit.likelihood.deviations(truth)
+        bound = fit.likelihood.deviations(TRUTH)
         errors += [
-            np.log(fit.reduced_modulus.value / MODULUS) / bound[1],
-            (fit.tension.value - truth[2]) / bound[2],
+            np.log(fit.reduced_modulus.value / MODULUS) / bound[REDUCED_MODULUS],
+            (fit.tension.value - TRUTH[TENSION]) / bound[TENSION],
         ]
     assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 1.6
     blind = pl.fit(*seen, indenter=BEAD)
@@ -198,17 +217,19 @@ def test_noise_of_the_deflection_is_in_the_position_too() -> None:
 def test_balance_of_cantilever_and_solid() -> None:
     """At the truth nothing is left but the noise, and slopes are derivatives of the residuals."""
     noise = 0.01 * float(FORCE.max())
-    likelihood = Likelihood(*SEEN, BEAD, noise, (0, 1, 2, 3, 4), SPRING)  # type: ignore[arg-type]
-    truth = np.array([0.0, np.log(MODULUS), MODULUS * LENGTH / 2, 0.0, 0.0])
-    assert likelihood.residuals(truth) * noise == pytest.approx(-NOISE, abs=1e-8 * FORCE.max())
-    here = truth + 0.01 * likelihood.scale * np.array([1, 10, 1, 1, 1])
-    away = np.abs(POSITION - here[0]) > 0.1e-6
-    for which in range(5):
-        step = np.zeros(5)
-        step[which] = 1e-5 * likelihood.scale[which]
-        rise = likelihood.residuals(here + step) - likelihood.residuals(here - step)
-        slope = likelihood.slopes(here)[:, which]
-        found = rise / (2 * step[which])
+    likelihood = Likelihood(*SEEN, tension_model(BEAD), noise, tuple(TRUTH), SPRING)  # type: ignore[arg-type]
+    assert likelihood.residuals(TRUTH) * noise == pytest.approx(-NOISE, abs=1e-8 * FORCE.max())
+    here = {p: value + 0.01 * likelihood.scale[p] for p, value in TRUTH.items()}
+    here[REDUCED_MODULUS] = TRUTH[REDUCED_MODULUS] + 0.1
+    away = np.abs(POSITION - here[CONTACT_POINT]) > 0.1e-6
+    for column, parameter in enumerate(likelihood.parameters):
+        step = 1e-5 * likelihood.scale[parameter]
+        above, below = (
+            likelihood.residuals(here | {parameter: here[parameter] + change})
+            for change in (step, -step)
+        )
+        slope = likelihood.jacobian(here)[:, column]
+        found = (above - below) / (2 * step)
         assert found[away] == pytest.approx(slope[away], abs=1e-4 * np.abs(slope).max())
 
 
