@@ -219,11 +219,11 @@ def test_balance_of_cantilever_and_solid() -> None:
     noise = 0.01 * float(FORCE.max())
     likelihood = Likelihood(*SEEN, tension_model(BEAD), noise, tuple(TRUTH), SPRING)  # type: ignore[arg-type]
     assert likelihood.residuals(TRUTH) * noise == pytest.approx(-NOISE, abs=1e-8 * FORCE.max())
-    here = {p: value + 0.01 * likelihood.scale[p] for p, value in TRUTH.items()}
+    here = {p: value + 0.01 * likelihood.ranges[p].scale for p, value in TRUTH.items()}
     here[REDUCED_MODULUS] = TRUTH[REDUCED_MODULUS] + 0.1
     away = np.abs(POSITION - here[CONTACT_POINT]) > 0.1e-6
     for column, parameter in enumerate(likelihood.parameters):
-        step = 1e-5 * likelihood.scale[parameter]
+        step = 1e-5 * likelihood.ranges[parameter].scale
         above, below = (
             likelihood.residuals(here | {parameter: here[parameter] + change})
             for change in (step, -step)

@@ -149,7 +149,7 @@ def test_slopes_and_bound_are_those_of_all_points(fit: pl.PooledFit) -> None:
     stacked[: len(first), :5] = first
     stacked[len(first) :, [5, 1, 2, 6, 7]] = others[0]
     gradient = pool.jacobian(here).T @ pool.residuals(here)
-    scale = np.array([pool.scale[p] for p in pool.parameters])
+    scale = np.array([pool.ranges[p].scale for p in pool.parameters])
     assert gradient * scale == pytest.approx(stacked.T @ left * scale, rel=1e-8, abs=1e-6)
     scaled = stacked * scale
     bound = np.sqrt(np.diag(np.linalg.inv(scaled.T @ scaled))) * scale

@@ -86,7 +86,7 @@ def test_jacobian(ratio: float) -> None:
     }
     jacobian = likelihood.jacobian(here)
     for column, parameter in enumerate(likelihood.parameters):
-        step = 1e-5 * likelihood.scale[parameter]
+        step = 1e-5 * likelihood.ranges[parameter].scale
         beyond = here | {parameter: here[parameter] + step}
         near = likelihood.jacobian(beyond)[:, column] + jacobian[:, column]
         slope = (likelihood.model(beyond) - likelihood.model(here)) / step

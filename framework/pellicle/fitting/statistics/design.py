@@ -157,7 +157,7 @@ def _with_tension(
     """Return the parameters, with a tension that the curve could just miss if it shows none."""
     if tension.low is not None:
         return parameters
-    return parameters | {TENSION: (tension.high or likelihood.scale[TENSION]) / 2}
+    return parameters | {TENSION: (tension.high or likelihood.ranges[TENSION].scale) / 2}
 
 
 def _metres(value: float) -> str:

@@ -44,6 +44,17 @@ class Minimum(NamedTuple):
     chi_squared: float
 
 
+class Range(NamedTuple):
+    """How far a coordinate varies."""
+
+    scale: float
+    """Order of magnitude of its variation."""
+    low: float
+    """Least coordinate; for a logarithmic parameter relative to the start of a search."""
+    high: float
+    """Greatest coordinate, likewise."""
+
+
 def least(minima: Iterable[Minimum]) -> Minimum:
     """Return the minimum with the smallest χ²."""
     return min(minima, key=lambda minimum: minimum.chi_squared)
@@ -84,16 +95,11 @@ class ChiSquared(ABC):
 
     @cached_property
     @abstractmethod
-    def scale(self) -> Mapping[Parameter, float]:
-        """Order of magnitude of the variation of each coordinate."""
+    def ranges(self) -> Mapping[Parameter, Range]:
+        """Scale and limits of each coordinate.
 
-    @cached_property
-    @abstractmethod
-    def limits(self) -> Mapping[Parameter, tuple[float, float]]:
-        """Least and greatest coordinate; for logarithmic parameters relative to the start.
-
-        Beyond them (contact further away than `FARTHEST`, a baseline that carries more than the
-        whole force) other parameters cancel the change, along valleys of χ² without end.
+        Beyond the limits (contact further away than `FARTHEST`, a baseline that carries more than
+        the whole force) other parameters cancel the change, along valleys of χ² without end.
         """
 
     @abstractmethod
@@ -152,7 +158,7 @@ class ChiSquared(ABC):
         bounds = dict.fromkeys(self.parameters, 0.0)
         if not free:
             return bounds
-        scale = np.array([self.scale[p] for p in free])
+        scale = np.array([self.ranges[p].scale for p in free])
         jacobian = self.jacobian(parameters)[:, self.columns(free)] * scale
         information = jacobian.T @ jacobian
         try:
@@ -174,9 +180,9 @@ class ChiSquared(ABC):
         if not free:
             return Minimum(start, self.chi_squared(start))
         columns = self.columns(free)
-        scale = np.array([self.scale[p] for p in free])
+        scale, lowest, highest = np.array([self.ranges[p] for p in free]).T
         origin = np.array([start[p] if p.logarithmic else 0.0 for p in free])
-        lowest, highest = np.array([self.limits[p] for p in free]).T + origin
+        lowest, highest = lowest + origin, highest + origin
 
         def full(u: Array) -> Coordinates:
             return start | dict(zip(free, (u * scale).tolist(), strict=True))
@@ -240,13 +246,6 @@ class Likelihood(ChiSquared):
         return (CONTACT_POINT, *self.force_model.parameters, OFFSET, SLOPE)
 
     @cached_property
-    def scale(self) -> Mapping[Parameter, float]:
-        """Order of magnitude of the variation of each coordinate, by its unit."""
-        span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
-        sizes = {"m": span, "N": height, "N/m": height / span}
-        return {p: 1.0 if p.logarithmic else sizes[p.unit] for p in self.parameters}
-
-    @cached_property
     def base(self) -> Array:
         """Position of the cantilever's base [m], or of the indenter without a stiffness.
 
@@ -272,18 +271,22 @@ class Likelihood(ChiSquared):
         return self.force_model.accuracy
 
     @cached_property
-    def limits(self) -> Mapping[Parameter, tuple[float, float]]:
-        """Least and greatest coordinate; for logarithmic parameters relative to the start."""
-        span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
+    def ranges(self) -> Mapping[Parameter, Range]:
+        """Scale and limits of each coordinate; the scale of a force model's follows its unit."""
+        z, force = self.position, self.force
+        span, height = float(np.ptp(z)), float(np.ptp(force))
+        sizes = {"m": span, "N": height, "N/m": height / span}
         steepest = height / float(self.travel[-1])
-        limits = {
-            p: (-_LARGEST_CHANGE, _LARGEST_CHANGE) if p.logarithmic else (p.minimum, np.inf)
+        ranges = {
+            p: Range(1.0, -_LARGEST_CHANGE, _LARGEST_CHANGE)
+            if p.logarithmic
+            else Range(sizes[p.unit], p.minimum, np.inf)
             for p in self.force_model.parameters
         }
-        return limits | {
-            CONTACT_POINT: (self.position.min() - FARTHEST * span, self.position.max()),
-            OFFSET: (self.force.min() - height, self.force.max() + height),
-            SLOPE: (-steepest, steepest),
+        return ranges | {
+            CONTACT_POINT: Range(span, z.min() - FARTHEST * span, z.max()),
+            OFFSET: Range(height, force.min() - height, force.max() + height),
+            SLOPE: Range(height / span, -steepest, steepest),
         }
 
     def coarse(self) -> Likelihood | None:

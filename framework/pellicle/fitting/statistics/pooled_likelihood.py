@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 
@@ -12,7 +13,9 @@ from pellicle.arrays import Array
 from pellicle.fitting.models.force_model import MODULUS, TENSION, Coordinates, Parameter
 
 from .initial_guess import KEPT
-from .likelihood import ChiSquared, Likelihood, Minimum, least
+from .likelihood import ChiSquared, Likelihood, Minimum, Range, least
+
+_Value = TypeVar("_Value")
 
 
 @dataclass(frozen=True)
@@ -54,27 +57,15 @@ class Pool(ChiSquared):
         """Return the coordinates of each curve."""
         return [{p: parameters[q] for p, q in own.items()} for own in self._own]
 
-    def joined(self, parts: Sequence[Mapping[Parameter, float]]) -> Coordinates:
-        """Return the coordinates of the pool; the shared ones are those of the first curve."""
-        joined: Coordinates = {}
-        for own, part in zip(self._own, parts, strict=True):
-            for p, q in own.items():
-                joined.setdefault(q, part[p])
-        return joined
+    def joined(self, parts: Sequence[Mapping[Parameter, _Value]]) -> dict[Parameter, _Value]:
+        """Return what the curves have for the parameters of the pool, the first for shared ones."""
+        pairs = zip(reversed(self._own), reversed(parts), strict=True)
+        return {q: part[p] for own, part in pairs for p, q in own.items()}
 
     @cached_property
-    def scale(self) -> Mapping[Parameter, float]:
-        """Order of magnitude of the variation of each coordinate."""
-        return self.joined([member.scale for member in self.members])
-
-    @cached_property
-    def limits(self) -> Mapping[Parameter, tuple[float, float]]:
-        """Least and greatest coordinate; for logarithmic parameters relative to the start."""
-        lowest, highest = (
-            self.joined([{p: ends[k] for p, ends in m.limits.items()} for m in self.members])
-            for k in (0, 1)
-        )
-        return {p: (lowest[p], highest[p]) for p in self.parameters}
+    def ranges(self) -> Mapping[Parameter, Range]:
+        """Scale and limits of each coordinate; those of the first curve for shared ones."""
+        return self.joined([member.ranges for member in self.members])
 
     @property
     def accuracy(self) -> float:

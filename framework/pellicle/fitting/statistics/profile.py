@@ -207,12 +207,10 @@ def confidence_interval(
 def _search_limits(
     likelihood: ChiSquared, best: Coordinates, parameter: Parameter
 ) -> tuple[float, float]:
-    value, scale = best[parameter], likelihood.scale[parameter]
+    value, (scale, low, high) = best[parameter], likelihood.ranges[parameter]
     if parameter.logarithmic:
         return value - REACH, value + REACH
-    if np.isfinite(parameter.minimum):
-        return parameter.minimum, float(np.exp(REACH)) * max(value, scale)
-    return likelihood.limits[parameter]
+    return low, float(np.exp(REACH)) * max(value, scale) if np.isinf(high) else high
 
 
 def _end(
