@@ -28,6 +28,7 @@ from .errors import StorageError as StorageError
 from .factories import indenter as indenter
 from .factories import kernel as kernel
 from .factories import solver as solver
+from .fitting.config import FitConfig as FitConfig
 from .fitting.fit import Fit as Fit
 from .fitting.fit import fit as fit
 from .fitting.many import fit_many as fit_many

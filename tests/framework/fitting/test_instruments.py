@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from tests.framework.fitting import instruments
 
 import pellicle as pl
-from pellicle.fitting.curves.columns import Calibration, Measured
+from pellicle.fitting.curves.columns import Calibration
+from pellicle.fitting.curves.curve import Curve
 from pellicle.fitting.curves.readers import read
 from pellicle.fitting.models.force_model import (
     CONTACT_POINT,
@@ -28,7 +29,7 @@ from pellicle.fitting.statistics.likelihood import Likelihood
 
 Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS, SPRING, SENSITIVITY = 5e3, 3e-6, 10e-6, 0.05, 50e-9
-GIVEN = Calibration(SPRING, SENSITIVITY)
+GIVEN = Calibration(spring_constant=SPRING, sensitivity=SENSITIVITY)
 BEAD = pl.indenter("paraboloid", radius=RADIUS)
 
 
@@ -45,7 +46,7 @@ def recording() -> instruments.Recording:
     return instruments.record(POSITION, FORCE, NOISE, SPRING)
 
 
-def only(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Measured:
+def only(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Curve:
     """Return the only curve of a file."""
     (found,) = read(path, calibration, segment).values()
     if isinstance(found, Exception):
@@ -53,9 +54,8 @@ def only(path: Path, calibration: Calibration | None = None, segment: str = "app
     return found
 
 
-def is_curve(measured: Measured, position: Array, force: Array) -> bool:
+def is_curve(measured: Curve, position: Array, force: Array) -> bool:
     """Whether a curve is this one, but for where position is 0."""
-    assert measured.position is not None
     moved = measured.position - position
     same = np.ptp(moved) < 1e-6 * np.ptp(position)
     return bool(same and np.allclose(measured.force, force, atol=1e-6 * np.ptp(force)))
@@ -72,12 +72,10 @@ def test_formats(tmp_path: Path, recording: instruments.Recording, name: str) ->
     if name == "curve.ibw":
         # The file does not say where the approach ends: that is found from the position.
         assert approach.force.size == 2 * force.size
-        assert approach.position is not None
         first = slice(force.size)
-        approach = Measured(approach.force[first], approach.position[first])
+        approach = Curve(approach.position[first], approach.force[first])
     else:
         retract = only(path, calibration, "retract").position
-        assert retract is not None
         assert retract[0] - retract[-1] == pytest.approx(np.ptp(position), rel=0.03)
     assert is_curve(approach, position, force)
 
@@ -105,7 +103,7 @@ def test_maps(tmp_path: Path, recording: instruments.Recording, name: str) -> No
     instruments.MAPS[name](tmp_path / name, [recording, recording])
     found = read(tmp_path / name)
     assert list(found) == ["0", "1"]
-    assert all(isinstance(each, Measured) and is_curve(each, *SEEN) for each in found.values())
+    assert all(isinstance(each, Curve) and is_curve(each, *SEEN) for each in found.values())
 
 
 @pytest.mark.parametrize("name", instruments.UNCALIBRATED)
@@ -122,8 +120,8 @@ def test_calibration_is_not_given_twice(tmp_path: Path, recording: instruments.R
     """A spring constant beside the one in the file is refused where it cannot be replaced."""
     instruments.tab(tmp_path / "curve.tab", recording)
     with pytest.raises(pl.ConfigError, match=r"holds a spring constant of 0\.05 already"):
-        only(tmp_path / "curve.tab", Calibration(0.1))
-    assert is_curve(only(tmp_path / "curve.tab", Calibration(SPRING)), *SEEN)
+        only(tmp_path / "curve.tab", Calibration(spring_constant=0.1))
+    assert is_curve(only(tmp_path / "curve.tab", Calibration(spring_constant=SPRING)), *SEEN)
 
 
 def test_damaged_file(tmp_path: Path, recording: instruments.Recording) -> None:
@@ -236,4 +234,4 @@ def test_balance_of_cantilever_and_solid() -> None:
 def test_bad_calibration() -> None:
     """A calibration of another dimension is refused."""
     with pytest.raises(pl.ConfigError, match=r"spring_constant: .*\[mass\]"):
-        Calibration.of("5 um")
+        Calibration(spring_constant="5 um")

@@ -13,7 +13,6 @@ from scipy.special import stdtrit
 
 from pellicle.errors import ConvergenceError
 from pellicle.fitting.models.force_model import MODULUS, TENSION, Coordinates, Parameter
-from pellicle.fitting.status import Report, ignore
 
 from .likelihood import REACH, ChiSquared, Minimum, least
 
@@ -118,7 +117,7 @@ def profile_likelihood(
     threshold: float,
     wanted: Sequence[Parameter],
     without_tension: Callable[[Minimum], Minimum],
-    report: Report = ignore,
+    report: Callable[[str], None] = lambda words: None,
 ) -> ProfileResult:
     """Return the minimum near ``best``, the one without tension, and intervals of ``wanted``.
 
