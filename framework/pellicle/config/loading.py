@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Mapping
 from functools import cache, cached_property
+from itertools import filterfalse
 from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, create_model, model_validator
@@ -116,7 +117,7 @@ def prescribed_in(data: Mapping[str, Any]) -> str:
         what = f"prescribes {' and '.join(given)}"
     else:
         problems = []
-        for key in data.keys() - OPTIONS:
+        for key in filterfalse(OPTIONS.__contains__, data):
             try:
                 registry().find("prescription", key)
             except ConfigError:
