@@ -16,6 +16,7 @@ from scipy.optimize import brentq
 
 from pellicle.components import Monitor, Solver
 from pellicle.components.calls import solution_of
+from pellicle.numerics.initial_guess import overlap_pressure
 from pellicle.numerics.problem import Force, Problem
 from pellicle.numerics.solution import Solution, State
 
@@ -86,10 +87,7 @@ def _first_force(problem: Problem, area: float, start: State | None) -> float:
     lowest = heights[min(math.ceil(area / cell + 0.5), heights.size - 1)]
     # Deeper than that by a little: at a cell's very height it is round-off whether it touches.
     overlap = np.maximum(problem.profile - 1.01 * lowest, 0.0)
-    response = problem.operator(overlap)
-    # The multiple of the overlap whose displacement comes nearest to it in energy.
-    share = float((overlap**2).sum()) / float((overlap * response).sum())
-    return cell * share * float(overlap.sum())
+    return cell * float(overlap_pressure(problem.operator, overlap).sum())
 
 
 @dataclass
