@@ -191,6 +191,16 @@ class Equilibrium:
         """Where pressure acts, bool of the grid's shape."""
         return self.pressure > 0
 
+    @property
+    def residual(self) -> float:
+        """The largest of the residuals."""
+        return max(
+            self.residual_contact,
+            self.residual_penetration,
+            self.residual_complementarity,
+            self.residual_load,
+        )
+
 
 def measure(problem: Problem, pressure: Array) -> Equilibrium:
     """Return what ``pressure`` [Pa] really achieves."""

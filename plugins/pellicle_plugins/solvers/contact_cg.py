@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.numerics.initial_guess import dot
 from pellicle.numerics.problem import Problem
 
@@ -60,16 +60,15 @@ def inner_solve(
     bending stiffness it is applied in double precision: a gap that single precision does not
     resolve corresponds to pressures above those whose signs are sought.
     """
-    cells = preconditioner.cells
-    signs = _Signs(problem, preconditioner, certainty)
+    cells, contact = preconditioner.cells, preconditioner.contact
     if not cells.size:
         nothing = np.zeros(problem.grid.shape)
-        return InnerSolution(nothing, nothing, 0.0, signs.misclassified(np.zeros(0), nothing, goal))
+        penetrating, _ = _misclassified(problem, contact, nothing, np.zeros(0), goal)
+        return InnerSolution(nothing, nothing, 0.0, penetrating)
     uniform = _Uniform.of(problem, cells)
     directions = _Directions(problem, preconditioner, uniform)
-    field = np.zeros(
-        problem.grid.shape, dtype=np.float64 if preconditioner.preconditioner.bends else np.float32
-    )
+    bends = preconditioner.preconditioner.bends
+    field = np.zeros(problem.grid.shape, dtype=np.float64 if bends else np.float32)
     displacement = displacement.copy()
     on_contact = pressure.ravel()[cells]
     u_minus_f = displacement.ravel()[cells] - problem.profile.ravel()[cells]
@@ -83,7 +82,7 @@ def inner_solve(
     error = directions.error(residual)
     goal = max(goal, max(_MAX_REDUCTION, reduction) * error)
     least, stagnant, iteration = np.inf, 0, 0
-    misclassified = None
+    misclassified: Cells | None = None
     direction = directions(residual)
     descent = dot(residual, direction)
     while descent > 0 and stagnant < _STAGNATION:
@@ -112,9 +111,12 @@ def inner_solve(
             break
         if np.isfinite(certainty) and iteration >= _MIN_ITERATIONS:
             change -= directions.mean(inside)
-            misclassified = signs.certain(on_contact, displacement, goal, direction, change)
-            if misclassified is not None:
+            last = certainty, direction, change
+            certain, others = _misclassified(problem, contact, displacement, on_contact, goal, last)
+            if certain.size and others <= _UNCERTAIN * certain.size:
+                misclassified = certain
                 break
+            del last
         # On a large contact each of these is as large as the grid.
         del change, inside
         ascent = directions(residual)
@@ -126,7 +128,8 @@ def inner_solve(
     # Room for the gap, which is computed next, and for the result.
     del residual, direction, field
     if misclassified is None:
-        misclassified = signs.misclassified(on_contact, displacement, max(error, goal))
+        margin = max(error, goal)
+        misclassified, _ = _misclassified(problem, contact, displacement, on_contact, margin)
     pressure = np.zeros(problem.grid.shape)
     pressure.ravel()[cells] = on_contact
     return InnerSolution(pressure, displacement, error, np.sort(misclassified))
@@ -168,44 +171,32 @@ class _Uniform:
         return dot(self.inside, direction) / self._curvature
 
 
-class _Signs:
-    """Finds misclassified cells: in contact with tensile pressure, or off it and penetrating."""
+def _misclassified(
+    problem: Problem,
+    contact: Mask,
+    displacement: Array,
+    on_contact: Array,
+    margin: float,
+    last: tuple[float, Array, Array] | None = None,
+) -> tuple[Cells, int]:
+    """Return flat indices of misclassified cells of certain sign, and the number of the others.
 
-    def __init__(self, problem: Problem, on_contact: OnContact, certainty: float) -> None:
-        self._problem = problem
-        self._contact = on_contact.contact
-        self._cells = on_contact.cells
-        self._certainty = certainty
-
-    def misclassified(self, on_contact: Array, displacement: Array, margin: float) -> Cells:
-        """Return flat indices, given pressures in contact [Pa] and the displacement [m].
-
-        A cell penetrates if its gap is below −``margin`` [m].
-        """
-        tensile, penetrating, _ = self._find(on_contact, displacement, margin)
-        return np.concatenate([self._cells[tensile], penetrating])
-
-    def certain(
-        self, on_contact: Array, displacement: Array, margin: float, step: Array, change: Array
-    ) -> Cells | None:
-        """Return those of certain sign, or None if too many signs are uncertain.
-
-        ``step`` [Pa] and ``change`` [m] are the last changes of pressure and gap.
-        """
-        tensile, penetrating, gap = self._find(on_contact, displacement, margin)
-        surely = on_contact[tensile] < -self._certainty * np.abs(step[tensile])
-        deeply = gap < -self._certainty * np.abs(change.ravel()[penetrating])
-        certain = np.concatenate([self._cells[tensile[surely]], penetrating[deeply]])
-        uncertain = tensile.size + penetrating.size - certain.size
-        return certain if certain.size and uncertain <= _UNCERTAIN * certain.size else None
-
-    def _find(
-        self, on_contact: Array, displacement: Array, margin: float
-    ) -> tuple[Cells, Cells, Array]:
-        """Return tensile cells (indices on the contact), penetrating ones (flat), and their gap."""
-        gap, _ = self._problem.gap(displacement, self._contact)
-        penetrating = np.flatnonzero((gap < -margin) & ~self._contact)
-        return np.flatnonzero(on_contact < 0), penetrating, gap.ravel()[penetrating]
+    A cell in contact is misclassified if its pressure in ``on_contact`` [Pa] is tensile, another
+    one if its gap is below −``margin`` [m]. ``last`` is the sign-certainty factor and the last
+    changes of pressure in contact [Pa] and gap [m]; without it all signs are certain.
+    """
+    gap = problem.gap(displacement, contact)[0].ravel()
+    cells = np.flatnonzero(contact)
+    tensile = np.flatnonzero(on_contact < 0)
+    penetrating = np.flatnonzero((gap < -margin) & ~contact.ravel())
+    number = tensile.size + penetrating.size
+    if last:
+        certainty, step, change = last
+        tensile = tensile[on_contact[tensile] < -certainty * np.abs(step[tensile])]
+        change = certainty * np.abs(change.ravel()[penetrating])
+        penetrating = penetrating[gap[penetrating] < -change]
+    certain = np.concatenate([cells[tensile], penetrating])
+    return certain, number - certain.size
 
 
 class _Directions:
