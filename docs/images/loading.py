@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.axisymmetric_indenters import Paraboloid
+from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 RADIUS, MODULUS, DEEPEST = 1e-3, 10e3, 40e-6
 TENSIONS = {0.0: "C0", 0.5: "C3"}
@@ -52,7 +52,7 @@ def main() -> None:
         left.plot([], [], "o", color=colour, mfc="white", label=label)
         right.plot(depth[there] * 1e6, stiffness[there], "o", color=colour, mfc="white")
         finer = np.linspace(DEEPEST / 20, DEEPEST, 20)
-        exact = [indent(Paraboloid(RADIUS), MODULUS, tension, depth=d).force for d in finer]
+        exact = [indent(Paraboloid(radius=RADIUS), MODULUS, tension, depth=d).force for d in finer]
         right.plot(finer * 1e6, np.gradient(exact, finer, edge_order=2), color=colour, label=label)
     left.plot([], [], "x", color="0.4", label="unloading")
     left.plot([], [], color="0.4", linewidth=1.0, label="slope dF/dδ of the solution")

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.axisymmetric_indenters import Paraboloid
+from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 RADIUS, MODULUS, DEPTH = 1e-3, 10e3, 50e-6
 TENSIONS = {0.0: "C0", 0.1: "C2", 1.0: "C3"}
@@ -26,7 +26,7 @@ def main() -> None:
     figure = Figure(figsize=(6.4, 3.9), dpi=150, layout="constrained")
     axes = figure.add_subplot()
     for tension, colour in TENSIONS.items():
-        true = indent(Paraboloid(RADIUS), MODULUS, tension, depth=DEPTH)
+        true = indent(Paraboloid(radius=RADIUS), MODULUS, tension, depth=DEPTH)
         r = np.linspace(0, 0.999999 * true.contact_radius, 400)
         r, p = np.append(r, true.contact_radius), np.append(true.pressure(r), 0.0)
         for side in (-1, 1):

@@ -10,9 +10,9 @@ from .components import Kernel as Kernel
 from .components import Output as Output
 from .components import Place as Place
 from .components import Solver as Solver
+from .config.json_schema import schema as schema
 from .config.run import Run as Run
 from .config.study import Study as Study
-from .config.study import schema as schema
 from .errors import ConfigError as ConfigError
 from .errors import ConvergenceError as ConvergenceError
 from .errors import ConvergenceWarning as ConvergenceWarning
@@ -22,13 +22,14 @@ from .errors import StorageError as StorageError
 from .factories import indenter as indenter
 from .factories import kernel as kernel
 from .factories import solver as solver
+from .fitting.config import FitConfig as FitConfig
 from .fitting.fit import Fit as Fit
 from .fitting.fit import fit as fit
 from .fitting.many import fit_many as fit_many
 from .fitting.pooled import PooledCurve as PooledCurve
 from .fitting.pooled import PooledFit as PooledFit
 from .fitting.pooled import fit_pooled as fit_pooled
-from .fitting.statistics.estimate import Estimate as Estimate
+from .fitting.statistics.profile import Estimate as Estimate
 from .grid import Grid as Grid
 from .hookspecs import hookimpl as hookimpl
 from .loading import Loading as Loading

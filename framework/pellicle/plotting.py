@@ -3,7 +3,6 @@
 from pellicle.report.plotting import FIGURES as FIGURES
 from pellicle.report.plotting import STUDY_FIGURES as STUDY_FIGURES
 from pellicle.report.plotting import area_force as area_force
-from pellicle.report.plotting import axis_unit as axis_unit
 from pellicle.report.plotting import extent as extent
 from pellicle.report.plotting import force_depth as force_depth
 from pellicle.report.plotting import pressure_map as pressure_map
@@ -14,3 +13,4 @@ from pellicle.report.plotting import save_study_figures as save_study_figures
 from pellicle.report.plotting import study_curves as study_curves
 from pellicle.report.plotting import svg as svg
 from pellicle.report.plotting import without_round_off as without_round_off
+from pellicle.units import axis_unit as axis_unit

@@ -20,6 +20,7 @@ from .errors import shown
 
 if TYPE_CHECKING:
     import pint
+    from numpy.typing import ArrayLike
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
     from pydantic.fields import FieldInfo
     from pydantic.json_schema import JsonSchemaValue
@@ -50,6 +51,10 @@ _POWER = (
 _FACTOR = rf"(?:\( ?)*(?:1(?![\w.])|{_NAME}){_POWER}(?: ?\){_POWER})*"
 _UNIT = re.compile(rf"{_FACTOR}(?:(?: ?[*/·⋅×.] ?| ){_FACTOR})*")
 _LONGEST_UNIT = 100
+_PREFIXABLE = re.compile(r"[^\W\d_]+(?:/.*|\*(?!\*).*)?")
+_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f"}
+_MOST = 8
+"""Values that are written side by side."""
 
 
 def _root(one: Any) -> str:
@@ -126,6 +131,50 @@ def _factor(unit: str, si: str) -> float:
 def _dimension(unit: str) -> str:
     dimension = str(_registry().Unit(unit).dimensionality)
     return "an angle" if dimension == "dimensionless" else dimension
+
+
+def axis_unit(values: ArrayLike, unit: str) -> tuple[float, str]:
+    """Return the factor and the unit that bring ``values``, in the SI unit ``unit``, near 1 … 1000.
+
+    A unit that begins with a power, such as m⁴, takes no prefix, to which the power would apply as
+    well; areas do, and their prefix is chosen accordingly. That of pure numbers and texts is empty.
+    """
+    import numpy as np
+
+    if unit in ("", "1"):
+        return 1.0, ""
+    finite = np.abs(np.asarray(values)[np.isfinite(values)])
+    highest = float(finite.max(initial=0.0))
+    if unit in ("m2", "m**2"):
+        # The prefix of a square counts twice: 1 mm² is 1e-6 m²; down to 0.01 mm² reads well.
+        exponent = 3 * int(np.floor(np.log10(10 * np.sqrt(highest)) / 3)) if highest else 0
+        exponent = min(max(exponent, -15), 0)
+        return 10.0 ** (-2 * exponent), f"{_PREFIXES[exponent]}m²"
+    if not _PREFIXABLE.fullmatch(unit):
+        return 1.0, unit
+    exponent = 3 * int(np.floor(np.log10(highest) / 3)) if highest else 0
+    exponent = min(max(exponent, -15), 9)
+    return 10.0**-exponent, f"{_PREFIXES[exponent]}{unit}"
+
+
+def readable(value: Any, unit: str = "1", digits: int = 6) -> str:
+    """Return a value in SI, or several values, with a unit that brings them near 1 … 1000."""
+    values = list(value) if isinstance(value, (list, tuple)) else [value]
+    numeric = all(isinstance(v, (int, float)) and v is not True for v in values)
+    factor, name = axis_unit(values, unit) if values and numeric else (1.0, "")
+    if name:
+        texts = [f"{v * factor:.{digits}g}" for v in values]
+    else:
+        texts = [f"{v:.{digits}g}" if isinstance(v, float) else _text(v) for v in values]
+    if len(texts) > _MOST:
+        return f"{', '.join(texts[: _MOST - 2])}, …, {texts[-1]} {name}".rstrip() + (
+            f" ({len(values)} values)"
+        )
+    return f"{', '.join(texts)} {name}".rstrip()
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else shown(value)
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,14 @@ import numpy as np
 
 import pellicle as pl
 from pellicle.components import HasForceCurve
+from pellicle.fitting.models.force_model import (
+    CONTACT_POINT,
+    MODULUS,
+    OFFSET,
+    SLOPE,
+    TENSION,
+    tension_model,
+)
 from pellicle.fitting.statistics.likelihood import Likelihood
 
 NOISE, DEPTH, BEFORE = 0.005, 0.3, 0.3
@@ -49,12 +57,19 @@ def scores(curves: int, seed: int, *, points: int = 2000, tensed: bool = True) -
         point = random.uniform(-1, 1) * radius
         measured = force + noise * random.standard_normal(points)
         fit = pl.fit(depth + point, measured, indenter=indenter)
-        truth = np.array([point, np.log(modulus), tension, 0.0, 0.0])
-        true = Likelihood(depth + point, force, indenter, noise, (0, 1, 2))
-        _, of_modulus, of_tension, *_ = true.bounds(truth, true.free)
+        truth = {
+            CONTACT_POINT: point,
+            MODULUS: float(np.log(modulus)),
+            TENSION: tension,
+            OFFSET: 0.0,
+            SLOPE: 0.0,
+        }
+        free = (CONTACT_POINT, MODULUS, TENSION)
+        true = Likelihood(depth + point, force, tension_model(indenter), noise, free)
+        bounds = true.bounds(truth, free)
         yield Score(
-            (fit.reduced_modulus.value / modulus - 1) / of_modulus,
-            (fit.tension.value - tension) / of_tension,
+            (fit.reduced_modulus.value / modulus - 1) / bounds[MODULUS],
+            (fit.tension.value - tension) / bounds[TENSION],
             _covers(fit.reduced_modulus, modulus),
             _covers(fit.tension, tension),
             fit.tension.low is not None,

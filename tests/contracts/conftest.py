@@ -4,27 +4,13 @@ A test that takes ``kernel``, ``indenter``, … runs on each example of that fam
 ``component`` on all of them.
 """
 
-from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.contracts.examples import EXAMPLES
 
 from pellicle.components import FAMILIES, Component
 from pellicle.plugins import registry
-
-
-def _load_examples() -> dict[str, dict[str, dict[str, Any]]]:
-    # Test folders are no packages, so a neighbour cannot simply be imported.
-    spec = spec_from_file_location("examples", Path(__file__).with_name("examples.py"))
-    assert spec is not None
-    assert spec.loader is not None
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.EXAMPLES
-
-
-EXAMPLES = _load_examples()
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from blocks import PAGES, ROOT, Block, blocks
+from tests.docs.blocks import PAGES, ROOT, Block, blocks
 from typer.testing import CliRunner
 
 import pellicle as pl

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from blocks import DOCS
+from tests.docs.blocks import DOCS
 
 
 def test_sphinx_builds_without_a_warning(tmp_path: Path) -> None:

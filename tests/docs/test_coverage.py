@@ -10,7 +10,7 @@ from typing import Any
 import generated
 import pytest
 import typer.main
-from blocks import DOCS, PAGES, ROOT
+from tests.docs.blocks import DOCS, PAGES, ROOT
 
 import pellicle as pl
 from pellicle import hookspecs

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import Result
+from tests.pictures import drawn_width
 from typer.testing import CliRunner
 
 import pellicle as pl
@@ -44,7 +45,10 @@ def test_from_starter_file_to_figures(cli: Cli) -> None:
     ran = cli("run", "indent.toml", *SMALL)
     files = _files_named(ran.stdout)
     assert {file.suffix for file in files} == {".h5", ".csv", ".png"}
-    assert all(file.parent == Path("indent") and file.stat().st_size for file in files)
+    assert {file.parent for file in files} == {Path("indent")}
+    assert pl.load("indent/indent.h5").dataset.sizes["step"] == 2
+    assert len(Path("indent/indent.csv").read_text(encoding="utf-8").splitlines()) == 3
+    assert all(drawn_width(file) > 0.2 for file in files if file.suffix == ".png")
     assert ran.stdout.count("converged") == 2
     shown = cli("show", "indent/indent.h5").stdout
     assert "Paraboloid on a tensed skin" in shown
@@ -57,7 +61,10 @@ def test_from_starter_file_to_figures(cli: Cli) -> None:
     drawn = cli("plot", "indent/indent.h5", "-o", "drawn", "--format", "svg", "--format", "pdf")
     figures = _files_named(drawn.stdout)
     assert {figure.suffix for figure in figures} == {".svg", ".pdf"}
-    assert all(figure.parent == Path("drawn") and figure.stat().st_size for figure in figures)
+    assert {figure.parent for figure in figures} == {Path("drawn")}
+    for figure in figures:
+        content = figure.read_text(encoding="utf-8", errors="replace").rstrip()
+        assert content.endswith({".svg": "</svg>", ".pdf": "%%EOF"}[figure.suffix])
 
 
 def test_numbers_shown_are_the_result_s(cli: Cli) -> None:
@@ -92,7 +99,7 @@ def test_quiet(cli: Cli) -> None:
     cli("new", "a.toml")
     result = cli("run", "a.toml", *SMALL, "--quiet", "--set", "outputs=[{type='csv'}]")
     assert result.output == ""
-    assert Path("a/a.csv").stat().st_size
+    assert len(Path("a/a.csv").read_text(encoding="utf-8").splitlines()) == 3
 
 
 def test_output_folder(cli: Cli) -> None:

@@ -60,7 +60,7 @@ def test_json_is_ascii(encoding: str, words: list[str]) -> None:
     printed = CliRunner(charset=encoding).invoke(app, words)
     assert printed.exit_code == 0, printed.exception
     assert printed.stdout_bytes.isascii()
-    assert json.loads(printed.stdout_bytes)
+    assert json.loads(printed.stdout_bytes) == json.loads(CliRunner().invoke(app, words).stdout)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 import pellicle as pl
-from pellicle.config.describe import Input, in_words, inputs
+from pellicle.config.describe import Input, inputs
+from pellicle.units import readable
 
 CONFIGURATION: dict[str, Any] = {
     "title": "µ",
@@ -88,9 +89,9 @@ def test_what_nobody_explains_is_there() -> None:
         (None, "1", "None"),
     ],
 )
-def test_in_words(value: Any, unit: str, words: str) -> None:
+def test_readable(value: Any, unit: str, words: str) -> None:
     """Numbers get a prefix; what is no number is as it is."""
-    assert in_words(value, unit) == words
+    assert readable(value, unit) == words
 
 
 @pytest.mark.parametrize(
@@ -107,4 +108,4 @@ def test_in_words(value: Any, unit: str, words: str) -> None:
 )
 def test_prefix_of_a_power(values: object, unit: str, words: str) -> None:
     """10 nm² is 1e-17 m², not 1e-8: a prefix is raised with the unit that it stands before."""
-    assert in_words(values, unit) == words
+    assert readable(values, unit) == words

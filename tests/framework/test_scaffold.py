@@ -59,7 +59,8 @@ def test_name_of_a_component_that_there_is(tmp_path: Path) -> None:
     """A type that is taken in the family, by whom it says; another family may have it."""
     with pytest.raises(ConfigError, match=r"'half_space' is the type of a kernel already, of pell"):
         write_plugin("kernel", "half-space", tmp_path)
-    assert write_plugin("indenter", "half-space", tmp_path).is_dir()
+    folder = write_plugin("indenter", "half-space", tmp_path)
+    assert '"indenter.half_space" = ' in (folder / "pyproject.toml").read_text(encoding="utf-8")
 
 
 def test_name_of_a_module_that_there_is(tmp_path: Path) -> None:

@@ -98,16 +98,15 @@ def test_table_is_that_of_its_runs() -> None:
     assert dict(table.sizes) == {TENSION: 2, RADIUS: 2, "step": 3}
     for point in made.points:
         alone = pl.run(point.run, progress=False, threads=1).dataset
-        row = table.isel({TENSION: point.place[0], RADIUS: point.place[1]})
+        row = table.isel({TENSION: point.position[0], RADIUS: point.position[1]})
         assert row[TENSION] == point.run.kernel.tension  # type: ignore[attr-defined]
         for name in NUMBERS:
             assert (row[name].values == alone[name].values).all()
         assert row["run"].item() == point.run.identity[:16]
     assert table[TENSION].attrs["units"] == "N/m"
     assert table["force"].attrs["units"] == "N"
-    assert pl.Study.from_json(
-        json.dumps(json.loads(table.attrs["configuration"]) | {"solver": {"type": "active_set"}})
-    )
+    recorded = json.loads(table.attrs["configuration"]) | {"solver": {"type": "active_set"}}
+    assert pl.Study.from_json(json.dumps(recorded)) == study(solver={"type": "active_set"})
 
 
 def test_nothing_stays_without_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

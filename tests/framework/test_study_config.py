@@ -53,11 +53,11 @@ def test_product() -> None:
     """Each value is combined with each; the last axis varies fastest."""
     made = study({TENSION: [0, "10 mN/m"], "indenter.radius": ["1 mm", "2 mm", "3 mm"]})
     assert made.shape == (2, 3)
-    assert [point.place for point in made.points][:4] == [(0, 0), (0, 1), (0, 2), (1, 0)]
+    assert [point.position for point in made.points][:4] == [(0, 0), (0, 1), (0, 2), (1, 0)]
     for point in made.points:
-        assert point.run.kernel.tension == [0.0, 0.01][point.place[0]]  # type: ignore[attr-defined]
+        assert point.run.kernel.tension == [0.0, 0.01][point.position[0]]  # type: ignore[attr-defined]
         radius = point.run.indenter.radius  # type: ignore[attr-defined]
-        assert radius == pytest.approx([1e-3, 2e-3, 3e-3][point.place[1]])
+        assert radius == pytest.approx([1e-3, 2e-3, 3e-3][point.position[1]])
         assert point.run.loading == made.points[0].run.loading
 
 
@@ -153,7 +153,7 @@ def test_derived_replaces_no_column(name: str) -> None:
 @pytest.mark.parametrize("name", ["", ".", "/", "a/b", "a b", "1st", "a.b"])
 def test_derived_has_a_name(name: str) -> None:
     """A name that no expression can use, or no file, is refused before any run."""
-    with pytest.raises(pl.ConfigError, match="is no name; give one of letters"):
+    with pytest.raises(pl.ConfigError, match="is not a name; give one of letters"):
         Study(run=RUN, vary={TENSION: [0, 1]}, derived={name: "2 * depth"})
 
 
@@ -310,7 +310,7 @@ def test_too_many_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memory, "available", lambda: 1e9)
     many = {"start": 1.0, "stop": 2.0, "num": 1000}
     said = refused({TENSION: many, "indenter.radius": many, "kernel.reduced_modulus": many})
-    assert "1000000000 runs need about 4e+04 GB" in said
+    assert "1000000000 runs needs about 4e+04 GB" in said
 
 
 def test_problems_of_a_file(tmp_path: Path) -> None:

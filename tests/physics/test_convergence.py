@@ -12,7 +12,7 @@ import pytest
 
 import pellicle as pl
 from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.axisymmetric_indenters import Paraboloid
+from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 POINTS = np.array([16, 32, 64, 128])
 A = 0.1
@@ -22,7 +22,7 @@ A = 0.1
 def test_force_is_second_order_and_area_first(s_over_a: float, solver: str) -> None:
     """The paraboloid's force, area and corrected area converge at the orders stated above."""
     tension = s_over_a * A / 2
-    true = indent(Paraboloid(1.0), 1.0, tension, contact_radius=A)
+    true = indent(Paraboloid(radius=1.0), 1.0, tension, contact_radius=A)
     errors = []
     for points in POINTS:
         squares = np.zeros(3)

@@ -11,7 +11,7 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.axisymmetric_indenters import Paraboloid
+from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.1}
 BARE = {"type": "half_space", "reduced_modulus": 1e4}
@@ -100,7 +100,7 @@ def test_stiffness_is_the_slope_of_the_force(case: str, solver: str) -> None:
 
 def test_stiffness_under_tension_is_the_exact_one(solver: str) -> None:
     """A paraboloid's dF/dδ is that of the axisymmetric integral equation, within a cell."""
-    exact = [indent(Paraboloid(1e-3), 1e4, 0.1, depth=d).force for d in (1.99e-5, 2.01e-5)]
+    exact = [indent(Paraboloid(radius=1e-3), 1e4, 0.1, depth=d).force for d in (1.99e-5, 2.01e-5)]
     slope = (exact[1] - exact[0]) / 2e-7
     assert _path("paraboloid", solver)["stiffness"].values[2] == pytest.approx(slope, rel=0.02)
 

@@ -7,6 +7,6 @@ from .printing import print_json
 
 def schema() -> None:
     """Print the JSON schema of a run or study file, with all installed components, for editors."""
-    from pellicle.config.study import schema as make_schema
+    from pellicle.config.json_schema import schema as make_schema
 
     print_json(make_schema())

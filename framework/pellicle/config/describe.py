@@ -5,18 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple, get_args
 
-import numpy as np
 from pydantic import BaseModel
 
 from pellicle.components import Component
-from pellicle.errors import shown
 from pellicle.plugins import Origin, Registered, registry
-from pellicle.report.plotting import axis_unit
-from pellicle.units import quantity_of
+from pellicle.units import quantity_of, readable
 
 from .run import Run
-
-_MOST = 8
 
 
 class Input(NamedTuple):
@@ -39,27 +34,6 @@ def inputs(configuration: Mapping[str, Any]) -> Iterator[Input]:
     yield from _table(configuration, Run, "")
 
 
-def in_words(value: Any, unit: str = "1") -> str:
-    """Return a value, or several of the same ``unit`` [SI], as people read it."""
-    several = list(value) if isinstance(value, (list, tuple)) else [value]
-    numbers = [each for each in several if isinstance(each, (int, float)) and each is not True]
-    if unit == "1" or not several or len(numbers) < len(several):
-        said, name = [_plain(each) for each in several], ""
-    else:
-        factor, name = axis_unit(np.array(several, dtype=float), unit)
-        said = [f"{each * factor:.6g}" for each in several]
-    if len(said) > _MOST:
-        said = [*said[: _MOST - 2], "…", said[-1], f"({len(several)} values)"]
-        return f"{', '.join(said[:-1])} {name}".rstrip() + f" {said[-1]}"
-    return f"{', '.join(said)} {name}".rstrip()
-
-
-def _plain(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.6g}"
-    return value if isinstance(value, str) else shown(value)
-
-
 def _table(said: Mapping[str, Any], model: type[BaseModel] | None, path: str) -> Iterator[Input]:
     fields = model.model_fields if model else {}
     for key, value in said.items():
@@ -72,7 +46,7 @@ def _table(said: Mapping[str, Any], model: type[BaseModel] | None, path: str) ->
                 yield from _one(each, info.annotation if info else None, f"{name}.{index}")
         elif value not in ([], ""):
             quantity = quantity_of(info) if info else None
-            words = in_words(value, quantity.unit if quantity else "1")
+            words = readable(value, quantity.unit if quantity else "1")
             yield Input(name, words, (info.description if info else None) or "")
 
 

@@ -10,6 +10,10 @@ from pydantic.json_schema import models_json_schema
 from pellicle.plugins import registry
 
 from .component_field import _FAMILY
+from .run import Run
+from .study import Study
+
+_IN_PART = "InPart"
 
 
 def json_schema(model: type[BaseModel]) -> dict[str, Any]:
@@ -47,3 +51,47 @@ def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
 
 def _required(model: type[BaseModel]) -> list[str]:
     return [name for name, info in model.model_fields.items() if info.is_required()]
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of a run or study file, with every component that is installed.
+
+    In a study what varies may be left out, so that nothing but the type of a component is required.
+    """
+    run, study = json_schema(Run), json_schema(Study)
+    definitions = run.pop("$defs") | study.pop("$defs")
+    study["properties"].pop("run")
+    study["required"] = []
+    file = _in_part(run)
+    file["properties"]["study"] = study
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **file,
+        "if": {"required": ["study"]},
+        "else": run,
+        "$defs": definitions
+        | {f"{name}{_IN_PART}": _in_part(each) for name, each in definitions.items()},
+    }
+
+
+def _in_part(schema: Any) -> Any:
+    """Return a schema that also accepts what lacks fields."""
+    if isinstance(schema, list):
+        return [_in_part(each) for each in schema]
+    if not isinstance(schema, dict):
+        return schema
+    made = {name: _in_part(each) for name, each in schema.items() if not _of_presence(each)}
+    if isinstance(required := schema.get("required"), list):
+        made["required"] = [name for name in required if name == "type"]
+    if isinstance(ref := schema.get("$ref"), str):
+        made["$ref"] = f"{ref}{_IN_PART}"
+    return made
+
+
+def _of_presence(choices: Any) -> bool:
+    """Whether these are the choices of fields of which one must be there, as of moduli."""
+    return (
+        isinstance(choices, list)
+        and bool(choices)
+        and all(isinstance(each, dict) and each.keys() == {"required"} for each in choices)
+    )

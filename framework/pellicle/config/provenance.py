@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from contextlib import suppress
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 
 from pellicle.components import Component
 from pellicle.files import for_document
-from pellicle.model.base import Model
+from pellicle.model.paths import walk
 from pellicle.plugins import registry
 
 from .run import Run
@@ -27,7 +27,9 @@ def provenance(run: Run) -> dict[str, str]:
 
 def now_with(runs: Iterable[Run]) -> dict[str, str]:
     """Return the date, and the versions of what solves ``runs``, as attributes of a result."""
-    used = {type(component) for run in runs for component in _components(run)}
+    used = {
+        type(value) for run in runs for _, value, _ in walk(run) if isinstance(value, Component)
+    }
     owners = {
         registered.origin.distribution: registered.origin.version
         for family in registry().components.values()
@@ -44,12 +46,3 @@ def now_with(runs: Iterable[Run]) -> dict[str, str]:
         "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
     }
-
-
-def _components(model: Model) -> Iterator[Component]:
-    """Yield the components in the fields of a model, and those in theirs."""
-    for _, value in model:
-        for each in value if isinstance(value, tuple) else (value,):
-            if isinstance(each, Component):
-                yield each
-                yield from _components(each)

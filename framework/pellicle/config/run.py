@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -25,8 +25,8 @@ from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid, grid_of_run
 from pellicle.loading import Loading
-from pellicle.model.base import Model
 from pellicle.model.from_file import FromFile
+from pellicle.model.paths import get, replaced, walk
 from pellicle.plugins import registry
 
 from .component_field import FromRegistry
@@ -48,11 +48,8 @@ class Run(FromFile):
     solver: Annotated[
         Solver,
         FromRegistry(),
-        Field(
-            description="how it is solved",
-            default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER}),
-        ),
-    ]
+        Field(description="how it is solved"),
+    ] = Field(default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER}))
     corrections: Annotated[
         tuple[Annotated[AreaCorrection, FromRegistry()], ...],
         Field(description="corrections of the contact area"),
@@ -121,30 +118,21 @@ class Run(FromFile):
         Of the configuration, defaults included, `title` and `outputs` are left out; a file that it
         names counts by its content.
         """
-        said = _identifying(self, without=("title", "outputs")) | {"schema": _NUMBERS_VERSION}
-        text = json.dumps(said, sort_keys=True)
-        return hashlib.sha256(text.encode()).hexdigest()
+        identifying = self.model_dump(
+            mode="json", exclude_none=True, exclude={"title", "outputs"}
+        ) | {"schema": _NUMBERS_VERSION}
+        for path, value, _ in walk(self):
+            if isinstance(value, Path) and isinstance(get(identifying, path), str):
+                identifying = replaced(identifying, path, _digest_of(value))
+        return hashlib.sha256(json.dumps(identifying, sort_keys=True).encode()).hexdigest()
 
 
-def _identifying(model: Model, without: Collection[str] = ()) -> dict[str, Any]:
-    """Return what tells ``model`` from others: its JSON, with a hash in place of each file."""
-    said = model.model_dump(mode="json", exclude_none=True)
-    return {
-        name: _identified(getattr(model, name), value)
-        for name, value in said.items()
-        if name not in without
-    }
-
-
-def _identified(value: object, said: Any) -> Any:
-    if isinstance(value, Model):
-        return _identifying(value)
-    if isinstance(value, Path) and value.is_file():
-        stat = value.stat()
-        return _digest(value.absolute(), stat.st_mtime_ns, stat.st_size)
-    if isinstance(value, tuple):
-        return [_identified(*pair) for pair in zip(value, said, strict=True)]
-    return said
+def _digest_of(path: Path) -> str:
+    """Return the hash of a file, or the path itself where there is no file."""
+    if not path.is_file():
+        return str(path)
+    stat = path.stat()
+    return _digest(path.absolute(), stat.st_mtime_ns, stat.st_size)
 
 
 @cache

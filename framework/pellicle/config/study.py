@@ -5,9 +5,9 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
@@ -16,47 +16,23 @@ from pellicle import memory
 from pellicle.components import Executor
 from pellicle.errors import ConfigError, Problem, shown
 from pellicle.loading import ON_DEMAND
-from pellicle.model import ranges as axes
-from pellicle.model.base import Model
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate
 from pellicle.model.from_file import FromFile, read
-from pellicle.model.input_path import AS_GIVEN, paths_relative_to
-from pellicle.model.input_path import as_given as path_as_given
-from pellicle.model.paths import replaced
+from pellicle.model.input_path import paths_relative_to
+from pellicle.model.paths import get
+from pellicle.model.ranges import Axes, expand
 from pellicle.plugins import registry
 from pellicle.results.derived import constants
 from pellicle.results.variables import FIELDS, VARIABLES, corrected_area
-from pellicle.units import quantity_of, split
 
 from .component_field import FromRegistry
-from .json_schema import json_schema
+from .coordinates import Coordinate, as_json, coordinate
 from .output_conflicts import refuse_clashes_with_study
+from .points import Point, points_of
 from .run import Run
 
 DEFAULT_EXECUTOR = "serial"
 _BYTES_PER_RUN = 40_000
-_IN_PART = "InPart"
-
-Axes = Mapping[str, axes.Values]
-
-
-class Point(NamedTuple):
-    """One run of a study."""
-
-    place: tuple[int, ...]
-    """Where it is along each dimension of the study."""
-    name: str
-    """What is varied, with its values."""
-    run: Run
-
-
-class Coordinate(NamedTuple):
-    """The values that a parameter takes along a dimension."""
-
-    values: np.ndarray[tuple[int], np.dtype[Any]]
-    """SI numbers, or texts."""
-    attributes: dict[str, str]
-    """Unit and meaning."""
 
 
 def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
@@ -71,63 +47,19 @@ def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
     return kind.from_toml(path, overrides)
 
 
-def schema() -> dict[str, Any]:
-    """Return the JSON schema of a run or study file, with every component that is installed.
-
-    In a study what varies may be left out, so that nothing but the type of a component is required.
-    """
-    run, study = json_schema(Run), json_schema(Study)
-    definitions = run.pop("$defs") | study.pop("$defs")
-    study["properties"].pop("run")
-    study["required"] = []
-    file = _in_part(run)
-    file["properties"]["study"] = study
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **file,
-        "if": {"required": ["study"]},
-        "else": run,
-        "$defs": definitions
-        | {f"{name}{_IN_PART}": _in_part(each) for name, each in definitions.items()},
-    }
-
-
-def _in_part(schema: Any) -> Any:
-    """Return a schema that also accepts what lacks fields."""
-    if isinstance(schema, list):
-        return [_in_part(each) for each in schema]
-    if not isinstance(schema, dict):
-        return schema
-    made = {name: _in_part(each) for name, each in schema.items() if not _of_presence(each)}
-    if isinstance(required := schema.get("required"), list):
-        made["required"] = [name for name in required if name == "type"]
-    if isinstance(ref := schema.get("$ref"), str):
-        made["$ref"] = f"{ref}{_IN_PART}"
-    return made
-
-
-def _of_presence(choices: Any) -> bool:
-    """Whether these are the choices of fields of which one must be there, as of moduli."""
-    return (
-        isinstance(choices, list)
-        and bool(choices)
-        and all(isinstance(each, dict) and each.keys() == {"required"} for each in choices)
-    )
-
-
 def _as_table(given: object) -> object:
     if isinstance(given, Run):
         return {name: getattr(given, name) for name in given.model_fields_set}
     return dict(given) if isinstance(given, Mapping) else given
 
 
-def _each_expanded(given: object) -> tuple[Axes, ...]:
+def _expanded(given: object) -> tuple[Axes, ...]:
     if not isinstance(given, (list, tuple)):
         raise ConfigError(f"{shown(given)} is not allowed; give [[study.zip]] tables")
     tables = []
     for index, table in enumerate(given):
         try:
-            tables.append(axes.expand(table))
+            tables.append(expand(table))
             _same_length(tables[-1])
         except ConfigError as error:
             raise error.within(str(index)) from None
@@ -137,8 +69,8 @@ def _each_expanded(given: object) -> tuple[Axes, ...]:
 def _same_length(table: Axes) -> None:
     lengths = {key: len(values) for key, values in table.items()}
     if not table or len(set(lengths.values())) > 1:
-        said = ", ".join(f"{key} has {length}" for key, length in lengths.items()) or "is empty"
-        raise ConfigError(f"{said}; give axes of as many values as each other")
+        given = ", ".join(f"{key} has {length}" for key, length in lengths.items()) or "is empty"
+        raise ConfigError(f"{given}; give axes of equally many values")
 
 
 class Study(FromFile):
@@ -154,7 +86,7 @@ class Study(FromFile):
     ]
     vary: Annotated[
         dict[str, tuple[Any, ...]],
-        BeforeValidator(axes.expand, json_schema_input_type=dict[str, Any]),
+        BeforeValidator(expand, json_schema_input_type=dict[str, Any]),
         Field(
             description="dotted parameter → values, each combined with each: a list, or {start, "
             'stop, num} with spacing = "log" if need be',
@@ -163,24 +95,18 @@ class Study(FromFile):
     ]
     zip: Annotated[
         tuple[dict[str, tuple[Any, ...]], ...],
-        BeforeValidator(_each_expanded, json_schema_input_type=list[dict[str, Any]]),
+        BeforeValidator(_expanded, json_schema_input_type=list[dict[str, Any]]),
         Field(description="tables of parameters that take their values together, not combined"),
     ] = ()
     derived: Annotated[
         dict[str, str],
-        Field(
-            description="further numbers of the table: name → arithmetic expression",
-            default_factory=dict,
-        ),
-    ]
+        Field(description="further numbers of the table: name → arithmetic expression"),
+    ] = Field(default_factory=dict)
     executor: Annotated[
         Executor,
         FromRegistry(),
-        Field(
-            description="what carries out the runs",
-            default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}),
-        ),
-    ]
+        Field(description="what carries out the runs"),
+    ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
     _points: tuple[Point, ...] = PrivateAttr()
 
     @model_validator(mode="after")
@@ -188,7 +114,7 @@ class Study(FromFile):
         self._check_axes()
         # Workers may have another current folder.
         with paths_relative_to(None):
-            self._points = tuple(self._make_points())
+            self._points = tuple(points_of(self.run, self.dimensions))
         self._check_derived()
         try:
             refuse_clashes_with_study(self.points[0].run.outputs or ())
@@ -219,12 +145,19 @@ class Study(FromFile):
 
     def coordinates(self) -> dict[str, tuple[str, Coordinate]]:
         """Return the dimension and the values of each varied parameter, SI."""
-        made = {}
-        for number, (dimension, along) in enumerate(self.dimensions.items()):
-            runs = [point.run for point in self.points if not any(_without(point.place, number))]
-            for key, values in along.items():
-                made[key] = dimension, _coordinate(runs, key, values)
-        return made
+        return {
+            key: (dimension, coordinate(key, values, self._runs_along(number)))
+            for number, (dimension, axes) in enumerate(self.dimensions.items())
+            for key, values in axes.items()
+        }
+
+    def _runs_along(self, number: int) -> list[Run]:
+        """Return a run for each value along a dimension: the first along all others."""
+        return [
+            point.run
+            for point in self.points
+            if not any(index for other, index in enumerate(point.position) if other != number)
+        ]
 
     @classmethod
     def from_mapping(cls, data: Mapping[str, Any]) -> Self:
@@ -258,31 +191,30 @@ class Study(FromFile):
 
         Values are as they were given; paths of files to read are absolute, or as they were given.
         """
-        run = self.points[0].run
-        vary, *zipped = (
-            {
-                key: [
-                    _said(value, _reach(of, key), as_given)
-                    for value, of in self._along(key, values)
-                ]
-                for key, values in table.items()
-            }
-            for table in (self.vary, *self.zip)
-        )
-        study = {"vary": vary, "zip": zipped, "derived": self.derived}
-        kept = {name: value for name, value in study.items() if value}
-        executor = self.executor.model_dump(mode="json", exclude_none=True)
-        said = {
-            key: _said(value, getattr(run, key, None), as_given) for key, value in self.run.items()
+        tables = []
+        for number, axes in enumerate(self.dimensions.values()):
+            runs = self._runs_along(number)
+            tables.append(
+                {
+                    key: [
+                        as_json(value, get(run, key), as_given=as_given)
+                        for value, run in zip(values, runs, strict=True)
+                    ]
+                    for key, values in axes.items()
+                }
+            )
+        count = len(self.vary)
+        vary = {key: values for table in tables[:count] for key, values in table.items()}
+        optional = {"vary": vary, "zip": tables[count:], "derived": self.derived}
+        study = {"executor": self.executor.model_dump(mode="json", exclude_none=True)} | {
+            name: value for name, value in optional.items() if value
         }
-        return json.dumps({**said, "study": {"executor": executor, **kept}}, ensure_ascii=False)
-
-    def _along(self, key: str, values: axes.Values) -> Iterator[tuple[Any, Run]]:
-        """Yield each value of an axis with a run that has it."""
-        number = next(n for n, along in enumerate(self.dimensions.values()) if key in along)
-        for point in self.points:
-            if not any(_without(point.place, number)):
-                yield values[point.place[number]], point.run
+        first = self.points[0].run
+        run = {
+            key: as_json(value, get(first, key), as_given=as_given)
+            for key, value in self.run.items()
+        }
+        return json.dumps({**run, "study": study}, ensure_ascii=False)
 
     def _check_axes(self) -> None:
         keys = [*self.vary, *itertools.chain.from_iterable(self.zip)]
@@ -295,180 +227,35 @@ class Study(FromFile):
                     f"would override the axis {short}, which sets the same; leave one out",
                     f"vary.{long}",
                 )
-        needed, there = _BYTES_PER_RUN * math.prod(self.shape), memory.available()
-        if there is not None and needed > there:
+        count, available = math.prod(self.shape), memory.available()
+        if available is not None and _BYTES_PER_RUN * count > available:
             raise ConfigError(
-                f"{math.prod(self.shape)} runs need about {needed / 1e9:.3g} GB for the list of "
-                f"them alone, and {there / 1e9:.3g} GB are available; give fewer values",
+                f"the list of {count} runs needs about "
+                f"{memory.shortage(_BYTES_PER_RUN * count, available)}; give fewer values",
                 "vary",
             )
 
     def _check_derived(self) -> None:
         """Refuse expressions that name what a table will not have, before anything is run."""
         run = self.points[0].run
-        absent = {"status", "status_code"} | (ON_DEMAND - run.loading.brings)
-        there = {*VARIABLES, *constants(json.loads(run.to_json()))} - absent
-        there |= {corrected_area(c.type_name).name for c in run.corrections}
-        there |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
-        taken = {*FUNCTIONS, *CONSTANTS, "status", "status_code", "run", "step", "x", "y"}
+        texts = {name for name, variable in VARIABLES.items() if variable.type == "text"}
+        known = {*VARIABLES, *constants(json.loads(run.to_json()))}
+        known -= texts | (ON_DEMAND - run.loading.brings)
+        known |= {corrected_area(correction.type_name).name for correction in run.corrections}
+        known |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
+        reserved = {*FUNCTIONS, *CONSTANTS, *texts, "run", "step", "x", "y"}
         problems: list[Problem] = []
         for name, text in self.derived.items():
             try:
-                if name in there | taken:
+                if name in known | reserved:
                     raise ConfigError(f"{shown(name)} has a meaning already; give another name")
                 if not name.isidentifier():
                     raise ConfigError(
-                        f"{shown(name)} is no name; give one of letters, digits and _"
+                        f"{shown(name)} is not a name; give one of letters, digits and _"
                     )
-                evaluate(text, dict.fromkeys(there - {*FIELDS}, np.float64(1.0)))
+                evaluate(text, dict.fromkeys(known - {*FIELDS}, np.float64(1.0)))
             except ConfigError as error:
                 problems.extend(error.within(f"derived.{name}").problems)
-            there.add(name)
+            known.add(name)
         if problems:
             raise ConfigError(problems)
-
-    def _make_points(self) -> Iterator[Point]:
-        """Yield the runs; raise all that is wrong with them, each problem once."""
-        problems: dict[Problem, list[str]] = {}
-        owners: dict[str, str] = {}
-        shared = dict(self.run)
-        for index in itertools.product(*map(range, self.shape)):
-            values = self._values_at(index)
-            name = ", ".join(f"{key} = {_short(value)}" for key, value in values.items())
-            try:
-                run = _make_run(shared, values)
-            except ConfigError as error:
-                for problem in error.problems:
-                    problems.setdefault(self._located(problem, values), []).append(name)
-                continue
-            if not owners:
-                # What no axis touches is made once: it may hold a whole surface.
-                touched = {key.partition(".")[0] for key in values}
-                shared |= {n: getattr(run, n) for n in run.model_fields_set - touched}
-            if (identity := run.identity) in owners:
-                message = f"({owners[identity]}) and ({name}) are the same run; leave one out"
-                problems[Problem("vary", message)] = []
-            owners[identity] = name
-            if not problems:
-                yield Point(index, name, run)
-        if problems:
-            total = math.prod(self.shape)
-            raise ConfigError(
-                Problem(field, _among(message, names, total) if field[:4] == "run." else message)
-                for (field, message), names in problems.items()
-            )
-
-    def _values_at(self, index: tuple[int, ...]) -> dict[str, Any]:
-        return {
-            key: values[at]
-            for at, along in zip(index, self.dimensions.values(), strict=True)
-            for key, values in along.items()
-        }
-
-    def _located(self, problem: Problem, values: Mapping[str, Any]) -> Problem:
-        """Return a problem of a run under the name of the axis that caused it, if one did."""
-        for key, value in values.items():
-            invented = (
-                key.startswith(f"{problem.field}.") and _reach(self.run, problem.field) is None
-            )
-            if f"{problem.field}.".startswith(f"{key}.") or invented:
-                said = "" if shown(value) in problem.message else f"{shown(value)}: "
-                return Problem(f"vary.{key}", f"{said}{problem.message}")
-        return Problem(f"run.{problem.field}".removesuffix("."), problem.message)
-
-
-def _make_run(shared: Mapping[str, Any], values: Mapping[str, Any]) -> Run:
-    data: Any = shared
-    for key, value in values.items():
-        try:
-            data = replaced(data, key, value)
-        except ConfigError as error:
-            raise error.within(key) from None
-    return Run(**data)
-
-
-def _among(message: str, names: list[str], total: int) -> str:
-    if len(names) == total:
-        return message
-    others = f" and {len(names) - 1} more" if len(names) > 1 else ""
-    return f"{message} (in the run of {names[0]}{others})"
-
-
-def _without(index: tuple[int, ...], number: int) -> tuple[int, ...]:
-    return index[:number] + index[number + 1 :]
-
-
-def _short(value: object) -> str:
-    """Return a value as names of runs have it."""
-    if isinstance(value, Model):
-        value = {"type": getattr(value, "type", "?")}
-    if isinstance(value, Mapping):
-        return str(value.get("type", "{…}"))
-    text = value if isinstance(value, str) else json.dumps(value, default=str)
-    if (found := split(text)) is not None:
-        text = f"{found[0]:.6g} {found[1]}".rstrip()
-    return text if len(text) <= 30 else f"{text[:29]}…"
-
-
-def _reach(at: Any, key: str) -> Any:
-    """Return what a dotted key leads to in a run, or in a table like one; None if to nothing."""
-    for name in key.split("."):
-        if isinstance(at, Mapping):
-            at = at.get(name)
-        elif isinstance(at, (list, tuple)):
-            at = at[int(name)] if name.isdecimal() and int(name) < len(at) else None
-        else:
-            at = getattr(at, name, None)
-    return at
-
-
-def _said(value: Any, made: Any, as_given: bool = False) -> Any:
-    """Return a value as JSON has it, paths absolute or as given; ``made`` is what became of it."""
-    if isinstance(value, Model):
-        context = AS_GIVEN if as_given else None
-        return value.model_dump(mode="json", exclude_none=True, context=context)
-    if isinstance(made, Path):
-        return path_as_given(made) if as_given else str(made)
-    if isinstance(value, Mapping):
-        return {name: _said(inner, _reach(made, name), as_given) for name, inner in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [
-            _said(inner, _reach(made, str(index)), as_given) for index, inner in enumerate(value)
-        ]
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    return value if isinstance(value, (str, int, float, bool)) else str(value)
-
-
-def _coordinate(runs: list[Run], key: str, given: axes.Values) -> Coordinate:
-    """Return the values of an axis as the runs have them: SI numbers, or texts."""
-    held = [_one(_reach(run, key), value) for run, value in zip(runs, given, strict=True)]
-    attributes = {"long_name": key}
-    if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in held):
-        if unit := _unit_of(runs[0], key):
-            attributes["units"] = unit
-        return Coordinate(np.array(held), attributes)
-    texts = [value if isinstance(value, str) else _short(given[i]) for i, value in enumerate(held)]
-    if len(set(texts)) < len(texts):
-        texts = [json.dumps(_said(value, held[i])) for i, value in enumerate(given)]
-    return Coordinate(np.array(texts, dtype=object), attributes)
-
-
-def _one(held: Any, given: Any) -> Any:
-    """Return a value that was given as one and is held as several equal ones: a size, a depth."""
-    several = isinstance(held, tuple) and held and len(set(map(str, held))) == 1
-    if several and not isinstance(given, (list, tuple, Mapping)):
-        return held[0]
-    return path_as_given(held) if isinstance(held, Path) else held
-
-
-def _unit_of(run: Run, key: str) -> str | None:
-    """Return the SI unit of the field that a dotted key leads to."""
-    *path, last = key.split(".")
-    while last.isdecimal() and path:
-        last = path.pop()
-    owner = _reach(run, ".".join(path)) if path else run
-    info = type(owner).model_fields.get(last) if isinstance(owner, Model) else None
-    quantity = quantity_of(info) if info else None
-    # As datasets write areas, not as units are multiplied.
-    return quantity.unit.replace("m**2", "m2") if quantity else None

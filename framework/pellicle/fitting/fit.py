@@ -1,49 +1,34 @@
-"""Reduced modulus, tension and contact point of a measured curve, with what is known of them."""
+"""Reduced modulus, tension and contact point of one measured curve, with their intervals."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from numpy.typing import ArrayLike
 
-from pellicle.components import Executor, HasForceCurve, Indenter
+from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError
 
-from .curves.columns import Calibration, Measured
-from .curves.curve import Segment
-from .curves.sources import Source
-from .explained import explain
-from .models.interpolated import described
-from .models.simulation import GRID_POINTS
-from .plausible import plausible
-from .posed import Posed, posed
-from .problem import Baseline
-from .result import Answer, doubt
+from .config import Baseline, ExecutorLike, FitConfig, IndenterLike
+from .curves.curve import Curve, Segment
+from .curves.readers import Source, fields_of_files
+from .models.force_model import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
+from .problem import FitProblem, problems
+from .result import FitResult, doubt_of_tension, status_line
+from .statistics.checks import fit_single
 from .statistics.design import advice, undecided
-from .statistics.estimate import Estimate
-from .statistics.initial_guess import starts
-from .statistics.interval import allowed_rise
-from .statistics.likelihood import (
-    MODULUS,
-    OFFSET,
-    POINT,
-    SLOPE,
-    TENSION,
-    Likelihood,
-    Minimum,
-    best_minimum,
-)
-from .statistics.profile import profiled
-from .status import Report, ignore, status
+from .statistics.initial_guess import initial_guesses
+from .statistics.likelihood import Likelihood, Minimum, best_minimum
+from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 
 
 @dataclass(frozen=True)
-class Fit(Answer):
-    """What a curve says of the solid, and how sure it is."""
+class Fit(FitResult):
+    """Modulus, tension and contact point of one curve, with their intervals."""
 
     contact_point: Estimate
     """Position of first touch [m]."""
@@ -56,19 +41,25 @@ class Fit(Answer):
     noise_from: str
     """What it was estimated from."""
     points: int
-    """Rows that were used."""
+    """Number of rows that were used."""
     likelihood: Likelihood
     """The curve and its χ²."""
 
+    @property
+    def sentences(self) -> list[str]:
+        """The noise and the verdicts of the fit in words."""
+        noise = f"noise: {self.noise:.3g} N, from {self.noise_from}; {self.points} points"
+        return [noise, *super().sentences]
+
     def model(self) -> dict[str, Any]:
-        """Return indenter and kernel that were fitted with, as JSON has them.
+        """Return indenter and kernel that were fitted with, as JSON data.
 
         A kernel is there only if its force curve was simulated, without modulus and tension.
         """
-        return described(self.likelihood.indenter)
+        return self.likelihood.force_model.description()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what JSON can hold."""
+        """Return the fit as JSON data."""
         return super().to_dict() | {
             "model": self.model(),
             "noise": {"value": self.noise, "unit": "N", "from": self.noise_from},
@@ -81,27 +72,28 @@ def fit(
     force: ArrayLike | None = None,
     *,
     depth: ArrayLike | None = None,
-    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
+    indenter: IndenterLike | None = None,
     kernel: str | Mapping[str, Any] | None = None,
     poissons_ratio: float | None = None,
     fix: Mapping[str, Any] | None = None,
-    baseline: Baseline = "none",
-    segment: Segment = "approach",
+    baseline: Baseline | None = None,
+    segment: Segment | None = None,
     spring_constant: float | str | None = None,
     cache: str | Path | None = None,
-    executor: str | Mapping[str, Any] | Executor = "serial",
-    grid_points: int = GRID_POINTS,
+    executor: ExecutorLike | None = None,
+    grid_points: int | None = None,
+    config: FitConfig | str | Path | None = None,
     progress: bool = False,
     **fields: Any,
 ) -> Fit:
     """Fit reduced modulus, tension and contact point to one measured curve.
 
-    The solid is a half-space under tension unless a kernel is given, the contact frictionless and
-    without adhesion.  Errors of the force are taken as normal, independent and equal at all points;
-    the intervals hold 95 %.
+    The solid is a half-space under tension unless a kernel is given; the contact is frictionless
+    and without adhesion.  Errors of the force are taken as normal, independent and equal at all
+    points; the intervals hold with 95 %.
 
     An indenter that has a force curve of its own (paraboloid, sphere, cone, flat_punch) is fitted
-    at once.  Any other, or any on another kernel, needs a study of some 150 runs first, which is
+    at once.  Any other, or any on another kernel, first needs a study of some 150 runs, which is
     kept in ``cache`` and serves all curves of the same proportions.
 
     Parameters
@@ -109,32 +101,38 @@ def fit(
     position, force
         Position of the indenter [m], growing into the solid, and force [N], both of shape (n,).
     depth
-        Depth [m] instead of position: the contact point is then held at 0.
+        Depth [m] instead of position: the contact point is then fixed at 0.
     indenter
         An indenter, its table, or its type with the fields that the type needs:
         ``indenter="paraboloid", radius="5 um"``; or anything that has a force curve.
     kernel
-        Type or table of the kernel, without the modulus and the tension that are sought.
+        Type or table of the kernel, without the modulus and the tension that are fitted.
     poissons_ratio
         ν, to give Young's modulus as well; also that of a kernel that needs one and has none.
     fix
-        Parameters to hold, e.g. ``{"tension": 0}``: reduced_modulus, tension, contact_point.
+        Values of parameters that are not fitted, e.g. ``{"tension": 0}``: reduced_modulus,
+        tension, contact_point.
     baseline
-        What is fitted of the force before contact: ``"none"``, its ``"offset"``, or offset and
-        ``"slope"``.
+        What is fitted of the force before contact: ``"none"`` (the default), its ``"offset"``, or
+        offset and ``"slope"``.
     segment
-        The pass that is fitted of a curve with two: ``"approach"`` or ``"retract"``.
+        The pass that is fitted of a curve with two: ``"approach"`` (the default) or ``"retract"``.
     spring_constant
-        Of the cantilever [N/m], if position is that of its base less its deflection: noise of the
-        deflection is then in both, position and force, and is reckoned with.
+        That of the cantilever [N/m], if position is that of its base less its deflection: the
+        noise of the deflection is then in both position and force, which the fit accounts for.
     cache
-        Folder that keeps studies; the user's cache folder if None.
+        Folder that keeps studies; the user's cache folder if not given.
     executor
-        What carries out a study.
+        What carries out a study; ``"serial"`` if not given.
     grid_points
-        Cells of each grid of a study along x and y.
+        Cells of each grid of a study along x and y; 64 if not given.
+    config
+        A configuration or the TOML file that has one; the other arguments, if given, replace its
+        values.  Without position and force the curve is the one that it names.
     progress
-        Show how far a study and the fit are, on a terminal.
+        Show the progress of a study and of the fit on a terminal.
+    **fields
+        Fields of the indenter.
 
     Raises
     ------
@@ -143,53 +141,58 @@ def fit(
     ConvergenceError, StorageError
         A study did not come to its end.
     """
+    config = FitConfig.merged(
+        config,
+        indenter=indenter,
+        kernel=kernel,
+        poissons_ratio=poissons_ratio,
+        fix=fix,
+        baseline=baseline,
+        segment=segment,
+        spring_constant=spring_constant,
+        cache=cache,
+        executor=executor,
+        grid_points=grid_points,
+        **fields,
+    )
+    if position is None and depth is None and force is None and config.curves:
+        sources = config.sources()
+        if len(sources) > 1:
+            raise ConfigError(f"hold {len(sources)} curves; use fit_many or fit_pooled", "curves")
+        return fit_source(config, sources[0], progress=progress)
     if (position is None) == (depth is None):
         raise ConfigError("give either position or depth")
     if force is None:
         raise ConfigError("is missing; give the force [N] at each position", "force")
-    stiffness = Calibration.of(spring_constant).spring_constant
-    measured = Measured(force, position, depth, stiffness=stiffness)  # type: ignore[arg-type]
-    options = {
-        "kernel": kernel,
-        "poissons_ratio": poissons_ratio,
-        "fix": fix,
-        "baseline": baseline,
-        "segment": segment,
-    }
-    return fit_source(
-        Source("", measured, fields),
-        indenter,
-        options,
-        cache=cache,
-        executor=executor,
-        grid_points=grid_points,
-        progress=progress,
+    # `clean` checks the arrays.
+    curve = Curve(
+        cast("Array", position if depth is None else depth),
+        cast("Array", force),
+        depth is not None,
+        stiffness=config.spring_constant,
     )
+    (own,) = fields_of_files(config.per_file, 1)
+    return fit_source(config, Source("", curve, own), progress=progress)
 
 
-def fit_source(
-    source: Source,
-    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
-    options: Mapping[str, Any],
-    **study: Any,
-) -> Fit:
-    """Return the fit of a source; ``options`` are those of `question`, ``study`` of `simulate`.
+def fit_source(config: FitConfig, source: Source, *, progress: bool) -> Fit:
+    """Return the fit of one curve.
 
     Raises
     ------
     PellicleError
-        As for `fit`, or why the source could not be read.
+        As for `fit`, or the error of reading the curve.
     """
-    (found,) = posed([source], indenter, options)
-    if isinstance(found, PellicleError):
-        raise found
-    modelled = found.modelled(**study)
-    with status(study.get("progress", False)) as report:
-        return fitted(modelled, report)
+    (problem,) = problems(config, [source])
+    if isinstance(problem, PellicleError):
+        raise problem
+    problem = problem.simulated(config, progress=progress)
+    with status_line(progress) as report:
+        return replace(fit_problem(problem, report), config=config)
 
 
-def fitted(posed: Posed, report: Report = ignore) -> Fit:
-    """Return the fit of a curve by an indenter that has a force curve.
+def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda words: None) -> Fit:
+    """Return the fit of a curve whose indenter has a force curve.
 
     ``report`` is called with what the fit is doing.
 
@@ -197,55 +200,54 @@ def fitted(posed: Posed, report: Report = ignore) -> Fit:
     ------
     ConfigError
         The curve cannot be fitted.
+    ConvergenceError
+        No search for the best parameters converges.
     """
     report("least squares")
-    alone = explain(posed)
-    likelihood, rise = alone.likelihood, allowed_rise(alone.freedom)
-    found = profiled(
+    single = fit_single(problem.likelihood(), problem.fixed)
+    likelihood, threshold = single.likelihood, chi_squared_threshold(single.freedom)
+    profile = profile_likelihood(
         likelihood,
-        likelihood.minimise(alone.parameters),
-        rise,
+        likelihood.minimise(single.parameters),
+        threshold,
         likelihood.free,
         partial(_without_tension, likelihood),
         report,
     )
-    best = found.best.parameters
-    point, modulus, tension = (
-        found.estimate(which, unit)
-        for which, unit in ((POINT, "m"), (MODULUS, "Pa"), (TENSION, "N/m"))
-    )
+    best = profile.best.parameters
+    point, modulus, tension = map(profile.estimate, (CONTACT_POINT, MODULUS, TENSION))
     return Fit(
         reduced_modulus=modulus,
         tension=tension,
-        poissons_ratio=posed.asked.poissons_ratio,
-        chi_squared=found.best.chi_squared,
-        chi_squared_without_tension=found.without_tension.chi_squared,
+        poissons_ratio=problem.poissons_ratio,
+        chi_squared=profile.best.chi_squared,
+        chi_squared_without_tension=profile.without_tension.chi_squared,
         advice=advice(likelihood, best, modulus, tension),
         messages=(
-            *alone.messages,
-            *(check.message for check in alone.failed_checks),
-            *found.messages,
-            *plausible(posed, point.value, modulus.value, tension.value),
+            *problem.curve.messages,
+            *single.messages,
+            *(check.message for check in single.failed_checks),
+            *profile.messages,
+            *problem.check_plausible(point.value, modulus.value, tension.value),
             *undecided(modulus, tension, likelihood, best),
         ),
         parameters=best,
-        parameters_without_tension=found.without_tension.parameters,
-        rise=rise,
-        failed_checks=alone.failed_checks,
-        doubt=doubt(alone.failed_checks),
+        parameters_without_tension=profile.without_tension.parameters,
+        rise=threshold,
+        failed_checks=single.failed_checks,
+        doubt=doubt_of_tension(single.failed_checks),
         contact_point=point,
-        offset=found.estimate(OFFSET, "N"),
-        slope=found.estimate(SLOPE, "N/m"),
+        offset=profile.estimate(OFFSET),
+        slope=profile.estimate(SLOPE),
         noise=likelihood.noise,
-        noise_from=alone.noise_from,
-        points=posed.curve.force.size,
+        noise_from=single.noise_from,
+        points=problem.curve.force.size,
         likelihood=likelihood,
     )
 
 
 def _without_tension(likelihood: Likelihood, best: Minimum) -> Minimum:
     """Return the least χ² without tension, near the best and near the best of a scan."""
-    begun = best.parameters.copy()
-    begun[TENSION] = 0.0
-    held = replace(likelihood, free=tuple(k for k in likelihood.free if k != TENSION))
-    return best_minimum(held, (begun, *starts(held, begun)[:1]))
+    start = best.parameters | {TENSION: 0.0}
+    fixed = replace(likelihood, free=tuple(p for p in likelihood.free if p != TENSION))
+    return best_minimum(fixed, (start, *initial_guesses(fixed, start)[:1]))

@@ -1,7 +1,8 @@
-"""Fits of many curves, one row each, by an executor."""
+"""Fits of many curves by an executor, and the table with a row for each."""
 
 from __future__ import annotations
 
+import csv
 import hashlib
 import json
 import pickle
@@ -12,77 +13,84 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pellicle.components import Component, Executor, HasForceCurve, Indenter, Say
+import numpy as np
+
+from pellicle.components import Component, Say
 from pellicle.components.calls import outcomes_of
 from pellicle.errors import PellicleError
-from pellicle.files import check_writable
-from pellicle.plugins import registry
+from pellicle.files import atomic_write, check_writable
+from pellicle.results import storage
+from pellicle.results.variables import header
 from pellicle.runs.progress import StudyProgress
 
+from .config import Baseline, ExecutorLike, FitConfig, IndenterLike
 from .curves.curve import Segment
-from .curves.sources import Curves, Source, gather
-from .fit import fitted
-from .models.simulation import GRID_POINTS
-from .posed import Posed, posed
-from .problem import Baseline
-from .table import FAILED, FITTED, NOT_RUN, table, write
-from .written import write_json
+from .curves.readers import Curves, Source
+from .fit import fit_problem
+from .problem import FitProblem, problems
+from .result import write_json
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_BYTES_A_POINT = 2000
-"""Memory of a fit, about."""
+FITTED = "fitted"
+FAILED = "failed: "
+_NOT_RUN = "not run"
+_ENDS = ("low", "high", "bound")
+_BYTES_PER_POINT = 2000
+"""Memory of a fit, approximately."""
+
+Row = dict[str, Any]
+"""JSON data of one curve: its name, ``status``, and what `Fit.to_dict` returns."""
 
 
 @dataclass(frozen=True)
 class FitTask:
-    """A curve that is to be fitted; it pickles to workers."""
+    """The fit of one curve; it pickles to workers."""
 
-    place: int
-    """Its row."""
-    posed: Posed
+    row: int
+    problem: FitProblem
     path: Path | None
-    """Where the fit is kept."""
+    """File that keeps the fit."""
 
     @property
     def name(self) -> str:
-        """What a progress bar calls it."""
-        return self.posed.name
+        """Name in a progress bar."""
+        return self.problem.name
 
     @property
     def memory(self) -> int:
-        """Memory that the fit takes at its peak [bytes], estimated."""
-        return _BYTES_A_POINT * self.posed.curve.force.size
+        """Estimated peak memory of the fit [bytes]."""
+        return _BYTES_PER_POINT * self.problem.curve.force.size
 
 
-class Fitted(NamedTuple):
-    """What came of many curves."""
+class ManyFits(NamedTuple):
+    """The fits of many curves."""
 
-    rows: list[dict[str, Any]]
-    """What JSON can hold of each curve: its name, ``status``, and what `Fit.to_dict` says."""
+    rows: list[Row]
     files: tuple[Path, ...]
-    taken: int
-    """How many fits were done before."""
+    resumed: int
+    """Number of fits that an earlier call had finished."""
 
     @property
     def failed(self) -> int:
-        """How many curves could not be fitted."""
+        """Number of curves that could not be fitted."""
         return sum(row["status"].startswith(FAILED) for row in self.rows)
 
 
 def fit_many(
-    curves: Curves,
+    curves: Curves | None = None,
     *,
-    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
+    indenter: IndenterLike | None = None,
     kernel: str | Mapping[str, Any] | None = None,
     poissons_ratio: float | None = None,
     fix: Mapping[str, Any] | None = None,
-    baseline: Baseline = "none",
-    segment: Segment = "approach",
+    baseline: Baseline | None = None,
+    segment: Segment | None = None,
     cache: str | Path | None = None,
-    grid_points: int = GRID_POINTS,
-    executor: str | Mapping[str, Any] | Executor = "serial",
+    grid_points: int | None = None,
+    executor: ExecutorLike | None = None,
+    config: FitConfig | str | Path | None = None,
     directory: str | Path | None = None,
     progress: bool = True,
     **fields: Any,
@@ -94,18 +102,19 @@ def fit_many(
     Parameters
     ----------
     curves
-        A folder; a file, which may hold several curves; a table that lists files, with a header
-        such as ``file,radius [um]``; several of these; or position [m] and force [N] of each curve
-        by its name, ``{"first": (position, force)}``.
-    indenter, kernel, poissons_ratio, fix, baseline, segment, cache, grid_points
+        A folder; a file, which may hold several curves; a pattern such as ``"beads/*.csv"``; a
+        table that lists files, with a header such as ``file,radius [um]``; several of these; or
+        position [m] and force [N] of each curve by its name, ``{"first": (position, force)}``.
+        Those of the configuration if not given.
+    indenter, kernel, poissons_ratio, fix, baseline, segment, cache, grid_points, config
         As for `fit`.
     executor
-        How the fits, and the runs of a study that they need, are carried out: ``"serial"``,
-        ``"processes"``, ``"dask"``, a table such as ``{"type": "processes", "workers": 2}``, or an
-        executor.
+        How the fits, and the runs of a study that they need, are carried out: ``"serial"`` (the
+        default), ``"processes"``, ``"dask"``, a table such as
+        ``{"type": "processes", "workers": 2}``, or an executor.
     directory
         Folder for the table, as ``fits.h5``, ``fits.csv`` and ``fits.json``, and a file for each
-        curve in ``curves``. A fit that it holds already is not done again.
+        curve in ``curves``. A fit that it holds already is not repeated.
     progress
         Show a bar on a terminal; without one, a line for each curve.
     **fields
@@ -125,130 +134,164 @@ def fit_many(
     StorageError
         The folder cannot be used.
     """
-    sources = gather(curves, segment, fields)
-    options = {
-        "kernel": kernel,
-        "poissons_ratio": poissons_ratio,
-        "fix": fix,
-        "baseline": baseline,
-        "segment": segment,
-    }
-    done = carry_out(
-        sources,
-        indenter,
-        options,
-        executor,
-        None if directory is None else Path(directory),
+    config = FitConfig.merged(
+        config,
+        indenter=indenter,
+        kernel=kernel,
+        poissons_ratio=poissons_ratio,
+        fix=fix,
+        baseline=baseline,
+        segment=segment,
         cache=cache,
         grid_points=grid_points,
-        progress=progress,
+        executor=executor,
+        **fields,
     )
-    return table(done.rows)
+    folder = None if directory is None else Path(directory)
+    return table(fit_sources(config, config.sources(curves), folder, progress=progress).rows)
 
 
-def carry_out(
-    sources: list[Source],
-    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
-    options: Mapping[str, Any],
-    executor: str | Mapping[str, Any] | Executor,
-    directory: Path | None,
-    *,
-    cache: str | Path | None = None,
-    grid_points: int = GRID_POINTS,
-    progress: bool,
-) -> Fitted:
-    """Fit each source, but for what is done, and leave the files.
+def fit_sources(
+    config: FitConfig, sources: list[Source], directory: Path | None, *, progress: bool
+) -> ManyFits:
+    """Fit each curve that is not fitted yet, and write the files.
 
-    ``options`` are those of `question`.  What is interrupted leaves the table of all that was
-    finished.
+    If interrupted, the table has all fits that were finished.
     """
-    chosen = {"type": executor} if isinstance(executor, str) else executor
-    carrier = registry().make(Executor, chosen)
     if directory is not None:
         check_writable(directory / "fits.h5")
-    rows: list[dict[str, Any]] = [{"curve": source.name, "status": NOT_RUN} for source in sources]
-    study = {
-        "cache": cache,
-        "executor": carrier,
-        "grid_points": grid_points,
-        "progress": progress,
-    }
+    rows: list[Row] = [{"curve": source.name, "status": _NOT_RUN} for source in sources]
     tasks: list[FitTask] = []
-    for place, each in enumerate(posed(sources, indenter, options)):
+    for number, problem in enumerate(problems(config, sources)):
         try:
-            if isinstance(each, PellicleError):
-                raise each
-            path = _file(directory, each, grid_points)
-            if (done := _done(path)) is not None:
-                rows[place] |= done | {"status": FITTED}
+            if isinstance(problem, PellicleError):
+                raise problem
+            path = _path(directory, problem, config.grid_points)
+            if (kept := _read(path)) is not None:
+                rows[number] |= kept | {"status": FITTED}
                 continue
-            tasks.append(FitTask(place, each.modelled(**study), path))
+            tasks.append(FitTask(number, problem.simulated(config, progress=progress), path))
         except PellicleError as error:
-            rows[place]["status"] = _why(error, sources[place])
-    taken = sum(row["status"] == FITTED for row in rows)
+            rows[number]["status"] = _failure(error, sources[number])
+    resumed = sum(row["status"] == FITTED for row in rows)
     files: tuple[Path, ...] = ()
     try:
         with (
             StudyProgress(len(sources), len(sources) - len(tasks), progress) as bar,
-            closing(outcomes_of(carrier, work, tasks, bar.report, dict)) as ends,
+            closing(outcomes_of(config.executor, work, tasks, bar.report, dict)) as outcomes,
         ):
-            for task, outcome in ends:
+            for task, outcome in outcomes:
                 if isinstance(outcome, Exception):
-                    rows[task.place]["status"] = _why(outcome, sources[task.place])
+                    rows[task.row]["status"] = _failure(outcome, sources[task.row])
                 else:
-                    rows[task.place] |= outcome | {"status": FITTED}
+                    rows[task.row] |= outcome | {"status": FITTED}
                     if task.path is not None:
                         write_json(outcome, task.path)
-                verdict = str(rows[task.place]["status"])
-                bar.finished(task, verdict, verdict != FITTED)
+                status = str(rows[task.row]["status"])
+                bar.finished(task, status, status != FITTED)
     finally:
         if directory is not None:
-            files = write(rows, directory)
-    return Fitted(rows, files, taken)
+            files = _write(rows, config, directory)
+    return ManyFits(rows, files, resumed)
 
 
 def work(task: FitTask, say: Say) -> dict[str, Any]:
-    """Fit a curve where a worker is."""
-    return fitted(task.posed).to_dict()
+    """Fit a curve in a worker."""
+    return fit_problem(task.problem).to_dict()
 
 
-def _file(directory: Path | None, posed: Posed, grid_points: int) -> Path | None:
-    """Return where a fit is kept."""
+def _path(directory: Path | None, problem: FitProblem, grid_points: int) -> Path | None:
+    """Return the file that keeps a fit."""
     if directory is None:
         return None
-    return directory / "curves" / f"{_identity(posed, grid_points)[:16]}.json"
+    return directory / "curves" / f"{_identity(problem, grid_points)[:16]}.json"
 
 
-def _identity(posed: Posed, grid_points: int) -> str:
-    """Return what tells this curve and what is asked of it from all others."""
-    curve, asked = posed.curve, posed.asked
-    known = hashlib.sha256(version("pellicle").encode())
-    kernel = asked.material and asked.material.kernel
-    for part in (asked.indenter, kernel):
+def _identity(problem: FitProblem, grid_points: int) -> str:
+    """Return a hash that is equal for problems with equal results."""
+    curve, kernel = problem.curve, problem.solid and problem.solid.kernel
+    digest = hashlib.sha256(version("pellicle").encode())
+    for part in (problem.indenter, kernel):
         if isinstance(part, Component):
-            known.update(part.model_dump_json().encode())
+            digest.update(part.model_dump_json().encode())
         else:
-            known.update(pickle.dumps(part))
-    said = asked.free, asked.segment, asked.poissons_ratio, grid_points if kernel else None
-    known.update(repr((said, curve.messages, curve.stiffness)).encode())
-    for values in (asked.held, curve.position, curve.force):
-        known.update(values.tobytes())
-    return known.hexdigest()
+            digest.update(pickle.dumps(part))
+    fixed = {parameter.name: value for parameter, value in problem.fixed.items()}
+    options = fixed, problem.poissons_ratio, grid_points if kernel else None
+    digest.update(repr((options, curve.messages, curve.stiffness)).encode())
+    for values in (curve.position, curve.force):
+        digest.update(values.tobytes())
+    return digest.hexdigest()
 
 
-def _done(path: Path | None) -> dict[str, Any] | None:
-    """Return the fit that a file holds."""
+def _read(path: Path | None) -> Row | None:
+    """Return the fit that a file keeps."""
     if path is None:
         return None
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    return found if isinstance(found, dict) else None
+    return content if isinstance(content, dict) else None
 
 
-def _why(error: Exception, source: Source) -> str:
-    """Return a failure as a line of a table."""
-    ours = isinstance(error, PellicleError)
-    said = "; ".join(source.reason(error).splitlines()) or "no reason given"
-    return f"{FAILED}{said if ours else f'{type(error).__name__}: {said}'}"
+def _failure(error: Exception, source: Source) -> str:
+    """Return the status of a curve that could not be fitted."""
+    reason = "; ".join(source.reason(error).splitlines()) or "no reason given"
+    kind = "" if isinstance(error, PellicleError) else f"{type(error).__name__}: "
+    return f"{FAILED}{kind}{reason}"
+
+
+def table(rows: list[Row]) -> xr.Dataset:
+    """Return rows as a dataset over ``curve``; NaN where there is no number."""
+    import xarray as xr
+
+    def texts(values: list[str]) -> tuple[str, Any]:
+        return "curve", np.array(values, dtype=object)
+
+    def numbers(values: list[float | None], unit: str = "1") -> tuple[str, Any, dict[str, str]]:
+        return "curve", np.array(values, dtype=float), {"units": unit}
+
+    columns: dict[str, Any] = {"status": texts([row["status"] for row in rows])}
+    units = {
+        name: value["unit"]
+        for row in rows
+        for name, value in row.items()
+        if isinstance(value, dict) and "unit" in value
+    }
+    for name, unit in units.items():
+        for key in ("value", *_ENDS):
+            column = numbers([row.get(name, {}).get(key) for row in rows], unit)
+            if key == "value" or np.isfinite(column[1]).any():
+                columns[name if key == "value" else f"{name}_{key}"] = column
+    for name in ("points", "chi_squared", "tension_needed"):
+        columns[name] = numbers([row.get(name) for row in rows])
+    for name in ("delta_chi_squared", "delta_aic"):
+        columns[name] = numbers([row.get("without_tension", {}).get(name) for row in rows])
+    for name in ("comparison", "advice"):
+        columns[name] = texts([row.get(name, "") for row in rows])
+    columns["failed_checks"] = texts(
+        ["; ".join(check["code"] for check in row.get("failed_checks", ())) for row in rows]
+    )
+    columns["messages"] = texts(["; ".join(row.get("messages", ())) for row in rows])
+    return xr.Dataset(columns, {"curve": texts([row["curve"] for row in rows])})
+
+
+def _write(rows: list[Row], config: FitConfig, directory: Path) -> tuple[Path, ...]:
+    """Write ``fits.h5``, ``fits.csv`` and ``fits.json`` and return their paths.
+
+    Raises
+    ------
+    StorageError
+        They cannot be written.
+    """
+    dataset = table(rows)
+    hdf5, text = directory / "fits.h5", directory / "fits.csv"
+    storage.write(dataset, hdf5)
+    with atomic_write(text) as part, part.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        columns = ["curve", *dataset.data_vars]
+        writer.writerow(header(str(name), dataset[name]) for name in columns)
+        writer.writerows(zip(*(dataset[name].values.tolist() for name in columns), strict=True))
+    content = {"curves": rows, "configuration": config.to_dict()}
+    return hdf5, text, write_json(content, directory / "fits.json")

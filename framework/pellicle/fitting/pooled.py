@@ -2,57 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 from scipy.special import bdtrc, chdtrc
 
-from pellicle.components import Executor, HasForceCurve, Indenter
 from pellicle.errors import ConfigError, PellicleError
 
+from .config import Baseline, ExecutorLike, FitConfig, IndenterLike
 from .curves.curve import Segment
-from .curves.sources import Curves, Source, gather
-from .explained import Explained, explain
-from .models.interpolated import described
-from .models.simulation import GRID_POINTS
-from .plausible import plausible
-from .posed import posed
-from .problem import Baseline
-from .result import Answer, doubt
+from .curves.readers import Curves, Source
+from .models.force_model import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
+from .problem import FitProblem, problems
+from .result import FitResult, doubt_of_tension, interval_text, status_line
+from .statistics.checks import SingleFit, check_pooled_shape, fit_single
 from .statistics.design import percent
-from .statistics.estimate import Estimate
-from .statistics.interval import allowed_rise
-from .statistics.likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
-from .statistics.pool_minima import alone, begin, without_tension
-from .statistics.pooled_likelihood import SHARED, Pool
-from .statistics.profile import profiled
-from .statistics.residuals import FailedCheck
-from .statistics.shape_check import check_pooled_shape
-from .status import Report, status
+from .statistics.likelihood import best_minimum
+from .statistics.noise import FailedCheck
+from .statistics.pooled_likelihood import Pool
+from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 
 _CHANCE = 1e-3
-"""A disagreement less likely than this is no chance."""
+"""Probability below which a disagreement is not taken for chance."""
 _FAILING = 0.01
-"""Share of curves without fault that fail some check of the model."""
+"""Probability that a curve without fault fails some check of the model."""
 _RARE = 0.05
-"""More failing curves than are likely with this chance are no chance."""
+"""Probability below which the number of failing curves is not taken for chance."""
 _NAMED = 5
-"""Failing curves that a message names."""
+"""Largest number of failing curves that a message names."""
 
 
 @dataclass(frozen=True)
 class PooledCurve:
-    """What a pooled fit says of one of its curves."""
+    """One curve of a pooled fit."""
 
     name: str
     model: dict[str, Any]
-    """Indenter, and the kernel if it was simulated, as JSON has them."""
+    """Indenter, and the kernel if it was simulated, as JSON data."""
     contact_point: Estimate
-    """Position of first touch [m]; its interval only if it was asked for."""
+    """Position of first touch [m]; its interval only if requested."""
     offset: float
     """Force of the baseline at the first position [N]."""
     slope: float
@@ -61,19 +52,19 @@ class PooledCurve:
     """Standard deviation of the force [N]."""
     points: int
     chi_squared: float
-    """Its share of χ²."""
+    """Sum of its squared residuals over its noise."""
     chi_squared_alone: float
     """χ² of the curve with a modulus and a tension of its own."""
     reduced_modulus_alone: float
-    """That modulus [Pa]."""
+    """That modulus, E* [Pa]."""
     tension_alone: float
-    """That tension [N/m]."""
+    """That tension, τ₀ [N/m]."""
     failed_checks: tuple[FailedCheck, ...]
-    """What its residuals alone show besides noise; the messages say it too."""
+    """Checks that its residuals fail; their sentences are among the messages."""
     messages: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what JSON can hold."""
+        """Return the curve as JSON data."""
         return vars(self) | {
             "contact_point": self.contact_point.to_dict(),
             "failed_checks": [check.to_dict() for check in self.failed_checks],
@@ -82,8 +73,8 @@ class PooledCurve:
 
 
 @dataclass(frozen=True)
-class PooledFit(Answer):
-    """What several curves say together of one solid."""
+class PooledFit(FitResult):
+    """Modulus and tension that several curves of one solid share."""
 
     _does: ClassVar[str] = "these curves do"
     _look_alikes: ClassVar[str] = (
@@ -95,14 +86,46 @@ class PooledFit(Answer):
     agreement: str
     """Whether the curves agree on one modulus and one tension, in words."""
     agree: bool
-    """The same; where they do not, the intervals are widened."""
+    """Whether the curves agree; if they do not, the intervals are widened."""
     contact_points: bool
-    """Whether the intervals of the contact points were asked for."""
+    """Whether the intervals of the contact points were requested."""
     pool: Pool
     """The curves and their χ²."""
 
+    @property
+    def sentences(self) -> list[str]:
+        """The verdicts of the fit in words."""
+        return list(filter(None, [self.comparison, self.agreement, self.advice]))
+
+    @property
+    def notes(self) -> list[str]:
+        """All warnings, those of single curves with their names."""
+        own = [f"{curve.name}: {text}" for curve in self.curves for text in curve.messages]
+        return [*self.messages, *own]
+
+    def curve_rows(self) -> list[dict[str, str]]:
+        """Return a line of a table for each curve."""
+        rows = []
+        for curve in self.curves:
+            point = curve.contact_point
+            row = {"curve": curve.name, "contact_point [m]": f"{point.value:.6g}"}
+            if self.contact_points:
+                ends = "held" if point.held else interval_text(point.low, point.high)
+                row["95 % of contact_point"] = ends
+            rows.append(
+                row
+                | {
+                    "noise [N]": f"{curve.noise:.3g}",
+                    "points": str(curve.points),
+                    "chi_squared": f"{curve.chi_squared:.5g}",
+                    "alone: reduced_modulus [Pa]": f"{curve.reduced_modulus_alone:.4g}",
+                    "tension [N/m]": f"{curve.tension_alone:.4g}",
+                }
+            )
+        return rows
+
     def to_dict(self) -> dict[str, Any]:
-        """Return what JSON can hold."""
+        """Return the fit as JSON data."""
         return super().to_dict() | {
             "agreement": self.agreement,
             "curves": [curve.to_dict() for curve in self.curves],
@@ -110,19 +133,20 @@ class PooledFit(Answer):
 
 
 def fit_pooled(
-    curves: Curves,
+    curves: Curves | None = None,
     *,
-    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
+    indenter: IndenterLike | None = None,
     kernel: str | Mapping[str, Any] | None = None,
     poissons_ratio: float | None = None,
     fix: Mapping[str, Any] | None = None,
-    baseline: Baseline = "none",
-    segment: Segment = "approach",
+    baseline: Baseline | None = None,
+    segment: Segment | None = None,
     cache: str | Path | None = None,
-    executor: str | Mapping[str, Any] | Executor = "serial",
-    grid_points: int = GRID_POINTS,
+    executor: ExecutorLike | None = None,
+    grid_points: int | None = None,
+    config: FitConfig | str | Path | None = None,
     progress: bool = False,
-    contact_points: bool = False,
+    contact_points: bool | None = None,
     **fields: Any,
 ) -> PooledFit:
     """Fit one reduced modulus and one tension to several curves together.
@@ -134,15 +158,17 @@ def fit_pooled(
     ----------
     curves
         As for `fit_many`.
-    indenter, kernel, poissons_ratio, baseline, segment, cache, executor, grid_points, progress
+    indenter, kernel, poissons_ratio, baseline, segment, cache, executor, grid_points, config
         As for `fit`.
     fix
-        Parameters to hold, of those that are shared: reduced_modulus, tension.
+        Values of shared parameters that are not fitted: reduced_modulus, tension.
+    progress
+        Show the progress of studies and of the fit on a terminal.
     contact_points
-        Look for the interval of each contact point too. Each takes searches over the parameters of
-        all curves, so that the time grows with the square of their number.
+        Whether to find the interval of each contact point too. Each takes searches over the
+        parameters of all curves, so that the time grows with the square of their number.
     **fields
-        Of the indenter and, if asked for by files, spring_constant and sensitivity; a list has a
+        Of the indenter and, if needed by files, spring_constant and sensitivity; a list has a
         value for each file: ``radius=["5 um", "20 um"]``.
 
     Raises
@@ -152,127 +178,127 @@ def fit_pooled(
     StorageError
         A folder cannot be read.
     """
-    options = {
-        "kernel": kernel,
-        "poissons_ratio": poissons_ratio,
-        "fix": fix,
-        "baseline": baseline,
-        "segment": segment,
-    }
-    return pool_sources(
-        gather(curves, segment, fields),
-        indenter,
-        options,
-        contact_points=contact_points,
+    config = FitConfig.merged(
+        config,
+        indenter=indenter,
+        kernel=kernel,
+        poissons_ratio=poissons_ratio,
+        fix=fix,
+        baseline=baseline,
+        segment=segment,
         cache=cache,
         executor=executor,
         grid_points=grid_points,
-        progress=progress,
+        pool=True,
+        contact_points=contact_points,
+        **fields,
     )
+    return pool_sources(config, config.sources(curves), progress=progress)
 
 
-def pool_sources(
-    sources: Sequence[Source],
-    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
-    options: Mapping[str, Any],
-    *,
-    contact_points: bool = False,
-    **study: Any,
-) -> PooledFit:
-    """Return the pooled fit of sources, asked as `fit_source` asks.
+def pool_sources(config: FitConfig, sources: Sequence[Source], *, progress: bool) -> PooledFit:
+    """Return the pooled fit of several curves.
 
     Raises
     ------
     PellicleError
         As for `fit_pooled`.
     """
-    if "contact_point" in (options["fix"] or {}):
+    if "contact_point" in config.fix:
         raise ConfigError(
             "is not shared, each curve has its own; leave it out", "fix.contact_point"
         )
     if len(sources) < 2:
         raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
-    every = []
-    for source, each in zip(sources, posed(sources, indenter, options), strict=True):
+    singles = []
+    for source, problem in zip(sources, problems(config, sources), strict=True):
         try:
-            if isinstance(each, PellicleError):
-                raise each
-            every.append(explain(each.modelled(**study)))
+            if isinstance(problem, PellicleError):
+                raise problem
+            problem = problem.simulated(config, progress=progress)
+            singles.append((problem, fit_single(problem.likelihood(), problem.fixed)))
         except ConfigError as error:
             raise source.named(error, "; leave it out") from None
-    with status(study.get("progress", False)) as report:
-        return _fitted(every, contact_points, report)
+    with status_line(progress) as report:
+        fit = _fit_pool(singles, config.contact_points, report)
+    return replace(fit, config=config)
 
 
-def _fitted(every: Sequence[Explained], contact_points: bool, report: Report) -> PooledFit:
+def _fit_pool(
+    singles: Sequence[tuple[FitProblem, SingleFit]],
+    contact_points: bool,
+    report: Callable[[str], None],
+) -> PooledFit:
     report("least squares")
-    pool = Pool.of([each.likelihood for each in every])
-    begun = begin(pool, every)
-    singles = [
-        alone(each, part) for each, part in zip(every, pool.parts(begun.parameters), strict=True)
+    pool = Pool.of([single.likelihood for _, single in singles])
+    start = pool.initial_minimum([single.parameters for _, single in singles])
+    own = [
+        best_minimum(single.likelihood, (single.parameters, part))
+        for (_, single), part in zip(singles, pool.parts(start.parameters), strict=True)
     ]
-    shared = [k for k in SHARED if k in pool.free]
-    degrees = len(shared) * (len(every) - 1)
-    spread = max(begun.chi_squared - sum(single.chi_squared for single in singles), 0.0)
-    factor = max(spread / degrees, 1.0) if chdtrc(degrees, spread) < _CHANCE else 1.0
-    rise = factor * allowed_rise(sum(each.freedom for each in every))
-    points = [pool.place(number, POINT) for number in range(len(every))]
-    wanted = [*shared, *(k for k in points if contact_points and k in pool.free)]
-    found = profiled(pool, begun, rise, wanted, partial(without_tension, pool), report)
-    modulus, tension = found.estimate(MODULUS, "Pa"), found.estimate(TENSION, "N/m")
+    shared = [p for p in pool.free if p.shared]
+    degrees = len(shared) * (len(singles) - 1)
+    excess = max(start.chi_squared - sum(minimum.chi_squared for minimum in own), 0.0)
+    factor = max(excess / degrees, 1.0) if chdtrc(degrees, excess) < _CHANCE else 1.0
+    threshold = factor * chi_squared_threshold(sum(single.freedom for _, single in singles))
+    points = [CONTACT_POINT.of_curve(index) for index in range(len(singles))]
+    wanted = [*shared, *(p for p in points if contact_points and p in pool.free)]
+    profile = profile_likelihood(pool, start, threshold, wanted, pool.without_tension, report)
+    modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = []
-    for number, part in enumerate(pool.parts(found.best.parameters)):
-        each, member, single = every[number], pool.members[number], singles[number]
-        point = found.estimate(points[number], "m")
+    for index, part in enumerate(pool.parts(profile.best.parameters)):
+        (problem, single), member, minimum = singles[index], pool.members[index], own[index]
+        point = profile.estimate(points[index])
         curves.append(
             PooledCurve(
-                name=each.posed.name,
-                model=described(member.indenter),
+                name=problem.name,
+                model=member.force_model.description(),
                 contact_point=point,
-                offset=float(part[OFFSET]),
-                slope=float(part[SLOPE]),
+                offset=part[OFFSET],
+                slope=part[SLOPE],
                 noise=member.noise,
                 points=member.force.size,
                 chi_squared=member.chi_squared(part),
-                chi_squared_alone=single.chi_squared,
-                reduced_modulus_alone=float(np.exp(single.parameters[MODULUS])),
-                tension_alone=float(single.parameters[TENSION]),
-                failed_checks=each.failed_checks,
+                chi_squared_alone=minimum.chi_squared,
+                reduced_modulus_alone=float(np.exp(minimum.parameters[MODULUS])),
+                tension_alone=minimum.parameters[TENSION],
+                failed_checks=single.failed_checks,
                 messages=(
-                    *each.messages,
-                    *(check.message for check in each.failed_checks),
-                    *plausible(each.posed, point.value, modulus.value, tension.value),
+                    *problem.curve.messages,
+                    *single.messages,
+                    *(check.message for check in single.failed_checks),
+                    *problem.check_plausible(point.value, modulus.value, tension.value),
                 ),
             )
         )
-    shapes = tuple(check_pooled_shape(pool, found.best))
+    shapes = tuple(check_pooled_shape(pool, profile.best))
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,
-        poissons_ratio=every[0].posed.asked.poissons_ratio,
-        chi_squared=found.best.chi_squared,
-        chi_squared_without_tension=found.without_tension.chi_squared,
+        poissons_ratio=singles[0][0].poissons_ratio,
+        chi_squared=profile.best.chi_squared,
+        chi_squared_without_tension=profile.without_tension.chi_squared,
         advice=_advice(modulus, tension),
         messages=(
             *(check.message for check in shapes),
-            *found.messages,
-            *_open(modulus, tension),
+            *profile.messages,
+            *_undecided(modulus, tension),
         ),
-        parameters=found.best.parameters,
-        parameters_without_tension=found.without_tension.parameters,
-        rise=rise,
+        parameters=profile.best.parameters,
+        parameters_without_tension=profile.without_tension.parameters,
+        rise=threshold,
         failed_checks=shapes,
-        doubt=_doubt(curves) or doubt(shapes),
+        doubt=_doubt(curves) or doubt_of_tension(shapes),
         curves=tuple(curves),
-        agreement=_agreement(curves, spread, degrees, factor),
+        agreement=_agreement(curves, excess, degrees, factor),
         agree=factor == 1,
         contact_points=contact_points,
         pool=pool,
     )
 
 
-def _agreement(curves: Sequence[PooledCurve], spread: float, degrees: int, factor: float) -> str:
-    figures = f"Δχ² = {spread:.3g} for {degrees} degrees of freedom"
+def _agreement(curves: Sequence[PooledCurve], excess: float, degrees: int, factor: float) -> str:
+    figures = f"Δχ² = {excess:.3g} for {degrees} degrees of freedom"
     if factor == 1:
         return f"the curves agree ({figures} against each on its own)"
     worst = max(curves, key=lambda curve: curve.chi_squared - curve.chi_squared_alone)
@@ -283,27 +309,27 @@ def _agreement(curves: Sequence[PooledCurve], spread: float, degrees: int, facto
 
 
 def _failures(curve: PooledCurve) -> list[FailedCheck]:
+    # The shape is judged for all curves together.
     return [check for check in curve.failed_checks if check.of_model and check.code != "shape"]
 
 
 def _doubt(curves: Sequence[PooledCurve]) -> str:
-    """Return why these curves are no evidence of a tension, if more of them fail than by chance."""
-    # The shape is judged for all curves together.
+    """Return why the curves are not evidence of a tension, if more fail a check than by chance."""
     failing = [curve for curve in curves if _failures(curve)]
     if not failing or bdtrc(len(failing) - 1, len(curves), _FAILING) > _RARE:
         return ""
     names = ", ".join(curve.name for curve in failing[:_NAMED])
     more = ", …" if len(failing) > _NAMED else ""
-    reason = doubt([check for curve in failing for check in _failures(curve)])
+    reason = doubt_of_tension([check for curve in failing for check in _failures(curve)])
     return f"{reason}; {len(failing)} of {len(curves)} curves fail it: {names}{more}"
 
 
 def _advice(modulus: Estimate, tension: Estimate) -> str:
-    """Return the bound of what was asked for."""
+    """Return the bounds of modulus and tension in words, if they are fitted."""
     bounds = [
-        f"± {percent(each.bound / each.value)} of the {name}"
-        for name, each in (("modulus", modulus), ("tension", tension))
-        if not each.held and each.value and np.isfinite(each.bound)
+        f"± {percent(estimate.bound / estimate.value)} of the {name}"
+        for name, estimate in (("modulus", modulus), ("tension", tension))
+        if not estimate.held and estimate.value and np.isfinite(estimate.bound)
     ]
     if not bounds:
         return ""
@@ -313,8 +339,8 @@ def _advice(modulus: Estimate, tension: Estimate) -> str:
     )
 
 
-def _open(modulus: Estimate, tension: Estimate) -> tuple[str, ...]:
-    """Say what an open interval means."""
+def _undecided(modulus: Estimate, tension: Estimate) -> tuple[str, ...]:
+    """Return what an open interval means, if one is open."""
     if modulus.held or tension.held:
         return ()
     if None not in (modulus.low, modulus.high, tension.high):

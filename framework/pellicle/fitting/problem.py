@@ -1,132 +1,149 @@
-"""What is asked of a curve: indenter, solid, and the parameters that are held."""
+"""A fit problem: one curve, the indenter and solid to fit to it, and the parameters that vary."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, Literal
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from pellicle.arrays import Array
-from pellicle.components import HasForceCurve, Indenter
-from pellicle.errors import ConfigError
-from pellicle.model.messages import nearest
-from pellicle.plugins import registry
-from pellicle.units import Quantity
+from pellicle.components import Component, HasForceCurve, Indenter
+from pellicle.errors import ConfigError, PellicleError
 
-from .curves.curve import LARGEST, Segment
-from .models.solid import DEFAULT_KERNEL, Solid, solid
-from .statistics.likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION
+from .config import FIXABLE, FitConfig
+from .curves.curve import Curve, clean
+from .curves.readers import Source
+from .models.force_model import CONTACT_POINT, OFFSET, SLOPE, Coordinates, tension_model
+from .models.simulation import simulate
+from .models.solid import Solid, lengths
+from .statistics.initial_guess import BEFORE
+from .statistics.likelihood import Likelihood
 
-Baseline = Literal["none", "offset", "slope"]
-
-_NAMES = {
-    "contact_point": (POINT, Quantity("m", at_least=-LARGEST, at_most=LARGEST)),
-    "reduced_modulus": (MODULUS, Quantity("Pa", at_least=1 / LARGEST, at_most=LARGEST)),
-    "tension": (TENSION, Quantity("N/m", at_least=0, at_most=LARGEST)),
-}
-_BASELINES: dict[str, tuple[int, ...]] = {
-    "none": (),
-    "offset": (OFFSET,),
-    "slope": (OFFSET, SLOPE),
-}
+_FIXED_BASELINE = {"none": (OFFSET, SLOPE), "offset": (SLOPE,), "slope": ()}
+_PLAUSIBLE_DEPTH = (1e-3, 1.0)
+"""Depth over radius."""
+_PLAUSIBLE_MODULUS = (1.0, 1e12)
+_PLAUSIBLE_TENSION = 10.0
 
 
 @dataclass(frozen=True)
-class Question:
-    """What is asked of a curve."""
+class FitProblem:
+    """A curve and the model to fit to it; it pickles to workers."""
 
-    indenter: Any
-    """It has a force curve, or is pressed into `material`."""
-    material: Solid | None
-    """What is to be simulated; None if nothing is."""
-    held: Array
-    """Parameters, in the order of `likelihood`; of the free ones, anything."""
-    free: tuple[int, ...]
-    segment: Segment
+    name: str
+    """File, and label in the file."""
+    curve: Curve
+    indenter: Indenter | HasForceCurve
+    solid: Solid | None
+    """The solid to simulate; None if the indenter has a force curve."""
+    fixed: Coordinates
+    """Parameters that are not fitted."""
     poissons_ratio: float | None
 
+    def simulated(self, config: FitConfig, *, progress: bool) -> FitProblem:
+        """Return the problem with an indenter that has a force curve, simulated if need be.
 
-def question(
-    indenter: str | Mapping[str, Any] | Indenter | HasForceCurve,
-    fields: Mapping[str, Any],
-    *,
-    is_depth: bool,
-    kernel: str | Mapping[str, Any] | None = None,
-    poissons_ratio: float | None = None,
-    fix: Mapping[str, Any] | None = None,
-    baseline: Baseline = "none",
-    segment: Segment = "approach",
-) -> Question:
-    """Return what the arguments of `fit` ask.
+        Raises
+        ------
+        ConfigError, ConvergenceError, StorageError
+            As for `simulate`.
+        """
+        if self.solid is None:
+            return self
+        position = self.curve.position
+        span = float(np.ptp(position))
+        point = self.fixed.get(CONTACT_POINT)
+        reach = (1 + BEFORE) * span if point is None else float(position[-1]) - point
+        # Where nothing reaches contact, the fit itself reports it.
+        curve = simulate(
+            self.indenter,  # type: ignore[arg-type]
+            self.solid,
+            reach if reach > 0 else span,
+            cache=config.cache,
+            executor=config.executor,
+            grid_points=config.grid_points,
+            progress=progress,
+        )
+        return replace(self, indenter=curve, solid=None)
+
+    def likelihood(self) -> Likelihood:
+        """Return the likelihood of the curve, with a noise as large as the largest force."""
+        position, force = self.curve.position, self.curve.force
+        model = tension_model(self.indenter)  # type: ignore[arg-type]
+        noise = float(np.max(np.abs(force)))
+        whole = Likelihood(position, force, model, noise, (), self.curve.stiffness)
+        return replace(whole, free=tuple(p for p in whole.parameters if p not in self.fixed))
+
+    def check_plausible(self, point: float, modulus: float, tension: float) -> list[str]:
+        """Return warnings of results that a wrong unit or radius would give.
+
+        Raises
+        ------
+        ConfigError
+            The depth is beyond that of the indenter's force curve.
+        """
+        messages = []
+        model: Any = tension_model(self.indenter)  # type: ignore[arg-type]
+        depth = float(self.curve.position[-1]) - point
+        shape = model.indenter
+        radius = next(iter(lengths(shape)), None) if isinstance(shape, Component) else None
+        if depth > model.depth_limit:
+            raise ConfigError(
+                f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at "
+                f"{model.depth_limit:.3g} m; is the radius right? If so, leave out the deepest "
+                "part",
+                "indenter",
+            )
+        if radius is not None and not _PLAUSIBLE_DEPTH[0] <= depth / radius <= _PLAUSIBLE_DEPTH[1]:
+            messages.append(
+                f"the depth of {depth:.3g} m is {depth / radius:.3g} times the radius of "
+                f"{radius:.3g} m: are radius and units right?"
+            )
+        if not _PLAUSIBLE_MODULUS[0] <= modulus <= _PLAUSIBLE_MODULUS[1]:
+            messages.append(f"a modulus of {modulus:.3g} Pa is not plausible: are the units right?")
+        if tension > _PLAUSIBLE_TENSION:
+            messages.append(
+                f"a tension of {tension:.3g} N/m is not plausible: are the units right?"
+            )
+        return messages
+
+
+def problems(config: FitConfig, sources: Sequence[Source]) -> list[FitProblem | PellicleError]:
+    """Return the problem of each source, or the error of its curve.
 
     Raises
     ------
     ConfigError, PluginError
-        One of them is not allowed.
+        The configuration does not allow a fit of one of the sources.
     """
-    shape = _indenter(indenter, fields)
-    ratio = _ratio(poissons_ratio)
-    if kernel is None and not isinstance(shape, HasForceCurve):
-        kernel = DEFAULT_KERNEL
-    material = None if kernel is None else solid(kernel, ratio)
-    if material is not None:
-        if not isinstance(shape, Indenter):
-            raise ConfigError("is given beside a force curve, which has one already", "kernel")
-        ratio = material.poissons_ratio
-    held = _held(fix or {}, is_depth)
-    free = tuple(k for k in range(3) if k not in held)
-    if segment not in ("approach", "retract"):
-        raise ConfigError(f"{segment!r} is not allowed; give approach or retract", "segment")
-    if baseline not in _BASELINES:
-        raise ConfigError(
-            f"{baseline!r} is not allowed; {nearest(baseline, _BASELINES)}", "baseline"
-        )
-    if not {MODULUS, TENSION} & set(free):
-        raise ConfigError("holds both modulus and tension; leave one of them to the fit", "fix")
-    values = np.zeros(5)
-    for k, value in held.items():
-        values[k] = value
-    free += _BASELINES[baseline]
-    return Question(shape, material, values, free, segment, ratio)
-
-
-def _indenter(
-    given: str | Mapping[str, Any] | Indenter | HasForceCurve, fields: Mapping[str, Any]
-) -> Any:
-    if isinstance(given, str):
-        given = {"type": given, **fields}
-    elif isinstance(given, Mapping):
-        given = {**given, **fields}
-    elif fields:
-        raise ConfigError(f"{', '.join(fields)} given beside an indenter that is complete")
-    if isinstance(given, HasForceCurve):
-        return given
-    try:
-        return registry().make(Indenter, given)
-    except ConfigError as error:
-        raise error.within("indenter") from None
-
-
-def _held(fix: Mapping[str, Any], is_depth: bool) -> dict[int, float]:
-    held: dict[int, float] = {POINT: 0.0} if is_depth else {}
-    for name, value in fix.items():
-        if name not in _NAMES:
-            raise ConfigError(f"is no parameter; {nearest(name, _NAMES)}", f"fix.{name}")
-        which, quantity = _NAMES[name]
+    results: list[FitProblem | PellicleError] = []
+    for source in sources:
+        if isinstance(source.curve, PellicleError):
+            results.append(source.curve)
+            continue
         try:
-            number = quantity(value)
-        except ValueError as error:
-            raise ConfigError(str(error), f"fix.{name}") from None
-        held[which] = float(np.log(number)) if which == MODULUS else number
-    return held
+            problem = _problem(config, source, source.curve)
+        except ConfigError as error:
+            raise error if len(sources) == 1 else source.named(error) from None
+        try:
+            results.append(replace(problem, curve=clean(source.curve, config.segment)))
+        except ConfigError as error:
+            results.append(error)
+    return results
 
 
-def _ratio(given: float | None) -> float | None:
-    if given is None:
-        return None
-    try:
-        return Quantity("1", above=-1, at_most=0.5)(given)
-    except ValueError as error:
-        raise ConfigError(str(error), "poissons_ratio") from None
+def _problem(config: FitConfig, source: Source, curve: Curve) -> FitProblem:
+    indenter = config.indenter_with(source.fields)
+    solid = config.solid_under(indenter)
+    fixed: Coordinates = {CONTACT_POINT: 0.0} if curve.is_depth else {}
+    fixed |= {FIXABLE[name]: FIXABLE[name].coordinate(value) for name, value in config.fix.items()}
+    fixed |= dict.fromkeys(_FIXED_BASELINE[config.baseline], 0.0)
+    return FitProblem(
+        source.name,
+        curve,
+        indenter,
+        solid,
+        fixed,
+        config.poissons_ratio if solid is None else solid.poissons_ratio,
+    )

@@ -1,33 +1,35 @@
-"""What a fit of one curve and one of several both answer, and how it is written."""
+"""What the fit of one curve and the pooled fit of several have in common."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import json
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
 
-from pellicle.arrays import Array
+from pellicle.files import atomic_write
 
-from .statistics.estimate import Estimate
-from .statistics.interval import CONFIDENCE
-from .statistics.residuals import FailedCheck
-from .written import as_json, write_json
+from .config import FitConfig
+from .models.force_model import Coordinates
+from .statistics.noise import FailedCheck
+from .statistics.profile import CONFIDENCE, Estimate
 
 
-def doubt(failed: Sequence[FailedCheck]) -> str:
-    """Return why checks that fail leave no evidence of a tension; empty if they leave it."""
+def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:
+    """Return why failed checks leave no evidence of a tension; empty if they leave it."""
     codes = list(dict.fromkeys(check.code for check in failed if check.of_model))
     if not codes:
         return ""
     if "adhesion" in codes:
         return "no tension is needed where the force dips before contact: that is adhesion"
-    what = "a check" if len(codes) == 1 else "checks"
-    return f"this shows none, because the model fails {what} ({', '.join(codes)})"
+    checks = "a check" if len(codes) == 1 else "checks"
+    return f"this shows none, because the model fails {checks} ({', '.join(codes)})"
 
 
 @dataclass(frozen=True)
-class Answer:
+class FitResult:
     """Modulus and tension, and how well they explain what was measured."""
 
     _does: ClassVar[str] = "this curve does"
@@ -35,7 +37,7 @@ class Answer:
         "one curve of a solid that relaxes, softens with depth or adheres can look the same: a "
         "second speed or a dwell, a second radius, and the retract would tell"
     )
-    """What a tension can be mistaken for, and which measurement tells."""
+    """What a tension can be mistaken for, and which measurement tells them apart."""
 
     reduced_modulus: Estimate
     """E* [Pa]."""
@@ -46,22 +48,24 @@ class Answer:
     chi_squared: float
     """Least sum of squared residuals over the noise."""
     chi_squared_without_tension: float
-    """The same with tension held at 0."""
+    """The same with the tension fixed at 0."""
     advice: str
-    """The bound that was reached, and what would tighten it."""
+    """The Cramér–Rao bound, and the experiment that would tighten it."""
     messages: tuple[str, ...]
-    """What to be careful of."""
-    parameters: Array
-    """Parameters of the fit, in the order of its likelihood."""
-    parameters_without_tension: Array
-    """The same with tension held at 0 (Hertz, for a paraboloid)."""
+    """Warnings."""
+    parameters: Coordinates
+    """Best coordinates: a value for each `Parameter`, of the modulus its natural logarithm."""
+    parameters_without_tension: Coordinates
+    """The same with the tension fixed at 0 (Hertz, for a paraboloid)."""
     rise: float
     """Rise of χ² at the ends of the intervals."""
     failed_checks: tuple[FailedCheck, ...]
-    """What the residuals show besides noise; the messages say it too."""
+    """Checks that the residuals fail; their sentences are among the messages."""
     doubt: str
-    """Why a tension that fits better than none is not shown by this; empty if nothing speaks
-    against it."""
+    """Why a tension that fits better than none is not shown by this; empty if there is no reason
+    to doubt it."""
+    config: FitConfig | None = field(default=None, kw_only=True)
+    """The configuration that was fitted with."""
 
     @property
     def youngs_modulus(self) -> Estimate | None:
@@ -71,7 +75,7 @@ class Answer:
 
     @property
     def tension_needed(self) -> bool:
-        """Whether no value of the tension down to 0 does as well, and no check speaks against."""
+        """Whether 0 lies outside the interval of the tension, and no check of the model fails."""
         tension = self.tension
         return not tension.held and tension.low is not None and not self.doubt
 
@@ -81,9 +85,9 @@ class Answer:
         tension, gain = self.tension, self._gain
         figures = f"Δχ² = {gain:.3g}, ΔAIC = {gain - 2:.3g}"
         if tension.held and not tension.value:
-            return "tension is held at 0, so whether it is needed was not asked"
+            return "tension is fixed at 0, so whether it is needed was not tested"
         if tension.held:
-            return f"tension is held at {tension.value:.4g} N/m ({figures} against none)"
+            return f"tension is fixed at {tension.value:.4g} N/m ({figures} against none)"
         if tension.low is not None and self.doubt:
             return f"tension fits better than none ({figures}), but {self.doubt}"
         if tension.low is not None:
@@ -95,22 +99,36 @@ class Answer:
 
     @property
     def _gain(self) -> float:
-        """By how much tension lowers χ²."""
+        """Decrease of χ² by the tension."""
         return self.chi_squared_without_tension - self.chi_squared
 
+    @property
+    def sentences(self) -> list[str]:
+        """The verdicts of the fit in words."""
+        return list(filter(None, [self.comparison, self.advice]))
+
+    @property
+    def notes(self) -> list[str]:
+        """All warnings, those of single curves with their names."""
+        return list(self.messages)
+
     def estimates(self) -> dict[str, Estimate]:
-        """Return the parameters by name; a baseline and Young's modulus only if asked for."""
-        found = {
+        """Return the parameters by name; baseline and Young's modulus only if requested."""
+        estimates = {
             name: value
             for name, value in vars(self).items()
             if isinstance(value, Estimate) and not (value.held and name in ("offset", "slope"))
         }
         youngs = self.youngs_modulus
-        return found if youngs is None else found | {"youngs_modulus": youngs}
+        return estimates if youngs is None else estimates | {"youngs_modulus": youngs}
+
+    def curve_rows(self) -> list[dict[str, str]]:
+        """Return a line of a table for each curve of a pool; none for a single curve."""
+        return []
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what JSON can hold."""
-        return {name: value.to_dict() for name, value in self.estimates().items()} | {
+        """Return the fit as JSON data."""
+        result = {name: value.to_dict() for name, value in self.estimates().items()} | {
             "confidence": CONFIDENCE,
             "chi_squared": self.chi_squared,
             "without_tension": {"delta_chi_squared": self._gain, "delta_aic": self._gain - 2},
@@ -120,13 +138,16 @@ class Answer:
             "failed_checks": [check.to_dict() for check in self.failed_checks],
             "messages": list(self.messages),
         }
+        if self.config is not None:
+            result["configuration"] = self.config.to_dict()
+        return result
 
     def to_json(self) -> str:
         """Return what `to_dict` returns as JSON."""
         return as_json(self.to_dict())
 
     def save(self, path: str | Path) -> Path:
-        """Write what `to_dict` returns to a JSON file, and return its name.
+        """Write what `to_dict` returns to a JSON file, and return its path.
 
         Raises
         ------
@@ -134,3 +155,39 @@ class Answer:
             The file cannot be written.
         """
         return write_json(self.to_dict(), Path(path))
+
+
+def interval_text(low: float | None, high: float | None) -> str:
+    """Return an interval as text, an open end as "open"."""
+    return " to ".join("open" if end is None else f"{end:.4g}" for end in (low, high))
+
+
+def as_json(value: object) -> str:
+    """Return JSON that is indented for people."""
+    return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+
+
+def write_json(value: object, path: Path) -> Path:
+    """Write ``value`` to a JSON file, which replaces an old one, and return its path.
+
+    Raises
+    ------
+    StorageError
+        The file cannot be written.
+    """
+    with atomic_write(path) as part:
+        part.write_text(as_json(value), encoding="utf-8")
+    return path
+
+
+@contextmanager
+def status_line(enabled: bool) -> Iterator[Callable[[str], None]]:
+    """Show on a terminal what a fit is doing; yield a function that takes it in words."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if not (enabled and console.is_terminal):
+        yield lambda words: None
+        return
+    with console.status("fitting") as line:
+        yield lambda words: line.update(f"fitting: {words}")

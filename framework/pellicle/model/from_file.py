@@ -106,7 +106,17 @@ def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
     ConfigError
         The file cannot be read, or an override cannot be applied.
     """
-    data = read_toml(Path(path))
+    return overridden(read_toml(Path(path)), overrides)
+
+
+def overridden(data: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
+    """Return a configuration with the values that texts such as ``"a.b=1"`` replace.
+
+    Raises
+    ------
+    ConfigError
+        An override cannot be applied.
+    """
     for text in overrides:
         key, value = parse_override(text)
         try:

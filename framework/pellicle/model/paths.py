@@ -1,50 +1,90 @@
-"""Values of nested models by their dotted path."""
+"""Values in nested models, tables and lists by their dotted path.
+
+Entries of lists count from 0, as in ``grid.size.0``; a key of a table may itself have dots.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
+
+from pydantic.fields import FieldInfo
 
 from pellicle.errors import ConfigError, shown
 
 from .base import Model
 
 
-def replaced(data: Any, key: str, value: object) -> Any:
-    """Return a copy of a configuration with ``value`` where the dotted ``key`` leads.
+def get(at: Any, path: str) -> Any:
+    """Return the value at a path, None where there is none."""
+    names = path.split(".")
+    while names and at is not None:
+        name, names = _head(at, names)
+        if isinstance(at, Mapping):
+            at = at.get(name)
+        elif isinstance(at, (list, tuple)):
+            at = at[int(name)] if name.isdecimal() and int(name) < len(at) else None
+        else:
+            at = getattr(at, name, None) if isinstance(at, Model) else None
+    return at
 
-    Tables that are not there are made; entries of lists count from 0; a key of a table may itself
-    have dots.
+
+def walk(
+    at: Any, path: str = "", field: FieldInfo | None = None
+) -> Iterator[tuple[str, Any, FieldInfo | None]]:
+    """Yield path, value and field of each value below ``at``, outer ones before inner ones.
+
+    Entries of a list have the field of the list; those of a table have none.
+    """
+    inner: list[tuple[str, Any, FieldInfo | None]]
+    if isinstance(at, Model):
+        fields = type(at).model_fields.items()
+        inner = [(name, getattr(at, name), info) for name, info in fields]
+    elif isinstance(at, Mapping):
+        inner = [(str(name), value, None) for name, value in at.items()]
+    elif isinstance(at, (list, tuple)):
+        inner = [(str(index), value, field) for index, value in enumerate(at)]
+    else:
+        return
+    for name, value, info in inner:
+        yield f"{path}{name}", value, info
+        yield from walk(value, f"{path}{name}.", info)
+
+
+def replaced(data: Any, path: str, value: object) -> Any:
+    """Return a copy of a configuration with ``value`` at a path; missing tables are made.
+
+    Of a model, the copy is a table of the fields that were set.
 
     Raises
     ------
     ConfigError
-        It leads into what is no table.
+        The path leads into a value that is not a table, or beyond the end of a list.
     """
-    return _replaced(data, key.split("."), value, "")
+    return _replaced(data, path.split("."), value, "")
 
 
-def _replaced(at: Any, names: list[str], value: object, where: str) -> Any:
+def _replaced(at: Any, names: list[str], value: object, path: str) -> Any:
     if not names:
         return value
     if isinstance(at, Model):
-        at = {name: getattr(at, name) for name in type(at).model_fields if _is_said(at, name)}
+        set_ = at.model_fields_set | {"type"}
+        at = {name: getattr(at, name) for name in type(at).model_fields if name in set_}
+    name, rest = _head(at, names)
     if isinstance(at, Mapping):
-        count = next((n for n in range(len(names), 1, -1) if ".".join(names[:n]) in at), 1)
-        name = ".".join(names[:count])
-        inner = _replaced(at.get(name, {}), names[count:], value, f"{where}{name}.")
-        return {**at, name: inner}
-    place = where.removesuffix(".")
+        return {**at, name: _replaced(at.get(name, {}), rest, value, f"{path}{name}.")}
+    whole = path.removesuffix(".")
     if not isinstance(at, (list, tuple)):
-        raise ConfigError(f"{place} = {shown(at)} is not a table; replace it as a whole: {place}")
-    if not names[0].isdecimal() or int(names[0]) >= len(at):
-        raise ConfigError(
-            f"{place} has no entry {names[0]}; give one of its {len(at)}, counted from 0"
-        )
-    index = int(names[0])
-    inner = _replaced(at[index], names[1:], value, f"{where}{index}.")
+        raise ConfigError(f"{whole} = {shown(at)} is not a table; replace it as a whole: {whole}")
+    if not name.isdecimal() or int(name) >= len(at):
+        raise ConfigError(f"{whole} has no entry {name}; give one of its {len(at)}, counted from 0")
+    index = int(name)
+    inner = _replaced(at[index], rest, value, f"{path}{index}.")
     return [*at[:index], inner, *at[index + 1 :]]
 
 
-def _is_said(model: Model, name: str) -> bool:
-    return name == "type" or name in model.model_fields_set
+def _head(at: Any, names: list[str]) -> tuple[str, list[str]]:
+    """Return the first name of a path in ``at``, as long as a key of a table is, and the rest."""
+    lengths = range(len(names), 1, -1) if isinstance(at, Mapping) else ()
+    count = next((n for n in lengths if ".".join(names[:n]) in at), 1)
+    return ".".join(names[:count]), names[count:]

@@ -10,6 +10,8 @@ from pellicle.errors import ConfigError, Problem, shown
 from pellicle.units import Quantity, ramp, split
 
 Values = tuple[Any, ...]
+Axes = Mapping[str, Values]
+"""Values of several axes by their dotted key."""
 RANGE = {"start", "stop", "num"}
 _MOST = 1_000_000
 SPACINGS = ("linear", "log")

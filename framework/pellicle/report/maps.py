@@ -13,8 +13,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.grid import Grid
-
-from .plotting import axis_unit
+from pellicle.units import axis_unit
 
 _NOTHING = 0xFFFF
 _PIXELS = 3_000_000

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
@@ -18,6 +17,7 @@ from pellicle.components import Solver
 from pellicle.files import for_document, storage_errors
 from pellicle.numerics.problem import height_scale
 from pellicle.results.result import Result
+from pellicle.units import axis_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,28 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MOST_NAMED = 10
-_PREFIXABLE = re.compile(r"[^\W\d_]+(?:/.*|\*(?!\*).*)?")
-_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f"}
-
-
-def axis_unit(values: Array, unit: str) -> tuple[float, str]:
-    """Return the factor and the name that bring ``values`` (in ``unit``) near 1 … 1000.
-
-    A unit that begins with a power, as m⁴ does, takes no prefix: the power would be of it too. Only
-    areas do, whose prefix is chosen so.
-    """
-    finite = np.abs(np.asarray(values)[np.isfinite(values)])
-    highest = float(finite.max(initial=0.0))
-    if unit in ("m2", "m**2"):
-        # The prefix of a square counts twice: 1 mm² is 1e-6 m²; down to 0.01 mm² reads well.
-        exponent = 3 * int(np.floor(np.log10(10 * np.sqrt(highest)) / 3)) if highest else 0
-        exponent = min(max(exponent, -15), 0)
-        return 10.0 ** (-2 * exponent), f"{_PREFIXES[exponent]}m²"
-    if not _PREFIXABLE.fullmatch(unit):
-        return 1.0, unit
-    exponent = 3 * int(np.floor(np.log10(highest) / 3)) if highest else 0
-    exponent = min(max(exponent, -15), 9)
-    return 10.0**-exponent, f"{_PREFIXES[exponent]}{unit}"
 
 
 def without_round_off(step: xr.Dataset) -> xr.Dataset:
@@ -287,8 +265,7 @@ def _each(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Data
 
 
 def _unit_near_one(values: xr.DataArray) -> tuple[float, str]:
-    unit = values.attrs.get("units", "1")
-    return axis_unit(values.values, unit) if unit != "1" else (1.0, "")
+    return axis_unit(values.values, values.attrs.get("units", "1"))
 
 
 def _label(part: xr.Dataset, name: str) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 
 from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.model.expression import evaluate, names_in
+from pellicle.model.paths import walk
 
 from . import storage
 from .variables import FIELDS
@@ -68,20 +69,12 @@ def derive(table: xr.Dataset, expressions: Mapping[str, str]) -> xr.Dataset:
     return table
 
 
-def constants(configuration: object, path: str = "") -> dict[str, float]:
-    """Return the numbers of a configuration by their dotted path; entries of lists count from 0."""
-    if isinstance(configuration, Mapping):
-        inner: Iterator[tuple[Any, Any]] = iter(configuration.items())
-    elif isinstance(configuration, list):
-        inner = enumerate(configuration)
-    elif isinstance(configuration, (int, float)) and not isinstance(configuration, bool):
-        return {path: float(configuration)}
-    else:
-        return {}
+def constants(configuration: object) -> dict[str, float]:
+    """Return the numbers of a configuration by their dotted path."""
     return {
-        name: number
-        for key, value in inner
-        for name, number in constants(value, f"{path}.{key}" if path else str(key)).items()
+        path: float(value)
+        for path, value, _ in walk(configuration)
+        if isinstance(value, (int, float)) and not isinstance(value, bool)
     }
 
 

@@ -170,7 +170,7 @@ def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[Run
         identity = point.run.identity
         configuration = point.run.to_json(as_given=True)
         place = Place(directory / "runs", identity[:16], configuration, identity, overwrite)
-        made.append(RunTask(point.name, point.run, place, point.place, _by_run(named)))
+        made.append(RunTask(point.name, point.run, place, point.position, _by_run(named)))
     return made
 
 

@@ -34,15 +34,15 @@ class Table:
             "axes": json.dumps({name: list(axes) for name, axes in study.dimensions.items()}),
             **now_with(point.run for point in study.points),
         }
-        steps = {point.place: len(point.run.loading.values) for point in study.points}
+        steps = {point.position: len(point.run.loading.values) for point in study.points}
         shape = *study.shape, max(steps.values())
         self._texts = {name: np.full(shape, "", dtype=object) for name in _TEXTS}
         self._runs = np.full(study.shape, "", dtype=object)
         for point in study.points:
-            count = steps[point.place]
-            self._texts["status"][point.place][:count] = Status.NOT_RUN.value
-            self._texts["status_code"][point.place][:count] = Status.NOT_RUN.name
-            self._runs[point.place] = point.run.identity[:16]
+            count = steps[point.position]
+            self._texts["status"][point.position][:count] = Status.NOT_RUN.value
+            self._texts["status_code"][point.position][:count] = Status.NOT_RUN.name
+            self._runs[point.position] = point.run.identity[:16]
         self._numbers: dict[str, np.ndarray[Any, np.dtype[Any]]] = {}
         self._said: dict[str, dict[str, str]] = {}
 

@@ -1,7 +1,7 @@
 """Contact of a rigid axisymmetric indenter with a half-space under surface tension.
 
-The equation and its solution are in ``axisymmetric_equation``; here two mesh levels
-are compared, and contact radius, depth or force may be the quantity given.
+The equation and its solution are in ``axisymmetric_equation``. Here two mesh levels are compared,
+and the contact radius is found for a depth or a force.
 """
 
 from __future__ import annotations
@@ -14,14 +14,9 @@ from numpy.typing import ArrayLike
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, ConvergenceError
 
-from .axisymmetric_equation import (
-    LEVELS,
-    Solution,
-    solve,
-    without_negligible,
-)
-from .axisymmetric_indenters import Indenter, classical_radius
-from .checks import exactly_one, not_negative, positive
+from .abel_transform import HasAbelTransform
+from .axisymmetric_equation import LEVELS, Solution, solve, without_negligible
+from .checks import given, not_negative, positive
 
 TOLERANCE = 1e-10
 EDGE_TOLERANCE = 1e-6
@@ -59,7 +54,7 @@ class AxisymmetricContact:
 
 
 def _contact(
-    indenter: Indenter, reduced_modulus: float, tension: float, a: float
+    indenter: HasAbelTransform, reduced_modulus: float, tension: float, a: float
 ) -> AxisymmetricContact:
     ratio = without_negligible(2 * tension / reduced_modulus / a)
     change = np.array([np.inf])
@@ -89,7 +84,7 @@ def _contact(
 
 
 def indent(
-    indenter: Indenter,
+    indenter: HasAbelTransform,
     reduced_modulus: float,
     tension: float,
     *,
@@ -97,12 +92,12 @@ def indent(
     depth: float | None = None,
     force: float | None = None,
 ) -> AxisymmetricContact:
-    """Return the contact of a rigid axisymmetric indenter, one quantity being given.
+    """Return the contact of a rigid axisymmetric indenter for one given quantity.
 
     Parameters
     ----------
     indenter
-        ``Paraboloid``, ``Sphere``, ``Cone`` or anything else with their methods.
+        A paraboloid, sphere or cone component, or anything else that `HasAbelTransform`.
     reduced_modulus
         E* = E / (1 − ν²) [Pa].
     tension
@@ -118,43 +113,42 @@ def indent(
     """
     positive(reduced_modulus=reduced_modulus)
     not_negative(tension=tension)
-    exactly_one(contact_radius=contact_radius, depth=depth, force=force)
-    if contact_radius is not None:
-        positive(contact_radius=contact_radius)
-        a = contact_radius
-    elif depth is not None:
-        positive(depth=depth)
-        a = _radius(indenter, 2 * tension / reduced_modulus, 1, depth)
+    quantity, value = given(contact_radius=contact_radius, depth=depth, force=force)
+    positive(**{quantity: value})
+    limit = indenter.contact_radius_limit
+    if quantity == "contact_radius":
+        a = value
+        if a >= limit:
+            raise ConfigError(f"contact radius {a} m must be less than {limit} m", quantity)
     else:
-        assert force is not None
-        positive(force=force)
-        a = _radius(indenter, 2 * tension / reduced_modulus, 0, force / reduced_modulus)
-    if a >= indenter.limit:
-        raise ConfigError(
-            f"contact radius {a} m must be less than {indenter.limit} m", "contact_radius"
-        )
+        target = value if quantity == "depth" else value / reduced_modulus
+        a = _radius(indenter, 2 * tension / reduced_modulus, quantity, target)
     return _contact(indenter, reduced_modulus, tension, a)
 
 
-def _radius(indenter: Indenter, s: float, quantity: int, target: float) -> float:
-    """Return the contact radius of a force over E* (quantity 0) or depth (1)."""
+def _radius(indenter: HasAbelTransform, s: float, quantity: str, target: float) -> float:
+    """Return the contact radius [m] for a depth [m], or for a force over E* [m²]."""
+    is_depth, limit = quantity == "depth", indenter.contact_radius_limit
 
-    def excess(log_a: float) -> float:
+    def excess(log_a: float, s: float = s) -> float:
         a = float(np.exp(log_a))
-        moment = solve(indenter, a, without_negligible(s / a), 0).moments()[quantity]
-        return float(np.log(moment * a ** (2 - quantity) / target))
+        moment = solve(indenter, a, without_negligible(s / a), 0).moments()[is_depth]
+        return float(np.log(moment * a ** (2 - is_depth) / target))
 
-    # Tension adds to force and depth, so the radius without it is an upper bound.
-    high = np.log(classical_radius(indenter, quantity, target))
-    above = excess(high)
-    if above <= 0:
+    # Tension adds to force and depth, so a radius large enough without it is an upper bound.
+    high = min(limit / 2, target if is_depth else target**0.5)
+    while excess(np.log(high), 0.0) < 0:
+        high = min(2 * high, (high + limit) / 2)
+        if high > limit * (1 - 1e-9):
+            raise ConfigError(
+                f"needs a contact wider than {limit} m, the end of the profile", quantity
+            )
+    low = high = np.log(high)
+    while (above := excess(low)) > 0:
+        high, low = low, low - max(above / 2, 0.1)
+    if low == high:
         return float(np.exp(high))
-    low = high
-    below = above
-    while below > 0:
-        high, low = low, low - max(below / 2, 0.1)
-        below = excess(low)
-    # Here, not above: outputs load this module, and draw without it.
+    # Imported here because outputs import this module, and most draw without it.
     from scipy.optimize import brentq
 
     return float(np.exp(brentq(excess, low, high, xtol=1e-14, rtol=1e-14)))

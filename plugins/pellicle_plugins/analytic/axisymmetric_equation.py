@@ -19,7 +19,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 
-from .axisymmetric_indenters import Indenter
+from .abel_transform import HasAbelTransform
 from .panels import Panel, Points, graded, joined, points_at
 from .product_integration import clustering, collocation, weights
 from .tension_kernel import auxiliary_g, primitive
@@ -75,7 +75,7 @@ class Solution:
         return out
 
 
-def solve(indenter: Indenter, a: float, ratio: float, level: int) -> Solution:
+def solve(indenter: HasAbelTransform, a: float, ratio: float, level: int) -> Solution:
     """Solve for a contact radius a [m], s/a = ratio (zero included), on a mesh level."""
     order, finest = LEVELS[level]
     # Under tension a corner at the apex makes χ ~ 1/t; a smooth apex has χ ~ t.
@@ -83,7 +83,7 @@ def solve(indenter: Indenter, a: float, ratio: float, level: int) -> Solution:
     layer = min(1.0, ratio) if ratio else 1.0
     panels = graded(order, finest * np.sqrt(layer), finest * layer if indenter.pointed else 1.0)
     nodes = joined(panels)
-    slope = indenter.slope(a * nodes.t)
+    slope = indenter.abel_slope(a * nodes.t)
     if not ratio:
         y: Array = slope / np.pi * np.sin(nodes.eta) / nodes.t**power
     else:

@@ -21,9 +21,16 @@ def not_negative(**values: float) -> None:
             raise ConfigError(f"must be finite and not negative, got {value!r}", name)
 
 
-def exactly_one(**values: float | None) -> str:
-    """Return the name of the only value given, and raise unless there is one."""
-    given = [name for name, value in values.items() if value is not None]
-    if len(given) != 1:
-        raise ConfigError(f"give exactly one of {', '.join(values)}; got {given or 'none'}")
-    return given[0]
+def given(**values: float | None) -> tuple[str, float]:
+    """Return name and value of the one value that is not None.
+
+    Raises
+    ------
+    ConfigError
+        There is not exactly one, or it is negative or not finite.
+    """
+    present = {name: value for name, value in values.items() if value is not None}
+    if len(present) != 1:
+        raise ConfigError(f"give exactly one of {', '.join(values)}; got {list(present) or 'none'}")
+    not_negative(**present)
+    return present.popitem()

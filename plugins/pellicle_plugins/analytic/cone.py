@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 
-from .checks import exactly_one, not_negative, positive
+from .checks import given, positive
 
 
 @dataclass(frozen=True)
@@ -59,18 +59,14 @@ def cone(
     positive(reduced_modulus=reduced_modulus)
     if not 0 < half_angle < np.pi / 2:
         raise ConfigError(f"must lie between 0 and π/2 rad, got {half_angle!r}", "half_angle")
-    exactly_one(depth=depth, force=force, contact_radius=contact_radius)
     rate = np.pi / 2 / float(np.tan(half_angle))
-    if depth is not None:
-        not_negative(depth=depth)
-        a = depth / rate
-    elif force is not None:
-        not_negative(force=force)
-        a = float(np.sqrt(force / (reduced_modulus * rate)))
-    else:
-        assert contact_radius is not None
-        not_negative(contact_radius=contact_radius)
-        a = contact_radius
+    match given(depth=depth, force=force, contact_radius=contact_radius):
+        case "depth", value:
+            a = value / rate
+        case "force", value:
+            a = float(np.sqrt(value / (reduced_modulus * rate)))
+        case _, a:
+            pass
     return ConeContact(
         contact_radius=a,
         depth=rate * a,

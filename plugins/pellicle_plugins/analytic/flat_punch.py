@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 
-from .checks import exactly_one, not_negative, positive
+from .checks import given, positive
 
 
 @dataclass(frozen=True)
@@ -55,11 +55,7 @@ def flat_punch(
         δ [m] or F [N].
     """
     positive(radius=radius, reduced_modulus=reduced_modulus)
-    exactly_one(depth=depth, force=force)
+    quantity, value = given(depth=depth, force=force)
     stiffness = 2 * reduced_modulus * radius
-    if depth is None:
-        assert force is not None
-        not_negative(force=force)
-        depth = force / stiffness
-    not_negative(depth=depth)
+    depth = value if quantity == "depth" else value / stiffness
     return FlatPunchContact(contact_radius=radius, depth=depth, force=stiffness * depth)

@@ -15,7 +15,7 @@ from scipy.special import elliprd, elliprf
 
 from pellicle.arrays import Array
 
-from .checks import exactly_one, not_negative, positive
+from .checks import given, positive
 
 
 @dataclass(frozen=True)
@@ -62,17 +62,13 @@ def sphere(
         δ [m], F [N] or a [m].
     """
     positive(radius=radius, reduced_modulus=reduced_modulus)
-    exactly_one(depth=depth, force=force, contact_radius=contact_radius)
-    if depth is not None:
-        not_negative(depth=depth)
-        a = float(np.sqrt(radius * depth))
-    elif force is not None:
-        not_negative(force=force)
-        a = float(np.cbrt(3 * force * radius / (4 * reduced_modulus)))
-    else:
-        assert contact_radius is not None
-        not_negative(contact_radius=contact_radius)
-        a = contact_radius
+    match given(depth=depth, force=force, contact_radius=contact_radius):
+        case "depth", value:
+            a = float(np.sqrt(radius * value))
+        case "force", value:
+            a = float(np.cbrt(3 * value * radius / (4 * reduced_modulus)))
+        case _, a:
+            pass
     return HertzContact(
         semi_x=a,
         semi_y=a,
@@ -126,18 +122,15 @@ def ellipse(
     F = π E* a³ / (3 R D) and p₀ = 3F / (2π a b) (from Johnson 1985, section 4.2).
     """
     positive(radius_x=radius_x, radius_y=radius_y, reduced_modulus=reduced_modulus)
-    exactly_one(depth=depth, force=force)
+    quantity, value = given(depth=depth, force=force)
     larger, smaller = max(radius_x, radius_y), min(radius_x, radius_y)
     aspect = aspect_ratio(smaller / larger)
     d = float(elliprd(0, aspect**2, 1)) / 3
     k = float(elliprf(0, aspect**2, 1))
-    if depth is not None:
-        not_negative(depth=depth)
-        major = float(np.sqrt(2 * larger * d * depth / k))
+    if quantity == "depth":
+        major = float(np.sqrt(2 * larger * d * value / k))
     else:
-        assert force is not None
-        not_negative(force=force)
-        major = float(np.cbrt(3 * force * larger * d / (np.pi * reduced_modulus)))
+        major = float(np.cbrt(3 * value * larger * d / (np.pi * reduced_modulus)))
     minor = aspect * major
     return HertzContact(
         semi_x=major if radius_x >= radius_y else minor,

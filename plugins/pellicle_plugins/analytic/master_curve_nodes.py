@@ -13,15 +13,13 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.optimize import newton
 
+from pellicle_plugins.indenters.cone import Cone
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.sphere import Sphere
+
+from .abel_transform import HasAbelTransform
 from .axisymmetric import indent
 from .axisymmetric_equation import solve
-from .axisymmetric_indenters import (
-    Cone,
-    Indenter,
-    Paraboloid,
-    Sphere,
-    classical_radius,
-)
 from .master_curves import FILE, SCALE, one_variable
 from .tensed_punch import punch
 
@@ -33,8 +31,10 @@ _SPHERE_DEPTHS = (chebyshev.chebpts1(9) + 1) / 2
 """δ / R."""
 
 
-def _scaled(indenter: Indenter, exponent: float, classical: float) -> dict[str, list[float]]:
-    """Return x = s / δ^(1/exponent…) and log(P / P classical) of a profile of one power."""
+def _scaled(
+    indenter: HasAbelTransform, exponent: float, classical: float
+) -> dict[str, list[float]]:
+    """Return x = s/δ^(1/exponent) and log(P/P₀), P₀ = classical · δ^(1 + 1/exponent)."""
     xs, logs = [0.0], [0.0]
     for length in _LENGTHS[1:]:
         contact = indent(indenter, 1.0, length / 2, contact_radius=1.0)
@@ -51,10 +51,10 @@ def _flat_punch() -> dict[str, list[float]]:
 def _sphere(paraboloid: dict[str, list[float]]) -> dict[str, list[float] | list[list[float]]]:
     """Return Chebyshev coefficients in δ/R of log(P sphere / P paraboloid) / (δ/R)."""
     correction = one_variable(paraboloid)
-    sphere = Sphere(1.0)
+    sphere = Sphere(radius=1.0)
     values = np.empty((_SPHERE_LENGTHS.size, _SPHERE_DEPTHS.size))
     for j, depth in enumerate(_SPHERE_DEPTHS):
-        log_a = np.log(classical_radius(sphere, 1, depth))
+        log_a = np.log(indent(sphere, 1.0, 0.0, depth=depth).contact_radius)
         for i, x in enumerate(_SPHERE_LENGTHS):
             length = x * np.sqrt(depth)
 
@@ -72,11 +72,11 @@ def _sphere(paraboloid: dict[str, list[float]]) -> dict[str, list[float] | list[
 
 
 def main() -> None:
-    """Write the file."""
-    paraboloid = _scaled(Paraboloid(1.0), 2, 4 / 3)
+    """Solve all nodes and write the file."""
+    paraboloid = _scaled(Paraboloid(radius=1.0), 2, 4 / 3)
     curves = {
         "paraboloid": paraboloid,
-        "cone": _scaled(Cone(np.pi / 4), 1, 2 / np.pi),
+        "cone": _scaled(Cone(half_angle=np.pi / 4), 1, 2 / np.pi),
         "flat_punch": _flat_punch(),
         "sphere": _sphere(paraboloid),
     }

@@ -1,9 +1,8 @@
-"""The semi-analytic twin of a run: the same axisymmetric contact, without a grid."""
+"""The semi-analytic reference solution of a run: the same axisymmetric contact without a grid."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -12,29 +11,26 @@ import numpy as np
 from pellicle import Run
 from pellicle.errors import ConfigError
 from pellicle.results.derived import Runs, derive
+from pellicle_plugins.kernels.half_space import HalfSpace
+from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 
+from .abel_transform import HasAbelTransform
 from .axisymmetric import AxisymmetricContact, indent
-from .axisymmetric_indenters import Cone, Indenter, Paraboloid, Sphere
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_INDENTERS: dict[str, Callable[..., Indenter]] = {
-    "paraboloid": Paraboloid,
-    "sphere": Sphere,
-    "cone": Cone,
-}
-_KERNELS = ("half_space", "tensed_membrane")
 _LINE = 401
+"""Points of a line from the centre to the edge of the contact."""
 
 
 def contact(run: xr.Dataset, step: int) -> AxisymmetricContact | None:
-    """Return the contact of a load step, counted from 1; None where 0 is prescribed.
+    """Return the reference contact of a load step, counted from 1; None where 0 is prescribed.
 
     Raises
     ------
     ConfigError
-        The run is none that the axisymmetric equation describes.
+        The axisymmetric equation does not describe the run.
     """
     return _contact(run.attrs["configuration"], step)
 
@@ -42,21 +38,23 @@ def contact(run: xr.Dataset, step: int) -> AxisymmetricContact | None:
 @cache
 def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
     run = Run.from_json(configuration)
-    kernel, shape = run.kernel.model_dump(), run.indenter.model_dump()
-    known = kernel["type"] in _KERNELS and shape["type"] in _INDENTERS
-    if not known or run.grid.boundary != "free":
+    kernel, indenter = run.kernel, run.indenter
+    if (
+        not isinstance(kernel, (HalfSpace, TensedMembrane))
+        or not isinstance(indenter, HasAbelTransform)
+        or run.grid.boundary != "free"
+    ):
         raise ConfigError(
-            f"kernel {kernel['type']!r} and indenter {shape['type']!r} on a {run.grid.boundary} "
-            f"boundary have no axisymmetric solution here; it knows {' and '.join(_KERNELS)}, "
-            f"{', '.join(_INDENTERS)}, and free boundaries",
+            f"kernel {kernel.model_dump()['type']!r} and indenter {indenter.model_dump()['type']!r}"
+            f" on a {run.grid.boundary} boundary have no axisymmetric solution here; it needs the "
+            "kernel half_space or tensed_membrane, an indenter with an Abel transform such as "
+            "paraboloid, sphere or cone, and a free boundary",
             "reference",
         )
     value = run.loading.values[step - 1]
     if value == 0:
         return None
-    indenter = _INDENTERS[shape.pop("type")](**shape)
-    modulus: float = run.kernel.reduced_modulus  # type: ignore[attr-defined]
-    tension = kernel.get("tension", 0.0)
+    modulus, tension = kernel.contact_modulus, getattr(kernel, "tension", 0.0)
     match run.loading.prescribed:
         case "depth":
             return indent(indenter, modulus, tension, depth=value)
@@ -73,13 +71,13 @@ def exact(runs: Runs) -> Runs:
     Raises
     ------
     ConfigError
-        A run is none that the axisymmetric equation describes, or a field is asked for.
+        The axisymmetric equation does not describe a run, or a field is requested.
     """
 
     def number(quantity: str) -> xr.DataArray:
         def of(run: xr.Dataset) -> list[float]:
-            found = (contact(run, step) for step in run["step"].values.tolist())
-            return [getattr(one, quantity) if one else 0.0 for one in found]
+            contacts = (contact(run, step) for step in run["step"].values.tolist())
+            return [getattr(one, quantity) if one else 0.0 for one in contacts]
 
         return runs.from_each(of)
 
@@ -114,7 +112,7 @@ def exact_line(run: xr.Dataset) -> xr.Dataset:
     Parameters
     ----------
     run
-        One step, of which ``x`` or ``y`` is left as dimension.
+        One step with either ``x`` or ``y`` as its only dimension in space.
 
     Returns
     -------
@@ -123,28 +121,28 @@ def exact_line(run: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     ConfigError
-        The run is none that the axisymmetric equation describes.
+        The axisymmetric equation does not describe the run.
     """
     import xarray as xr
 
     (along,) = {"x", "y"} & set(map(str, run.dims))
     (across,) = {"x", "y"} - {along}
-    found = contact(run, int(run["step"].item()))
+    solution = contact(run, int(run["step"].item()))
     offset = float(run[across].item())
     end = float(np.abs(run[along].values).max())
-    a = found.contact_radius if found else 0.0
+    a = solution.contact_radius if solution else 0.0
     half = np.sqrt(max(a**2 - offset**2, 0.0))
-    # The pressure jumps at the edge: one point on it and one just outside.
+    # Under tension the pressure jumps at the edge: one point lies on it, one just outside.
     inner = half * np.sin(np.linspace(0.0, np.pi / 2, _LINE))
     positive = np.concatenate([inner, [half * (1 + 1e-9), max(end, half * (1 + 2e-9))]])
     positions = np.concatenate([-positive[:0:-1], positive])
     r = np.minimum(np.hypot(positions, offset), np.where(np.abs(positions) <= half, a, np.inf))
-    pressure = found.pressure(r) if found else np.zeros(r.shape)
+    pressure = solution.pressure(r) if solution else np.zeros(r.shape)
     area = np.pi * a**2
     numbers = {
         "contact_area": area,
-        "force": found.force if found else 0.0,
-        "depth": found.depth if found else 0.0,
+        "force": solution.force if solution else 0.0,
+        "depth": solution.depth if solution else 0.0,
     }
     areas = {name: area for name in run.data_vars if str(name).startswith("contact_area_")}
     line = run.drop_dims(along).assign({**numbers, **areas})

@@ -15,7 +15,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 
 from .axisymmetric_equation import LEVELS, without_negligible
-from .checks import exactly_one, not_negative, positive
+from .checks import given, not_negative, positive
 from .panels import Points, gauss, graded, joined
 from .product_integration import clustering, collocation
 from .tension_kernel import auxiliary_g
@@ -26,7 +26,7 @@ RING_TOLERANCE = 1e-6
 
 @dataclass(frozen=True)
 class TensedPunch:
-    """Contact of a flat punch; its pressure distribution is not worked out."""
+    """Contact of a flat punch, without its pressure distribution."""
 
     contact_radius: float
     """a, the radius of the punch [m]."""
@@ -84,7 +84,7 @@ def punch(
     """
     positive(radius=radius, reduced_modulus=reduced_modulus)
     not_negative(tension=tension)
-    exactly_one(depth=depth, force=force)
+    quantity, value = given(depth=depth, force=force)
     ratio = without_negligible(2 * tension / reduced_modulus / radius)
     levels = [_unit(ratio, level) for level in (0, 1)]
     if not _agree(*levels):
@@ -92,10 +92,7 @@ def punch(
         if not _agree(*levels[1:]):
             raise ConvergenceError(f"the punch at s/a = {ratio:g} does not converge: {levels}")
     stiffness, ring = (value * reduced_modulus * radius for value in levels[-1])
-    if depth is None:
-        assert force is not None
-        depth = force / stiffness
-    not_negative(depth=depth)
+    depth = value if quantity == "depth" else value / stiffness
     return TensedPunch(radius, depth, stiffness * depth, ring * depth)
 
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 
-from .checks import exactly_one, not_negative, positive
+from .checks import given, not_negative, positive
 from .full_contact import pressure_amplitude
 
 
@@ -65,17 +65,15 @@ def wavy(
         p̄ [Pa] or a [m], at most λ/2.
     """
     positive(amplitude=amplitude, wavelength=wavelength, reduced_modulus=reduced_modulus)
-    exactly_one(mean_pressure=mean_pressure, half_width=half_width)
+    quantity, value = given(mean_pressure=mean_pressure, half_width=half_width)
     full = pressure_amplitude(amplitude, wavelength, reduced_modulus)
-    if mean_pressure is None:
-        assert half_width is not None
-        not_negative(half_width=half_width, gap_width=wavelength / 2 - half_width)
-        mean_pressure = full * float(np.sin(np.pi * half_width / wavelength)) ** 2
-    not_negative(mean_pressure=mean_pressure)
-    share = min(1.0, mean_pressure / full)
+    if quantity == "half_width":
+        not_negative(gap_width=wavelength / 2 - value)
+        value = full * float(np.sin(np.pi * value / wavelength)) ** 2
+    share = min(1.0, value / full)
     return WavyContact(
         wavelength=wavelength,
         half_width=wavelength / np.pi * float(np.arcsin(np.sqrt(share))),
-        mean_pressure=mean_pressure,
+        mean_pressure=value,
         full_pressure=full,
     )

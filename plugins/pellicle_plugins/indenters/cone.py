@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import pi, tan
-from typing import Annotated, Literal
+from math import inf, pi, tan
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -15,8 +15,10 @@ from pellicle.components import ForceCurve, Indenter
 from pellicle.units import Quantity
 from pellicle_plugins.analytic import master_curves
 
+from .axisymmetric import Axisymmetric
 
-class Cone(Indenter):
+
+class Cone(Axisymmetric):
     """Cone with its tip down."""
 
     type: Literal["cone"] = "cone"
@@ -30,13 +32,14 @@ class Cone(Indenter):
         """Return −r cot α [m]."""
         return -np.hypot(x, y) / tan(self.half_angle)
 
-    @property
-    def depth_limit(self) -> float:
-        """No limit."""
-        return float("inf")
+    contact_radius_limit: ClassVar[float] = inf
+    pointed: ClassVar[bool] = True
 
-    def force_curve(self, depth: Array, length: float) -> ForceCurve:
-        """Return P/E* and its sensitivities from the master curve of the axisymmetric equation."""
+    def abel_slope(self, x: Array) -> Array:
+        """Return h' = (π/2) cot α for contact radii x [m]; see `HasAbelTransform`."""
+        return np.full_like(x, pi / 2 / tan(self.half_angle))
+
+    def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.cone(self.half_angle, depth, length)
 
 

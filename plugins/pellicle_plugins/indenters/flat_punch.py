@@ -14,8 +14,10 @@ from pellicle.components import ForceCurve, Indenter
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
 
+from .axisymmetric import Axisymmetric
 
-class FlatPunch(Indenter):
+
+class FlatPunch(Axisymmetric):
     """Flat-ended circular cylinder; a cell belongs to it if its centre does."""
 
     type: Literal["flat_punch"] = "flat_punch"
@@ -25,13 +27,7 @@ class FlatPunch(Indenter):
         """Return 0 under the punch and −inf beside it [m]."""
         return np.where(x**2 + y**2 <= self.radius**2, 0.0, -np.inf)
 
-    @property
-    def depth_limit(self) -> float:
-        """No limit."""
-        return float("inf")
-
-    def force_curve(self, depth: Array, length: float) -> ForceCurve:
-        """Return P/E* and its sensitivities from the master curve of the axisymmetric equation."""
+    def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.flat_punch(self.radius, depth, length)
 
 

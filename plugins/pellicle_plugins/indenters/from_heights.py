@@ -1,17 +1,17 @@
-"""What indenters whose heights come from outside have in common."""
+"""Indenters whose heights are read from a file or an array."""
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, PrivateAttr
+from pydantic import Field, PrivateAttr, SerializerFunctionWrapHandler, model_serializer
 
 from pellicle.arrays import Array
 from pellicle.components import Footprint, Indenter
 from pellicle.errors import ConfigError
 
 
-class Measured(Indenter):
+class FromHeights(Indenter):
     """Rough punch given by heights; peaks touch first, it ends at the edge of the domain."""
 
     footprint: ClassVar[Footprint] = "domain"
@@ -21,24 +21,28 @@ class Measured(Indenter):
         Field(description="hash of what was read; checked if given"),
     ] = None
     _heights: Array = PrivateAttr()
+    _digest: str = PrivateAttr()
 
     def _keep(self, heights: Array, digest: str) -> None:
-        """Keep the heights that were read, and the hash of what they were read from."""
-        if self.sha256 is not None and self.sha256 != digest:
+        """Keep the heights, and the hash of the file or array that they were read from."""
+        if self.sha256 not in (None, digest):
             raise ConfigError(
                 f"{self.sha256} is not the hash {digest} of the heights: they have changed; remove "
                 "sha256 to use them as they are",
                 "sha256",
             )
         heights.setflags(write=False)
-        # The model is frozen for its users; this is still its construction.
-        object.__setattr__(self, "sha256", digest)
-        self._heights = heights
+        self._heights, self._digest = heights, digest
+
+    @model_serializer(mode="wrap")
+    def _with_hash(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        fields: dict[str, Any] = handler(self)
+        return {"sha256": self._digest} | fields | {"sha256": self._digest}
 
     def __eq__(self, other: object) -> bool:
-        """Compare the configuration; the hash stands for the heights."""
+        """Compare the configurations, in which the hash stands for the heights."""
         return type(other) is type(self) and self.model_dump() == other.model_dump()
 
     def __hash__(self) -> int:
         """Return a hash that agrees with equality."""
-        return hash((type(self), self.sha256))
+        return hash((type(self), self._digest))

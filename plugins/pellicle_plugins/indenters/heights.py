@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, NoReturn, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
@@ -19,14 +19,14 @@ from pellicle.grid import shape_of_run
 from pellicle.model.input_path import InputPath
 from pellicle.units import Length
 
-from .from_heights import Measured
+from .from_heights import FromHeights
 from .topography_reader import require_content, require_memory
 
-# Peak while an array is read and checked, in bytes for each value beside its own.
 _BYTES = 10
+"""Peak memory while an array is read and checked, per value beside the value itself [bytes]."""
 
 
-class Heights(Measured):
+class Heights(FromHeights):
     """Rough punch given by its heights at the cell centres; peaks touch first, it ends at the edge.
 
     From the library, ``values`` takes an array instead of a file; the configuration then records
@@ -44,8 +44,11 @@ class Heights(Measured):
     dataset: Annotated[
         str | None, Field(description="name of the array in an HDF5 file that holds several")
     ] = None
+    # An array is replaced by its checked copy, which nobody else can change.
     values: Annotated[
-        Any, Field(description="array of heights, from the library only", exclude=True, repr=False)
+        Any,
+        AfterValidator(lambda raw: None if raw is None else _checked(raw, "the array", "")),
+        Field(description="array of heights, from the library only", exclude=True, repr=False),
     ] = None
 
     @model_validator(mode="after")
@@ -58,13 +61,10 @@ class Heights(Measured):
                 else ""
             )
             raise ConfigError(f"give either a file or, from the library, values{hint}", "path")
-        field = "values" if self.path is None else "path"
-        raw = self.values if self.path is None else _load(self.path, self.dataset)
-        name = str(self.path or "the array")
-        _require_kind(raw, name, field)
-        heights = _checked(raw, name, field)
+        heights = self.values
+        if self.path is not None:
+            heights = _checked(_load(self.path, self.dataset), str(self.path), "path")
         self._keep(heights, hashlib.sha256(heights.tobytes()).hexdigest())
-        object.__setattr__(self, "values", None)
         return self
 
     def profile(self, x: Array, y: Array) -> Array:
@@ -77,12 +77,8 @@ class Heights(Measured):
         """
         shape = np.broadcast_shapes(x.shape, y.shape)
         if self._heights.shape != shape:
-            _refuse_shape(
-                self._heights.shape,
-                shape,
-                str(self.path or "the array"),
-                "path" if self.path else "values",
-            )
+            name, field = (str(self.path), "path") if self.path else ("the array", "values")
+            _refuse_shape(self._heights.shape, shape, name, field)
         below: Array = (self._heights - self._heights.max()) * self.unit
         return below
 
@@ -109,7 +105,7 @@ def _load(path: Path, dataset: str | None) -> Any:
 
 def _load_npy(path: Path, dataset: str | None) -> Any:
     try:
-        # Mapped: an array of the shape and type that the header claims takes no memory.
+        # A mapped array takes no memory, whatever shape and type its header claims.
         mapped = np.lib.format.open_memmap(path, mode="r")
     except ValueError as error:
         if not any(word in str(error) for word in ("pickle", "magic", "Python objects")):
@@ -152,7 +148,7 @@ def _load_hdf5(path: Path, dataset: str | None) -> Any:
 
 
 def _require_header(array: Any, path: Path) -> None:
-    """Refuse by its shape and type an array that would not be used, before it is read."""
+    """Refuse an array of unusable shape, type or size before it is read."""
     _require_kind(array, str(path), "path")
     expected = shape_of_run()
     if expected is not None and array.shape != expected:
@@ -177,7 +173,7 @@ def _refuse_shape(
 
 
 def _require_kind(raw: Any, name: str, field: str) -> None:
-    """Refuse what is not an array of real numbers over two dimensions."""
+    """Refuse what is not a two-dimensional array of real numbers."""
     given = raw if hasattr(raw, "dtype") and hasattr(raw, "shape") else np.asarray(raw)
     # An HDF5 dataset may have no shape at all.
     kind, shape = given.dtype.kind, tuple(given.shape or ())
@@ -197,7 +193,8 @@ def _require_kind(raw: Any, name: str, field: str) -> None:
 
 
 def _checked(raw: Any, name: str, field: str) -> Array:
-    """Return heights as a fresh float64 array; refuse those that are not numbers or masked."""
+    """Return heights as a new float64 array; refuse those that are masked or not finite."""
+    _require_kind(raw, name, field)
     given = np.asarray(raw)
     bad = ~np.isfinite(given)
     if masked := np.ma.isMaskedArray(raw):

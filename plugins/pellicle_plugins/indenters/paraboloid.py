@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Literal
+from math import inf
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -13,10 +14,11 @@ from pellicle.components import ForceCurve, Indenter
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
 
+from .axisymmetric import Axisymmetric
 from .sphere import Sphere
 
 
-class Paraboloid(Indenter):
+class Paraboloid(Axisymmetric):
     """Paraboloid of revolution, as in the theory of Hertz: the shallow limit of a sphere."""
 
     type: Literal["paraboloid"] = "paraboloid"
@@ -24,16 +26,17 @@ class Paraboloid(Indenter):
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return −(x² + y²)/2R [m]."""
-        # Twice the largest radii would be infinite, and the paraboloid flat.
+        # Twice the largest double would be infinite, and the paraboloid flat.
         return -(x**2 + y**2) / 2 / self.radius
 
-    @property
-    def depth_limit(self) -> float:
-        """No limit."""
-        return float("inf")
+    contact_radius_limit: ClassVar[float] = inf
+    pointed: ClassVar[bool] = False
 
-    def force_curve(self, depth: Array, length: float) -> ForceCurve:
-        """Return P/E* and its sensitivities from the master curve of the axisymmetric equation."""
+    def abel_slope(self, x: Array) -> Array:
+        """Return h'(x) = 2x/R for contact radii x [m]; see `HasAbelTransform`."""
+        return 2 * x / self.radius
+
+    def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.paraboloid(self.radius, depth, length)
 
     def whole_shape(self) -> Sphere:

@@ -1,4 +1,4 @@
-"""An indenter turned about the vertical."""
+"""An indenter rotated about the vertical."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from pellicle.arrays import Array
 from pellicle.components import Indenter
 from pellicle.units import Quantity
 
-from .transformed import Moved, profile_of
+from .transformed import RigidMotion, profile_of
 
 
-class Rotated(Moved):
+class Rotated(RigidMotion):
     """Another indenter turned about the vertical through the centre of the domain."""
 
     type: Literal["rotated"] = "rotated"

@@ -1,4 +1,4 @@
-"""The extent of the domain, as an indenter can tell it from the points that it is asked for."""
+"""The extent of the domain, inferred from the points at which a profile is evaluated."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 
 
-class Axis(NamedTuple):
-    """Equally spaced points that sample one period."""
+class UniformAxis(NamedTuple):
+    """Equally spaced points that sample one period [m]."""
 
     first: float
     number: int
     period: float
 
     @classmethod
-    def of(cls, points: Array) -> Axis:
+    def of(cls, points: Array) -> UniformAxis:
         """Return the axis on which ``points`` [m] lie.
 
         Raises
         ------
         ConfigError
-            One point does not tell how far it is to the next.
+            There is only one point, so the spacing is unknown.
         """
         if points.size < 2:
             raise ConfigError("needs a grid of at least 2 points each way", "type")
@@ -31,9 +31,9 @@ class Axis(NamedTuple):
 
     @property
     def spacing(self) -> float:
-        """Distance from one point to the next [m]."""
+        """Distance between neighbouring points [m]."""
         return self.period / self.number
 
-    def shifted(self, cells: float) -> Axis:
-        """Return the axis with all points moved by a number of cells."""
+    def shifted(self, cells: float) -> UniformAxis:
+        """Return the axis shifted by a number of cells."""
         return self._replace(first=self.first + cells * self.spacing)

@@ -13,10 +13,10 @@ from pellicle.arrays import Array
 from pellicle.components import Indenter
 from pellicle.units import Quantity
 
-from .transformed import Altered, profile_of
+from .transformed import Transformed, profile_of
 
 
-class Scaled(Altered):
+class Scaled(Transformed):
     """Another indenter with its heights multiplied by a factor."""
 
     type: Literal["scaled"] = "scaled"
@@ -25,9 +25,9 @@ class Scaled(Altered):
     ]
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return factor · f [m], and −inf where there is no indenter."""
+        """Return factor · f [m], and −inf where the indenter does not exist."""
         profile = profile_of(self.part, x, y, "part")
-        # −inf · 0 is not a number.
+        # −inf · 0 would be NaN.
         return np.multiply(profile, self.factor, out=profile.copy(), where=np.isfinite(profile))
 
 

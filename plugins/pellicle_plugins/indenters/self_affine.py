@@ -17,10 +17,10 @@ from pellicle.components import Footprint, Indenter
 from pellicle.errors import ConfigError
 from pellicle.units import Length, Quantity
 
-from .sampling import Axis
+from .sampling import UniformAxis
 
-# Wavelengths that fit the domain exactly must not be lost to rounding.
 _ROUNDING = 1e-9
+"""Relative margin of the wavelength limits: a wave that fits the domain exactly must count."""
 
 
 class SelfAffine(Indenter):
@@ -55,14 +55,14 @@ class SelfAffine(Indenter):
         return self
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return heights minus their maximum [m]; ``x`` and ``y`` are a whole period apart.
+        """Return heights minus their maximum [m]; ``x`` and ``y`` span one whole period.
 
         Raises
         ------
         ConfigError
             The spacing cannot resolve the shortest wavelength, or no wavelength fits the domain.
         """
-        axes = Axis.of(x.ravel()), Axis.of(y.ravel())
+        axes = UniformAxis.of(x.ravel()), UniformAxis.of(y.ravel())
         coarsest = max(axis.spacing for axis in axes)
         if 2 * coarsest >= self.cutoff_wavelength * (1 - _ROUNDING):
             raise ConfigError(
@@ -74,7 +74,7 @@ class SelfAffine(Indenter):
         return _sample(series, *axes) - _maximum(series, *axes)
 
     def _series(self, period_x: float, period_y: float) -> _Series:
-        """Return the modes of one half of the wave vectors."""
+        """Return the Fourier modes, one of each pair ±q of wave vectors."""
         longest = self.roll_off_wavelength or max(period_x, period_y)
         q_low = 2 * pi / longest * (1 - _ROUNDING)
         q_high = 2 * pi / self.cutoff_wavelength * (1 + _ROUNDING)
@@ -83,7 +83,7 @@ class SelfAffine(Indenter):
             np.arange(-reach[0], reach[0] + 1), np.arange(reach[1] + 1), indexing="ij"
         )
         q = np.hypot(2 * pi / period_x * m, 2 * pi / period_y * n)
-        # One of each pair ±q: a real surface has the other.
+        # A real surface has conjugate coefficients at −q.
         kept = (q >= q_low) & (q <= q_high) & ((n > 0) | (m > 0))
         if not kept.any():
             raise ConfigError(
@@ -106,37 +106,37 @@ class _Series(NamedTuple):
 
 
 def _phases(m: NDArray[np.int64], n: NDArray[np.int64], seed: int) -> Array:
-    """Return the random phase of each mode, which depends on m, n ≥ 0 and the seed only.
+    """Return the random phase of each mode (m, n ≥ 0), which depends on m, n and the seed only.
 
-    Numbers are drawn along squares |m| ≤ s, n ≤ s of growing s, so that neither the spectrum nor
-    the rounding of its wave numbers moves them.
+    Random numbers are assigned along squares |m| ≤ s, n ≤ s of growing s, so that neither the
+    limits of the spectrum nor the rounding of wave numbers changes the phase of a mode.
     """
     square = np.maximum(np.abs(m), n)
-    place = square * (2 * square - 1) + np.where(n < square, 2 * n + (m > 0), 3 * square + m)
-    drawn: Array = np.random.default_rng(seed).uniform(0, 2 * pi, int(place.max()) + 1)
-    return np.asarray(drawn[place])
+    index = square * (2 * square - 1) + np.where(n < square, 2 * n + (m > 0), 3 * square + m)
+    drawn: Array = np.random.default_rng(seed).uniform(0, 2 * pi, int(index.max()) + 1)
+    return np.asarray(drawn[index])
 
 
-def _sample(series: _Series, x: Axis, y: Axis) -> Array:
+def _sample(series: _Series, x: UniformAxis, y: UniformAxis) -> Array:
     """Return the heights [m] at the points of two axes, shape (x.number, y.number)."""
     shift = np.exp(2j * pi * (series.m * (x.first / x.period) + series.n * (y.first / y.period)))
     modes = np.zeros((x.number, y.number // 2 + 1), dtype=np.complex128)
     modes[series.m % x.number, series.n] = series.c * shift
-    # irfft2 supplies the conjugate of each column n > 0; column 0 needs both halves written.
+    # irfft2 supplies the conjugates of columns n > 0; column 0 needs both m and −m.
     on_edge = series.n == 0
     modes[-series.m[on_edge] % x.number, 0] = np.conj(series.c * shift)[on_edge]
     heights = scipy.fft.irfft2(modes, s=(x.number, y.number), norm="forward", overwrite_x=True)
     return np.asarray(heights, dtype=np.float64)
 
 
-def _maximum(series: _Series, x: Axis, y: Axis) -> float:
+def _maximum(series: _Series, x: UniformAxis, y: UniformAxis) -> float:
     """Return the maximum [m] of the series itself, not of its samples.
 
-    A maximum of the samples would put first touch at a different depth on each grid.
+    With the maximum of the samples the depth of first touch would depend on the grid.
     """
     shortest = max(int(np.abs(series.m).max()), int(series.n.max()), 1)
-    # At least eight samples to the shortest wave. One shifted copy of the grid after the other
-    # takes no more memory than the grid itself, where all samples at once would take 16 times it.
+    # At least eight samples per shortest wavelength. Shifted copies of the grid, one after the
+    # other, take the memory of one grid, all samples at once would take 16 times as much.
     copies = [max(1, ceil(8 * shortest / axis.number)) for axis in (x, y)]
     tops: list[tuple[float, float, float]] = []
     for i, j in np.ndindex(*copies):
@@ -146,7 +146,7 @@ def _maximum(series: _Series, x: Axis, y: Axis) -> float:
     return max(tops[-1][0], *summits)
 
 
-def _highest(series: _Series, x: Axis, y: Axis) -> list[tuple[float, float, float]]:
+def _highest(series: _Series, x: UniformAxis, y: UniformAxis) -> list[tuple[float, float, float]]:
     """Return the height and the coordinates [m] of the four highest points of a grid."""
     heights = _sample(series, x, y)
     cells = np.unravel_index(np.argpartition(heights, -4, axis=None)[-4:], heights.shape)
@@ -156,8 +156,8 @@ def _highest(series: _Series, x: Axis, y: Axis) -> list[tuple[float, float, floa
     ]
 
 
-def _climb(series: _Series, x: Axis, y: Axis, point: Array) -> float:
-    """Return the height [m] at the maximum next to ``point``, by Newton's method."""
+def _climb(series: _Series, x: UniformAxis, y: UniformAxis, point: Array) -> float:
+    """Return the height [m] at the maximum near ``point``, by Newton's method."""
     q = 2 * pi * np.stack([series.m / x.period, series.n / y.period], axis=1)
     for _ in range(4):
         wave = 2 * series.c * np.exp(1j * (q @ point))

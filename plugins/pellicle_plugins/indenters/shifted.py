@@ -1,4 +1,4 @@
-"""An indenter somewhere else."""
+"""An indenter shifted sideways."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from pellicle.arrays import Array
 from pellicle.components import Indenter
 from pellicle.units import Quantity
 
-from .transformed import Moved, profile_of
+from .transformed import RigidMotion, profile_of
 
 
-class Shifted(Moved):
+class Shifted(RigidMotion):
     """Another indenter moved sideways, off the centre of the domain."""
 
     type: Literal["shifted"] = "shifted"

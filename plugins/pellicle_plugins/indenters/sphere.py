@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -14,8 +14,10 @@ from pellicle.components import ForceCurve, Indenter
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
 
+from .axisymmetric import Axisymmetric
 
-class Sphere(Indenter):
+
+class Sphere(Axisymmetric):
     """Sphere with its exact profile, not the paraboloid's; nothing beyond its equator."""
 
     type: Literal["sphere"] = "sphere"
@@ -26,10 +28,10 @@ class Sphere(Indenter):
         square = x**2 + y**2
         distance = np.sqrt(square)
         inside = distance <= self.radius
-        # R² − r² as a product, which does not overflow.
+        # R² − r² as a product does not overflow.
         root = np.sqrt(self.radius - distance, where=inside, out=np.zeros_like(distance))
         root *= np.sqrt(self.radius + distance)
-        # −r²/(R + root) instead of root − R, which cancels near the tip.
+        # root − R would cancel near the tip, −r²/(R + root) does not.
         shape = -(square / self.radius) / (1 + root / self.radius)
         return np.where(inside, shape, -np.inf)
 
@@ -38,8 +40,19 @@ class Sphere(Indenter):
         """R, the equator [m]."""
         return self.radius
 
-    def force_curve(self, depth: Array, length: float) -> ForceCurve:
-        """Return P/E* and its sensitivities from the master curve of the axisymmetric equation."""
+    pointed: ClassVar[bool] = False
+
+    @property
+    def contact_radius_limit(self) -> float:
+        """R [m]: no contact is wider than the equator."""
+        return self.radius
+
+    def abel_slope(self, x: Array) -> Array:
+        """Return h'(x), h = x artanh(x/R), for contact radii x [m]; see `HasAbelTransform`."""
+        u = x / self.radius
+        return np.arctanh(u) + u / ((1 - u) * (1 + u))
+
+    def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.sphere(self.radius, depth, length)
 
 

@@ -1,4 +1,4 @@
-"""Indenters on top of each other."""
+"""The sum of several indenters."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from .transformed import profile_of
 class Sum(Indenter):
     """Heights of several indenters added, such as roughness on a sphere.
 
-    It ends where the domain does if any of its parts does. Depth counts from the lowest point of
-    the sum, not from those of its parts.
+    It ends with the domain if any of its parts does. Depth counts from the lowest point of the
+    sum, not from those of its parts.
     """
 
     type: Literal["sum"] = "sum"
@@ -39,14 +39,14 @@ class Sum(Indenter):
     def profile(self, x: Array, y: Array) -> Array:
         """Return Σ f_i − its value at the lowest point [m].
 
-        The lowest point of the unbounded parts together is found between the cells. Parts that end
-        with the domain are known at the cells only: what their highest cell lacks to 0 is taken to
-        be what the highest cell of the sum lacks, right to second order in the spacing.
+        The lowest point of the sum of the unbounded parts is located between the cells. Parts that
+        end with the domain are known at the cells only: the distance of their highest cell from 0
+        is taken as that of the highest cell of the sum, correct to second order in the spacing.
 
         Raises
         ------
         ConfigError
-            A part cannot be put on these points, or nowhere are all parts present.
+            A part has no profile on these points, or the parts have no cell in common.
         """
         shape = np.broadcast_shapes(x.shape, y.shape)
         smooth, rough = np.zeros(shape), np.zeros(shape)
@@ -64,18 +64,18 @@ class Sum(Indenter):
         if not np.isfinite(top):
             raise ConfigError("are nowhere there together; shift them so that they meet", "parts")
         hidden += self._summit(x, y, smooth) - float(smooth.max())
-        # Rounding may leave the lowest point above 0.
+        # Rounding may leave the lowest point slightly above 0.
         return np.minimum(total - (top + hidden), 0.0)
 
     def _summit(self, x: Array, y: Array, smooth: Array) -> float:
-        """Return the largest value of the sum of the unbounded parts, anywhere."""
+        """Return the maximum of the sum of the unbounded parts, at cells or between them."""
         unbounded = [part for part in self.parts if part.footprint == "unbounded"]
 
         def heights(px: float, py: float) -> float:
             point = np.array([[px]]), np.array([[py]])
             return float(sum(part.profile(*point).item() for part in unbounded))
 
-        # No part is above 0: all lowest points lie together, at the centre as a rule.
+        # No part is above 0, so a sum of 0 at the centre is the maximum.
         if heights(0.0, 0.0) == 0:
             return 0.0
         i, j = np.unravel_index(np.argmax(smooth), smooth.shape)
@@ -84,19 +84,19 @@ class Sum(Indenter):
         length, height = np.ptp(xs) + np.ptp(ys), -float(smooth[i, j])
         if height == 0:
             return 0.0
-        found = scipy.optimize.minimize(
-            lambda moved: -heights(*(start + moved * length)) / height,
+        summit = scipy.optimize.minimize(
+            lambda shift: -heights(*(start + shift * length)) / height,
             np.zeros(2),
             method="Nelder-Mead",
             options={"xatol": 1e-13, "fatol": 1e-15, "initial_simplex": _SIMPLEX},
         )
-        if not found.success:
-            raise ConfigError(f"have no lowest point that can be found ({found.message})", "parts")
-        return -float(found.fun) * height
+        if not summit.success:
+            raise ConfigError(f"have no lowest point that can be found ({summit.message})", "parts")
+        return -float(summit.fun) * height
 
 
-# In shares of the domain.
 _SIMPLEX = 0.01 * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+"""Initial simplex of the search for the lowest point, relative to the domain."""
 
 
 @hookimpl

@@ -20,8 +20,8 @@ from pellicle.grid import pair
 from pellicle.model.input_path import InputPath
 from pellicle.units import Length, Quantity
 
-from .from_heights import Measured
-from .sampling import Axis
+from .from_heights import FromHeights
+from .sampling import UniformAxis
 from .topography_reader import Scan, library, read_scan, require_memory
 
 _Position = Annotated[float, Quantity("m", at_least=0)]
@@ -34,7 +34,7 @@ _PER_FILLED = 900
 _LARGE, _STEEP = 0.1, 1.0
 
 
-class Topography(Measured):
+class Topography(FromHeights):
     """Rough punch as a microscope or profilometer measured it, in the file's own unit and size.
 
     The domain lies on the scan, at its middle or about ``centre``, and may be smaller than it; what
@@ -137,7 +137,7 @@ class Topography(Measured):
         UserWarning
             Cells are finer than the points of the scan.
         """
-        axes = Axis.of(x.ravel()), Axis.of(y.ravel())
+        axes = UniformAxis.of(x.ravel()), UniformAxis.of(y.ravel())
         pitch = [edge / n for edge, n in zip(self._size, self._heights.shape, strict=True)]
         if any(axis.spacing < 0.99 * step for axis, step in zip(axes, pitch, strict=True)):
             warnings.warn(
@@ -164,7 +164,7 @@ class Topography(Measured):
     def _middle(self) -> tuple[float, float]:
         return self.centre or (self._size[0] / 2, self._size[1] / 2)
 
-    def _under(self, which: int, axis: Axis, pitch: float) -> slice:
+    def _under(self, which: int, axis: UniformAxis, pitch: float) -> slice:
         """Return the points of the scan under the domain along one axis."""
         low = axis.first - axis.spacing / 2 + self._middle[which]
         high = low + axis.period

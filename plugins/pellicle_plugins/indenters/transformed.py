@@ -1,4 +1,4 @@
-"""What the indenters that are made of others have in common."""
+"""Indenters that transform another indenter."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from pellicle.config.component_field import FromRegistry
 from pellicle.errors import ConfigError
 
 
-class Altered(Indenter):
-    """An indenter that changes one other."""
+class Transformed(Indenter):
+    """An indenter that transforms one other."""
 
     part: Annotated[
         Indenter, FromRegistry(), Field(description="the indenter to change: a table with type")
@@ -21,12 +21,12 @@ class Altered(Indenter):
 
     @property
     def footprint(self) -> Footprint:
-        """That of the part."""
+        """The footprint of the part."""
         return self.part.footprint
 
 
-class Moved(Altered):
-    """An indenter that moves one other, which has to be there wherever it is moved to."""
+class RigidMotion(Transformed):
+    """An indenter that shifts or turns one other, which must be defined beyond the domain."""
 
     @model_validator(mode="after")
     def _unbounded(self) -> Self:
@@ -40,12 +40,12 @@ class Moved(Altered):
 
 
 def profile_of(part: Indenter, x: Array, y: Array, field: str) -> Array:
-    """Return the profile [m] of the part in ``field``, which its errors then name.
+    """Return the profile [m] of the part in ``field``; its errors name that field.
 
     Raises
     ------
     ConfigError
-        The part cannot be put on these points.
+        The part has no profile on these points.
     """
     try:
         return part.profile(x, y)

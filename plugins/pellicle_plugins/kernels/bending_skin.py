@@ -30,7 +30,7 @@ class BendingSkin(Skin, ElasticSolid):
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) = 1/(E* q/2 + τ₀ q² + B q⁴) [m/Pa]."""
-        return 1 / (self.reduced_modulus * q / 2 + self.skin_stiffness(q))
+        return 1 / (self.contact_modulus * q / 2 + self.skin_stiffness(q))
 
 
 @hookimpl

@@ -14,7 +14,7 @@ from pellicle.components import Kernel
 
 from .elastic_layer import ElasticLayer
 
-# sinh y − y = y³/6 Σ c_k y^2k, to the last digit below the split.
+# sinh y − y = y³/6 Σ c_k y^2k, to double precision for y below the split.
 _SPLIT: Final = 2.0
 _COEFFICIENTS: Final = [6 / factorial(2 * k + 3) for k in range(12)]
 
@@ -22,8 +22,8 @@ _COEFFICIENTS: Final = [6 / factorial(2 * k + 3) for k in range(12)]
 class BondedLayer(ElasticLayer):
     """Elastic layer that sticks to a rigid base (Hayes et al. 1972).
 
-    A layer thick against the contact is a half-space. A thin compressible one is a bed of springs,
-    p = M u/h; a thin incompressible one resists by flowing sideways, G = (h³/3μ) q², and is the
+    A layer much thicker than the contact is a half-space. A thin compressible one is a bed of
+    springs, p = M u/h. A thin incompressible one can only flow sideways, G = (h³/3μ) q², and is
     stiffer the longer the wave.
     """
 
@@ -33,13 +33,14 @@ class BondedLayer(ElasticLayer):
         """Return G(q) [m/Pa] of a layer on a rigid base without slip; Hayes et al. 1972.
 
         G = (2/(E* q)) [κ sinh 2x − 2x]/[κ cosh 2x + 2x² + 5 − 12ν + 8ν²], κ = 3 − 4ν, x = qh,
-        here times e^{−2x} above and below, with κ sinh 2x − 2x = κ (sinh 2x − 2x) + 4(1 − 2ν)x.
+        multiplied here by e^{−2x} in numerator and denominator, with
+        κ sinh 2x − 2x = κ (sinh 2x − 2x) + 4(1 − 2ν)x.
         """
         nu, y = self.poissons_ratio, self._twice_depth(q)
         kappa, decay = 3 - 4 * nu, np.exp(-y)
-        above = kappa * _scaled_excess(y) + 2 * (1 - 2 * nu) * y * decay
-        below = kappa * (1 + decay**2) / 2 + (y**2 / 2 + 5 - 12 * nu + 8 * nu**2) * decay
-        return 2 / (self.reduced_modulus * q) * (above / below)
+        numerator = kappa * _scaled_excess(y) + 2 * (1 - 2 * nu) * y * decay
+        denominator = kappa * (1 + decay**2) / 2 + (y**2 / 2 + 5 - 12 * nu + 8 * nu**2) * decay
+        return 2 / (self.contact_modulus * q) * (numerator / denominator)
 
 
 def _scaled_excess(y: Array) -> Array:

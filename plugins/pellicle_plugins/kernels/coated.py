@@ -19,8 +19,8 @@ from .skin import Skin
 class Coated(Skin):
     """Skin with tension and bending stiffness on any other kernel.
 
-    The stiffnesses of substrate and skin add, for each wave on its own: exact if the skin passes on
-    normal tractions only, as a tension does.
+    The stiffnesses of substrate and skin add at each wave number. This is exact if the skin
+    transmits normal tractions only, as a tension does.
     """
 
     type: Literal["coated"] = "coated"

@@ -1,4 +1,4 @@
-"""The modulus fields of kernels that need both elastic constants of their solid."""
+"""The modulus fields of kernels whose compliance depends on E* and on ν."""
 
 from __future__ import annotations
 
@@ -25,12 +25,8 @@ class IsotropicSolid(ElasticSolid):
     ]
 
     @model_validator(mode="after")
-    def _complete(self) -> Self:
+    def _check_constants(self) -> Self:
         if (self.reduced_modulus is None) == (self.youngs_modulus is None):
-            what = "no modulus" if self.reduced_modulus is None else "two moduli"
-            raise ValueError(f"{what}; give exactly one of reduced_modulus and youngs_modulus")
-        if self.youngs_modulus is not None:
-            reduced = self.youngs_modulus / (1 - self.poissons_ratio**2)
-            # The model is frozen for its users; this is still its construction.
-            object.__setattr__(self, "reduced_modulus", reduced)
+            moduli = "no modulus" if self.reduced_modulus is None else "two moduli"
+            raise ValueError(f"{moduli}; give exactly one of reduced_modulus and youngs_modulus")
         return self

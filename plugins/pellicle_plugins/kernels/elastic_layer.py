@@ -1,4 +1,4 @@
-"""What kernels of an elastic layer on a rigid base share."""
+"""The fields of kernels of an elastic layer on a rigid base."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pellicle.units import Length
 
 from .elastic_constants import IsotropicSolid
 
-# Where exp(−2qh) is beyond the digits of a double, and a layer is a half-space.
+# Value of 2qh at which e^{−2qh} is below double precision, and the layer a half-space.
 _DEEP = 100.0
 
 
@@ -24,12 +24,12 @@ class ElasticLayer(IsotropicSolid):
     def mean_compliance(self) -> float:
         """Return h/M [m/Pa], M = E*(1 − ν)²/(1 − 2ν): uniaxial strain; 0 for ν = ½.
 
-        A layer under the whole of a periodic domain cannot flow sideways, whatever its base.
+        A layer that fills a periodic domain cannot flow sideways, whatever its base.
         M = E(1 − ν)/((1 + ν)(1 − 2ν)) is the P-wave modulus (Johnson 1985, eq. 5.69).
         """
         nu = self.poissons_ratio
-        return self.thickness * (1 - 2 * nu) / (self.reduced_modulus * (1 - nu) ** 2)
+        return self.thickness * (1 - 2 * nu) / (self.contact_modulus * (1 - nu) ** 2)
 
     def _twice_depth(self, q: Array) -> Array:
-        """Return 2qh, cut off where nothing depends on it any more and exponentials underflow."""
+        """Return 2qh, limited to where the compliance no longer changes, before exp underflows."""
         return np.minimum(2 * self.thickness * q, _DEEP)

@@ -17,9 +17,9 @@ from .elastic_layer import ElasticLayer
 class FrictionlessLayer(ElasticLayer):
     """Elastic layer that slips on a rigid base without lifting off (Johnson 1985).
 
-    A layer thick against the contact is a half-space. A thin one is a bed of springs, p = E* u/h,
-    incompressible or not, as it can give way sideways; only under a uniform pressure on a periodic
-    domain it cannot, and Poisson's ratio matters.
+    A layer much thicker than the contact is a half-space. A thin one is a bed of springs,
+    p = E* u/h, whatever its compressibility, since it can expand sideways. Only under uniform
+    pressure on a periodic domain it cannot, and Poisson's ratio matters.
     """
 
     type: Literal["frictionless_layer"] = "frictionless_layer"
@@ -27,12 +27,13 @@ class FrictionlessLayer(ElasticLayer):
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] of a layer on a smooth rigid base; Johnson 1985, section 5.8.
 
-        G = (2/(E* q)) (cosh 2x − 1)/(sinh 2x + 2x), x = qh; here times e^{−2x} above and below.
+        G = (2/(E* q)) (cosh 2x − 1)/(sinh 2x + 2x), x = qh, multiplied here by
+        e^{−2x} in numerator and denominator.
         """
         y = self._twice_depth(q)
-        above = np.expm1(-y) ** 2
-        below = -np.expm1(-2 * y) + 2 * y * np.exp(-y)
-        return 2 / (self.reduced_modulus * q) * (above / below)
+        numerator = np.expm1(-y) ** 2
+        denominator = -np.expm1(-2 * y) + 2 * y * np.exp(-y)
+        return 2 / (self.contact_modulus * q) * (numerator / denominator)
 
 
 @hookimpl

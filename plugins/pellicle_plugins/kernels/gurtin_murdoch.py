@@ -20,8 +20,8 @@ class GurtinMurdoch(Skin, IsotropicSolid):
     """Elastic half-space whose surface resists stretching too (Gurtin & Murdoch 1975).
 
     The surface has a residual tension τ₀ and a stiffness κ_s = λ_s + 2μ_s against in-plane strain.
-    Pressing moves the surface of a compressible solid sideways too, which its stiffness hinders. An
-    incompressible one it does not: with ν = ½, or κ_s = 0, this is `tensed_membrane`.
+    Pressure also displaces the surface of a compressible solid sideways, which the surface
+    stiffness hinders. For ν = ½, where it does not, and for κ_s = 0 this is `tensed_membrane`.
     """
 
     type: Literal["gurtin_murdoch"] = "gurtin_murdoch"
@@ -33,12 +33,13 @@ class GurtinMurdoch(Skin, IsotropicSolid):
         """Return G(q) [m/Pa] of surface elasticity after Gurtin & Murdoch 1975.
 
         1/G = (E* q/2)(1 + η)/(1 + (1 − g²)η) + τ₀ q² + B q⁴ with η = 2κ_s q/E* and
-        g = (1 − 2ν)/(2(1 − ν)), the share of a normal displacement that appears sideways.
+        g = (1 − 2ν)/(2(1 − ν)), the ratio of sideways to normal displacement without surface
+        elasticity.
         """
-        eta = 2 * self.surface_stiffness * q / self.reduced_modulus
+        eta = 2 * self.surface_stiffness * q / self.contact_modulus
         g = (1 - 2 * self.poissons_ratio) / (2 * (1 - self.poissons_ratio))
         hindered = (1 + eta) / (1 + (1 - g**2) * eta)
-        return 1 / (self.reduced_modulus * q / 2 * hindered + self.skin_stiffness(q))
+        return 1 / (self.contact_modulus * q / 2 * hindered + self.skin_stiffness(q))
 
 
 @hookimpl

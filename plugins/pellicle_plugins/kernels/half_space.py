@@ -21,15 +21,15 @@ class HalfSpace(ElasticSolid):
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) = 2/(E* q) [m/Pa]; Johnson 1985, section 13.2."""
-        return 2.0 / (self.reduced_modulus * q)
+        return 2.0 / (self.contact_modulus * q)
 
     def greens_function(self, r: Array) -> Array:
         """Return G(r) = 1/(π E* r) [m/N]; Johnson 1985, eq. 3.22a."""
-        return 1.0 / (np.pi * self.reduced_modulus * r)
+        return 1.0 / (np.pi * self.contact_modulus * r)
 
     def radial_primitive(self, r: Array) -> Array:
         """Return ∫₀^r G r dr = r/(π E*) [m²/N]."""
-        return r / (np.pi * self.reduced_modulus)
+        return r / (np.pi * self.contact_modulus)
 
 
 @hookimpl

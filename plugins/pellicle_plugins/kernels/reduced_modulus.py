@@ -1,16 +1,10 @@
-"""The modulus fields that kernels of an elastic half-space share."""
+"""The modulus fields of kernels whose compliance depends on E* alone."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Self, cast
+from typing import Annotated, Self
 
-from pydantic import (
-    ConfigDict,
-    Field,
-    SerializerFunctionWrapHandler,
-    model_serializer,
-    model_validator,
-)
+from pydantic import ConfigDict, Field, model_validator
 
 from pellicle.components import Kernel
 from pellicle.units import Modulus, PoissonsRatio
@@ -28,14 +22,10 @@ class ElasticSolid(Kernel):
         }
     )
 
-    # Never None once made: given, or completed from E and ν.
     reduced_modulus: Annotated[
-        Modulus,
-        Field(
-            default_factory=lambda: cast(float, None),
-            description="reduced modulus E* [Pa]; or youngs_modulus and poissons_ratio",
-        ),
-    ]
+        Modulus | None,
+        Field(description="reduced modulus E* [Pa]; or youngs_modulus and poissons_ratio"),
+    ] = None
     youngs_modulus: Annotated[
         Modulus | None, Field(description="Young's modulus E [Pa], with poissons_ratio")
     ] = None
@@ -43,30 +33,27 @@ class ElasticSolid(Kernel):
         PoissonsRatio | None, Field(description="Poisson's ratio ν, −1 < ν ≤ 0.5")
     ] = None
 
-    @model_validator(mode="after")
-    def _complete(self) -> Self:
-        by_e_nu = [
-            name for name in ("youngs_modulus", "poissons_ratio") if getattr(self, name) is not None
-        ]
+    @property
+    def contact_modulus(self) -> float:
+        """E* [Pa]: the reduced modulus as given, or E/(1 − ν²)."""
         if self.reduced_modulus is not None:
-            if by_e_nu:
-                raise ValueError(
-                    f"reduced_modulus and {' and '.join(by_e_nu)} are both given; give "
-                    "reduced_modulus alone, or youngs_modulus and poissons_ratio"
-                )
-        elif self.youngs_modulus is None or self.poissons_ratio is None:
+            return self.reduced_modulus
+        # Validation requires both constants where the reduced modulus is absent.
+        assert self.youngs_modulus is not None
+        assert self.poissons_ratio is not None
+        return self.youngs_modulus / (1 - self.poissons_ratio**2)
+
+    @model_validator(mode="after")
+    def _check_constants(self) -> Self:
+        both = ("youngs_modulus", "poissons_ratio")
+        given = [name for name in both if getattr(self, name) is not None]
+        if self.reduced_modulus is None and len(given) < 2:
             raise ValueError(
                 "no modulus; give reduced_modulus, or both youngs_modulus and poissons_ratio"
             )
-        else:
-            reduced = self.youngs_modulus / (1 - self.poissons_ratio**2)
-            # The model is frozen for its users; this is still its construction.
-            object.__setattr__(self, "reduced_modulus", reduced)
+        if self.reduced_modulus is not None and given:
+            raise ValueError(
+                f"reduced_modulus and {' and '.join(given)} are both given; give "
+                "reduced_modulus alone, or youngs_modulus and poissons_ratio"
+            )
         return self
-
-    @model_serializer(mode="wrap")
-    def _as_given(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        given: dict[str, Any] = handler(self)
-        if self.youngs_modulus is not None:
-            del given["reduced_modulus"]
-        return given

@@ -1,4 +1,4 @@
-"""The fields of a skin that resists being bent out of plane, and its stiffness."""
+"""The fields and the stiffness of a skin under tension that may resist bending."""
 
 from __future__ import annotations
 
@@ -14,17 +14,15 @@ from pellicle.units import BendingStiffness, Tension
 class Skin(Kernel):
     """A kernel whose surface is a skin under tension that may resist bending."""
 
-    tension: Annotated[
-        Tension, Field(description="tension τ₀ of the skin [N/m], 0 for none", default=0.0)
-    ]
+    tension: Annotated[Tension, Field(description="tension τ₀ of the skin [N/m], 0 for none")] = 0.0
     bending: Annotated[
         BendingStiffness,
-        Field(description="bending stiffness B of the skin [N*m], 0 for none", default=0.0),
-    ]
+        Field(description="bending stiffness B of the skin [N*m], 0 for none"),
+    ] = 0.0
 
     def skin_stiffness(self, q: Array) -> Array:
         """Return τ₀ q² + B q⁴ [Pa/m], a plate under tension; Timoshenko & Woinowsky-Krieger 1959.
 
-        It adds to the stiffness 1/G(q) of whatever the skin lies on, if that is stuck to it.
+        It adds to the stiffness 1/G(q) of the solid to which the skin is bonded.
         """
         return (self.tension + self.bending * q**2) * q**2

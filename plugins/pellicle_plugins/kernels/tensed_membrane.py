@@ -26,25 +26,25 @@ class TensedMembrane(ElasticSolid):
     @property
     def elastocapillary_length(self) -> float:
         """Length s = 2τ₀/E* [m], below which the tension outweighs the elasticity."""
-        return 2 * self.tension / self.reduced_modulus
+        return 2 * self.tension / self.contact_modulus
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) = 1/(E* q/2 + τ₀ q²) [m/Pa]; Hajji 1978."""
-        return 1.0 / (self.reduced_modulus * q / 2 + self.tension * q**2)
+        return 1.0 / (self.contact_modulus * q / 2 + self.tension * q**2)
 
     def greens_function(self, r: Array) -> Array:
         """Return G(r) = [H₀(r/s) − Y₀(r/s)]/(2 s E*) [m/N]; Hajji 1978."""
         s = self.elastocapillary_length
         if s == 0:
-            return 1.0 / (np.pi * self.reduced_modulus * r)
-        return struve_minus_bessel(r / s) / (2 * s * self.reduced_modulus)
+            return 1.0 / (np.pi * self.contact_modulus * r)
+        return struve_minus_bessel(r / s) / (2 * s * self.contact_modulus)
 
     def radial_primitive(self, r: Array) -> Array:
         """Return ∫₀^r G r dr = (s/2E*)[z(H₁(z) − Y₁(z)) − 2/π], z = r/s [m²/N]."""
         s = self.elastocapillary_length
         if s == 0:
-            return r / (np.pi * self.reduced_modulus)
-        return struve_minus_bessel_primitive(r / s) * (s / (2 * self.reduced_modulus))
+            return r / (np.pi * self.contact_modulus)
+        return struve_minus_bessel_primitive(r / s) * (s / (2 * self.contact_modulus))
 
 
 @hookimpl

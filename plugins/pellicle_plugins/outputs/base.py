@@ -18,9 +18,10 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
 from pellicle.model.expression import evaluate
 from pellicle.model.messages import nearest
-from pellicle.report.plotting import axis_unit, save_figure, without_round_off
+from pellicle.report.plotting import save_figure, without_round_off
 from pellicle.results.derived import Runs, names
 from pellicle.results.result import Result
+from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -161,10 +162,8 @@ def label(template: str | None, data: xr.Dataset, dim: str | None) -> str:
 
 def _at(value: xr.DataArray) -> str:
     unit = value.attrs.get("units", "1")
-    if value.dtype.kind not in "if" or unit in ("", "1"):
-        return f"{value.name} = {value.item()}"
-    factor, name = axis_unit(value.values, unit)
-    return f"{value.name} = {value.item() * factor:.4g} {name}"
+    text = readable(value.item(), unit, digits=4) if unit != "1" else str(value.item())
+    return f"{value.name} = {text}"
 
 
 def scaled(text: str, values: xr.DataArray, given: str | None) -> tuple[float, str]:
@@ -174,11 +173,8 @@ def scaled(text: str, values: xr.DataArray, given: str | None) -> tuple[float, s
     """
     if given is not None:
         return 1.0, given
-    unit = values.attrs.get("units", "1")
-    if unit in ("", "1"):
-        return 1.0, text
-    factor, name = axis_unit(values.values, unit)
-    return factor, f"{text} [{name}]"
+    factor, name = axis_unit(values.values, values.attrs.get("units", "1"))
+    return factor, f"{text} [{name}]" if name else text
 
 
 def set_scales(axes: Axes, log: Sequence[str]) -> None:

@@ -12,8 +12,9 @@ from pydantic import Field
 from pellicle import hookimpl
 from pellicle.analysis import Distribution, distribution
 from pellicle.components import Output
-from pellicle.report.plotting import axis_unit, save_figure
+from pellicle.report.plotting import save_figure
 from pellicle.results.derived import Runs
+from pellicle.units import axis_unit
 
 from .base import Drawing, Log, set_scales, write_csv
 

@@ -14,7 +14,7 @@ from pydantic import Field
 
 from pellicle import Grid, Loading, hookimpl
 from pellicle.components import Output, Place
-from pellicle.config.describe import Input, in_words, inputs
+from pellicle.config.describe import Input, inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
 from pellicle.report.page import (
@@ -35,7 +35,6 @@ from pellicle.report.page import Field as Shown
 from pellicle.report.plotting import (
     FIGURES,
     STUDY_FIGURES,
-    axis_unit,
     study_curves,
     svg,
     without_round_off,
@@ -47,6 +46,7 @@ from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import names_of
 from pellicle.studies.summary import coarse, each_run, failures, reasons, standing
+from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -232,7 +232,7 @@ def _status_of_study(table: xr.Dataset, count: int) -> Notice:
 def _column(name: str, variable: xr.DataArray) -> tuple[Column, float]:
     """Return the head of a variable's column, and the factor to its unit."""
     unit = variable.attrs.get("units", "1")
-    factor, unit = axis_unit(variable.values, unit) if unit != "1" else (1.0, "")
+    factor, unit = axis_unit(variable.values, unit)
     words = variable.dtype.kind not in "if"
     said = name if "." in name else name.replace("_", " ")
     return Column(said, unit, variable.attrs.get("long_name", ""), words), factor
@@ -317,7 +317,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], shown: dict[int, int]) -> T
 def _named(row: xr.Dataset) -> str:
     """Return what tells a run from the others."""
     return ", ".join(
-        f"{name} = {in_words(value.item(), value.attrs.get('units', '1'))}"
+        f"{name} = {readable(value.item(), value.attrs.get('units', '1'))}"
         for name, value in row.coords.items()
         if name != "step"
     )
@@ -364,7 +364,7 @@ def _varied(table: xr.Dataset, found: list[Input]) -> list[Input]:
     axes = [
         Input(
             str(name),
-            in_words(axis.values.tolist(), axis.attrs.get("units", "1")),
+            readable(axis.values.tolist(), axis.attrs.get("units", "1")),
             f"varied, {axis.size} values",
         )
         for name, axis in table.coords.items()

@@ -12,8 +12,9 @@ from pydantic import Field
 
 from pellicle import hookimpl
 from pellicle.components import Output
-from pellicle.report.plotting import axis_unit, extent, save_figure
+from pellicle.report.plotting import extent, save_figure
 from pellicle.results.derived import Runs, as_array
+from pellicle.units import axis_unit
 
 from .base import Drawing, scaled
 

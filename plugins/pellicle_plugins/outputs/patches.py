@@ -11,9 +11,10 @@ from pydantic import Field
 
 from pellicle import analysis, hookimpl
 from pellicle.components import Output
-from pellicle.report.plotting import axis_unit, extent, save_figure
+from pellicle.report.plotting import extent, save_figure
 from pellicle.results.derived import Runs
 from pellicle.results.result import Result
+from pellicle.units import axis_unit
 
 from .base import Drawing, write_csv
 

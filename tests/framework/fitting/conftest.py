@@ -1,8 +1,7 @@
-"""What tests of fits share: the command, the ensemble of the benchmarks, files of instruments."""
+"""What tests of fits share: the command."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,9 +10,6 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 from pellicle.cli import app
-
-HERE = Path(__file__).parent
-sys.path += [str(HERE), str(HERE.parents[1] / "benchmarks")]
 
 
 @pytest.fixture

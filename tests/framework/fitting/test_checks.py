@@ -15,10 +15,10 @@ from fit_rivals import CONTROLS, RIVALS, Kind, outcomes
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle.fitting import status
-from pellicle.fitting.curves.sources import gather
-from pellicle.fitting.fit import fitted
-from pellicle.fitting.posed import posed
+from pellicle.fitting.fit import fit_problem
+from pellicle.fitting.models.force_model import tension_model
+from pellicle.fitting.problem import FitProblem, problems
+from pellicle.fitting.result import status_line
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.noise import resolution
 
@@ -259,7 +259,7 @@ def test_slope_of_the_baseline_cannot_reproduce_any_curve() -> None:
     """The baseline runs along the base of the cantilever, which holds no measured force."""
     position, force = _cantilever(1e-3)
     bead = pl.indenter("paraboloid", radius=RADIUS)
-    likelihood = Likelihood(position, force, bead, 1e-10, (0, 1, 2, 3, 4), 1e-3)  # type: ignore[arg-type]
+    likelihood = Likelihood(position, force, tension_model(bead), 1e-10, (), 1e-3)  # type: ignore[arg-type]
     steps = np.diff(likelihood.travel)
     assert np.ptp(steps) < 1e-9 * steps.mean()
 
@@ -315,12 +315,14 @@ def test_no_interval_is_narrower_than_its_bound() -> None:
 
 def test_fit_reports_what_it_is_at() -> None:
     """What a terminal shows names the parameter whose interval is sought."""
-    sources = gather({"a": tuple(white(1, points=100))}, "approach", {"radius": RADIUS})  # type: ignore[dict-item]
-    (problem,) = posed(sources, "paraboloid", {})
+    config = pl.FitConfig.merged(indenter="paraboloid", radius=RADIUS)
+    position, force = white(1, points=100)
+    (problem,) = problems(config, config.sources({"a": (position, force)}))
+    assert isinstance(problem, FitProblem)
     words: list[str] = []
-    fitted(problem, words.append)  # type: ignore[arg-type]
+    fit_problem(problem, words.append)
     assert {"interval of tension", "interval of reduced_modulus"} <= set(words)
-    with status.status(enabled=True) as report:
+    with status_line(enabled=True) as report:
         report("shows nothing without a terminal")
 
 

@@ -13,7 +13,7 @@ from pellicle.fitting.curves.readers import read
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("position (um*9**9**9**9),force (nN)\n1,2\n", "no unit of position"),
+        ("position (um*9**9**9**9),force (nN)\n1,2\n", "not a unit of position"),
         ("position" + " " * 100_000 + "(,force (nN)\n1,2\n", "no column position"),
         (" " * 100_000 + "[[,force (nN)\n1,2\n", "no column position"),
         ("position (um),force (nN)\n" + "1" * 300_000 + ",2\n", "is neither text"),

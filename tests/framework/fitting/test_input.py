@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from click.testing import Result
 from numpy.typing import NDArray
+from tests.pictures import drawn_width
 
 import pellicle as pl
-from pellicle.fitting.curves.columns import Measured
-from pellicle.fitting.curves.curve import clean
+from pellicle.fitting.curves.curve import Curve, clean
 from pellicle.fitting.curves.readers import read
 
 Array = NDArray[np.float64]
@@ -67,7 +67,11 @@ def test_command_leaves_files(cli: Cli) -> None:
     _write(position, force)
     shown = cli("curve.csv", "-i", "flat_punch", "--radius", "10 um", "-o", "out").stdout
     assert "wrote out/curve-fit.json" in shown
-    assert Path("out/curve-fit.png").stat().st_size > 10_000
+    figure = Path("out/curve-fit.png")
+    # Data with the fit, residuals below them, beside both the confidence region.
+    assert drawn_width(figure, columns=(0, 0.5), rows=(0, 0.68)) > 0.6
+    assert drawn_width(figure, columns=(0, 0.5), rows=(0.72, 1)) > 0.3
+    assert drawn_width(figure, columns=(0.5, 0.88)) > 0.2
     said = json.loads(Path("out/curve-fit.json").read_text(encoding="utf-8"))
     assert said["tension"]["low"] is None
     assert any("does not describe the curve" in message for message in said["messages"])
@@ -100,8 +104,8 @@ def test_rows_at_the_turn_belong_to_the_pass_that_has_them(dwell: int) -> None:
     relaxed = 0.9 * force[::-1]
     held = np.full(dwell, position[-1]), np.full(dwell, relaxed[0])
     both = np.r_[position, held[0], position[-2::-1]], np.r_[force, held[1], relaxed[1:]]
-    assert np.array_equal(clean(*both).force, force)
-    assert np.array_equal(clean(*both, "retract").force, relaxed[::-1])
+    assert np.array_equal(clean(Curve(*both)).force, force)
+    assert np.array_equal(clean(Curve(*both), "retract").force, relaxed[::-1])
 
 
 def test_held_parameters(cli: Cli) -> None:
@@ -128,7 +132,7 @@ def test_tables(cli: Cli, header: str, separator: str) -> None:
     position, force = _curve()
     _write(position, force, header, separator)
     measured = read(Path("curve.csv"))[""]
-    assert isinstance(measured, Measured)
+    assert isinstance(measured, Curve)
     assert measured.position == pytest.approx(position)
     assert measured.force == pytest.approx(force, abs=1e-18)
 
@@ -145,8 +149,9 @@ def test_decimal_commas(cli: Cli) -> None:
     """Between semicolons a comma is decimal."""
     Path("curve.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n", encoding="utf-8")
     measured = read(Path("curve.csv"))[""]
-    assert isinstance(measured, Measured)
-    assert measured.depth == pytest.approx([1.5e-9, 2.5e-9])
+    assert isinstance(measured, Curve)
+    assert measured.is_depth
+    assert measured.position == pytest.approx([1.5e-9, 2.5e-9])
     assert measured.force == pytest.approx([2.25e-9, np.nan], nan_ok=True)
 
 
@@ -254,7 +259,7 @@ def test_sphere_is_not_sunk() -> None:
     [
         ("position,force", "no unit"),
         ("position [um],force [V]", "spring constant"),
-        ("position [um],force [nm]", "no unit of force"),
+        ("position [um],force [nm]", "not a unit of force"),
         ("position [um],load [nN]", "no column force"),
         ("height [um],force [nN]", "spring_constant: is missing"),
         ("1.0,2.0", "no column force"),
@@ -327,7 +332,7 @@ def test_retract_on_request() -> None:
         (("curve.csv", "-i", "ball", "--radius", "10 um"), "'ball' is no indenter"),
         (("curve.csv", "-i", "self_affine", "--radius", "10 um"), "indenter"),
         (("curve.csv", *OPTIONS, "--fix", "tension"), "name=value"),
-        (("curve.csv", *OPTIONS, "--fix", "modulus=1"), "is no parameter"),
+        (("curve.csv", *OPTIONS, "--fix", "modulus=1"), "is not a parameter"),
         (("curve.csv", *OPTIONS, "--fix", "tension=-1"), "≥ 0"),
         (("curve.csv", *OPTIONS, "--fix", "tension=1 V"), "[mass]"),
         (("curve.csv", *OPTIONS, "--fix", "tension=1e300"), "≤ 1e+30 N/m"),
@@ -336,7 +341,7 @@ def test_retract_on_request() -> None:
         (("curve.csv", *OPTIONS, "--baseline", "cubic"), "not allowed"),
         (("curve.csv", *OPTIONS, "--segment", "all"), "not allowed"),
         (("curve.csv", *OPTIONS, "--poissons-ratio", "0.7"), "≤ 0.5"),
-        (("curve.csv", *OPTIONS, "--set", "grid.points=9"), "grid is no table here"),
+        (("curve.csv", *OPTIONS, "--set", "grid.points=9"), "grid: is not a field here"),
         (("curve.csv", *OPTIONS, "--kernel", "winkler"), "kernel: 'winkler' has no field"),
         (("curve.csv", *OPTIONS, "--kernel", "bonded_layer"), "put it under a skin"),
     ],

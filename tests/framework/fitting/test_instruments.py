@@ -5,19 +5,31 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import instruments
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.framework.fitting import instruments
 
 import pellicle as pl
-from pellicle.fitting.curves.columns import Calibration, Measured
+from pellicle.fitting.curves.columns import Calibration
+from pellicle.fitting.curves.curve import Curve
 from pellicle.fitting.curves.readers import read
+from pellicle.fitting.models.force_model import (
+    CONTACT_POINT,
+    OFFSET,
+    SLOPE,
+    TENSION,
+    Coordinates,
+    tension_model,
+)
+from pellicle.fitting.models.force_model import (
+    MODULUS as REDUCED_MODULUS,
+)
 from pellicle.fitting.statistics.likelihood import Likelihood
 
 Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS, SPRING, SENSITIVITY = 5e3, 3e-6, 10e-6, 0.05, 50e-9
-GIVEN = Calibration(SPRING, SENSITIVITY)
+GIVEN = Calibration(spring_constant=SPRING, sensitivity=SENSITIVITY)
 BEAD = pl.indenter("paraboloid", radius=RADIUS)
 
 
@@ -34,7 +46,7 @@ def recording() -> instruments.Recording:
     return instruments.record(POSITION, FORCE, NOISE, SPRING)
 
 
-def only(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Measured:
+def only(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Curve:
     """Return the only curve of a file."""
     (found,) = read(path, calibration, segment).values()
     if isinstance(found, Exception):
@@ -42,9 +54,8 @@ def only(path: Path, calibration: Calibration | None = None, segment: str = "app
     return found
 
 
-def is_curve(measured: Measured, position: Array, force: Array) -> bool:
+def is_curve(measured: Curve, position: Array, force: Array) -> bool:
     """Whether a curve is this one, but for where position is 0."""
-    assert measured.position is not None
     moved = measured.position - position
     same = np.ptp(moved) < 1e-6 * np.ptp(position)
     return bool(same and np.allclose(measured.force, force, atol=1e-6 * np.ptp(force)))
@@ -61,12 +72,10 @@ def test_formats(tmp_path: Path, recording: instruments.Recording, name: str) ->
     if name == "curve.ibw":
         # The file does not say where the approach ends: that is found from the position.
         assert approach.force.size == 2 * force.size
-        assert approach.position is not None
         first = slice(force.size)
-        approach = Measured(approach.force[first], approach.position[first])
+        approach = Curve(approach.position[first], approach.force[first])
     else:
         retract = only(path, calibration, "retract").position
-        assert retract is not None
         assert retract[0] - retract[-1] == pytest.approx(np.ptp(position), rel=0.03)
     assert is_curve(approach, position, force)
 
@@ -94,7 +103,7 @@ def test_maps(tmp_path: Path, recording: instruments.Recording, name: str) -> No
     instruments.MAPS[name](tmp_path / name, [recording, recording])
     found = read(tmp_path / name)
     assert list(found) == ["0", "1"]
-    assert all(isinstance(each, Measured) and is_curve(each, *SEEN) for each in found.values())
+    assert all(isinstance(each, Curve) and is_curve(each, *SEEN) for each in found.values())
 
 
 @pytest.mark.parametrize("name", instruments.UNCALIBRATED)
@@ -111,8 +120,8 @@ def test_calibration_is_not_given_twice(tmp_path: Path, recording: instruments.R
     """A spring constant beside the one in the file is refused where it cannot be replaced."""
     instruments.tab(tmp_path / "curve.tab", recording)
     with pytest.raises(pl.ConfigError, match=r"holds a spring constant of 0\.05 already"):
-        only(tmp_path / "curve.tab", Calibration(0.1))
-    assert is_curve(only(tmp_path / "curve.tab", Calibration(SPRING)), *SEEN)
+        only(tmp_path / "curve.tab", Calibration(spring_constant=0.1))
+    assert is_curve(only(tmp_path / "curve.tab", Calibration(spring_constant=SPRING)), *SEEN)
 
 
 def test_damaged_file(tmp_path: Path, recording: instruments.Recording) -> None:
@@ -172,23 +181,31 @@ def test_columns_of_a_cantilever(tmp_path: Path, header: str) -> None:
         assert is_curve(only(path), position, force)
 
 
+TRUTH: Coordinates = {
+    CONTACT_POINT: 0.0,
+    REDUCED_MODULUS: float(np.log(MODULUS)),
+    TENSION: MODULUS * LENGTH / 2,
+    OFFSET: 0.0,
+    SLOPE: 0.0,
+}
+
+
 def test_noise_of_the_deflection_is_in_the_position_too() -> None:
     """With a spring as soft as the contact errors are those of the bound, and nothing is widened.
 
     Without its spring constant the same curve is thought not to be described by the model.
     """
     random = np.random.default_rng(7)
-    truth = np.array([0.0, np.log(MODULUS), MODULUS * LENGTH / 2, 0.0, 0.0])
     errors = []
     for _ in range(8):
         noise = 0.005 * FORCE.max() * random.standard_normal(FORCE.size)
         seen = POSITION - noise / SPRING, FORCE + noise
         fit = pl.fit(*seen, indenter=BEAD, spring_constant=SPRING)
         assert not fit.failed_checks
-        bound = fit.likelihood.deviations(truth)
+        bound = fit.likelihood.deviations(TRUTH)
         errors += [
-            np.log(fit.reduced_modulus.value / MODULUS) / bound[1],
-            (fit.tension.value - truth[2]) / bound[2],
+            np.log(fit.reduced_modulus.value / MODULUS) / bound[REDUCED_MODULUS],
+            (fit.tension.value - TRUTH[TENSION]) / bound[TENSION],
         ]
     assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 1.6
     blind = pl.fit(*seen, indenter=BEAD)
@@ -198,21 +215,23 @@ def test_noise_of_the_deflection_is_in_the_position_too() -> None:
 def test_balance_of_cantilever_and_solid() -> None:
     """At the truth nothing is left but the noise, and slopes are derivatives of the residuals."""
     noise = 0.01 * float(FORCE.max())
-    likelihood = Likelihood(*SEEN, BEAD, noise, (0, 1, 2, 3, 4), SPRING)  # type: ignore[arg-type]
-    truth = np.array([0.0, np.log(MODULUS), MODULUS * LENGTH / 2, 0.0, 0.0])
-    assert likelihood.residuals(truth) * noise == pytest.approx(-NOISE, abs=1e-8 * FORCE.max())
-    here = truth + 0.01 * likelihood.scale * np.array([1, 10, 1, 1, 1])
-    away = np.abs(POSITION - here[0]) > 0.1e-6
-    for which in range(5):
-        step = np.zeros(5)
-        step[which] = 1e-5 * likelihood.scale[which]
-        rise = likelihood.residuals(here + step) - likelihood.residuals(here - step)
-        slope = likelihood.slopes(here)[:, which]
-        found = rise / (2 * step[which])
+    likelihood = Likelihood(*SEEN, tension_model(BEAD), noise, tuple(TRUTH), SPRING)  # type: ignore[arg-type]
+    assert likelihood.residuals(TRUTH) * noise == pytest.approx(-NOISE, abs=1e-8 * FORCE.max())
+    here = {p: value + 0.01 * likelihood.ranges[p].scale for p, value in TRUTH.items()}
+    here[REDUCED_MODULUS] = TRUTH[REDUCED_MODULUS] + 0.1
+    away = np.abs(POSITION - here[CONTACT_POINT]) > 0.1e-6
+    for column, parameter in enumerate(likelihood.parameters):
+        step = 1e-5 * likelihood.ranges[parameter].scale
+        above, below = (
+            likelihood.residuals(here | {parameter: here[parameter] + change})
+            for change in (step, -step)
+        )
+        slope = likelihood.jacobian(here)[:, column]
+        found = (above - below) / (2 * step)
         assert found[away] == pytest.approx(slope[away], abs=1e-4 * np.abs(slope).max())
 
 
 def test_bad_calibration() -> None:
     """A calibration of another dimension is refused."""
     with pytest.raises(pl.ConfigError, match=r"spring_constant: .*\[mass\]"):
-        Calibration.of("5 um")
+        Calibration(spring_constant="5 um")

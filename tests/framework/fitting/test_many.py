@@ -17,15 +17,12 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
-from pellicle.fitting.curves.sources import gather
-from pellicle.fitting.many import carry_out
+from pellicle.fitting.many import fit_sources
 
 Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS = 5e3, 3e-6, 10e-6
 HEADER = "position [um],force [nN]"
 OPTIONS = ("-i", "paraboloid", "--radius", "10 um")
-PLAIN = {"fix": {"tension": 0}}
-"""Without tension a fit is faster."""
 Cli = Callable[..., Result]
 
 
@@ -134,13 +131,15 @@ class Stops(Executor):
 def test_interrupted(tmp_path: Path) -> None:
     """What was finished is in the table, and the rest is said not to have run."""
     curves = {str(seed): curve(seed) for seed in range(3)}
-    sources = gather(curves, "approach", {"radius": RADIUS})
+    config = pl.FitConfig.merged(indenter="paraboloid", radius=RADIUS, fix={"tension": 0})
+    sources = config.sources(curves)
+    stops = pl.FitConfig.merged(config, executor=Stops())
     with pytest.raises(KeyboardInterrupt):
-        carry_out(sources, "paraboloid", PLAIN, Stops(), tmp_path, progress=False)
+        fit_sources(stops, sources, tmp_path, progress=False)
     rows = json.loads((tmp_path / "fits.json").read_text(encoding="utf-8"))["curves"]
     assert [row["status"] for row in rows] == ["fitted", "not run", "not run"]
-    done = carry_out(sources, "paraboloid", PLAIN, "serial", tmp_path, progress=False)
-    assert (done.taken, done.failed) == (1, 0)
+    fits = fit_sources(config, sources, tmp_path, progress=False)
+    assert (fits.resumed, fits.failed) == (1, 0)
 
 
 class Keeps(Executor):
@@ -178,7 +177,7 @@ def test_simulated_once_here(monkeypatch: pytest.MonkeyPatch) -> None:
         asked.append(settings["executor"])
         return indenter
 
-    monkeypatch.setattr("pellicle.fitting.posed.simulate", simulate)
+    monkeypatch.setattr("pellicle.fitting.problem.simulate", simulate)
     curves = {str(seed): curve(seed) for seed in range(2)}
     common: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "fix": {"tension": 0}}
     there = pl.fit_many(

@@ -12,18 +12,29 @@ import numpy as np
 import pytest
 from click.testing import Result
 from numpy.typing import NDArray
+from tests.pictures import drawn_width
 
 import pellicle as pl
 from pellicle.fitting.models import simulation
+from pellicle.fitting.models.force_model import (
+    CONTACT_POINT,
+    MODULUS,
+    OFFSET,
+    SLOPE,
+    TENSION,
+    Coordinates,
+    tension_model,
+)
 from pellicle.fitting.models.interpolated import SimulatedCurve
 from pellicle.fitting.report.page import save_report
-from pellicle.fitting.statistics.likelihood import MODULUS, POINT, TENSION, Likelihood
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.pooled_likelihood import Pool
-from pellicle.fitting.statistics.profile import widened
+from pellicle.fitting.statistics.profile import widen
 
 Array = NDArray[np.float64]
 TRUE_MODULUS, TRUE_TENSION = 2e3, 5e-3
 RADII = (5e-6, 40e-6)
+FREE = (CONTACT_POINT, MODULUS, TENSION)
 
 
 def curve(
@@ -36,6 +47,12 @@ def curve(
     noise = 0.01 * float(force.max())
     point = random.uniform(-1, 1) * radius
     return depth + point, force + noise * random.standard_normal(points), point, noise
+
+
+def truth(point: float) -> Coordinates:
+    """Return the coordinates that `curve` has."""
+    shared = {MODULUS: float(np.log(TRUE_MODULUS)), TENSION: TRUE_TENSION}
+    return {CONTACT_POINT: point, **shared, OFFSET: 0.0, SLOPE: 0.0}
 
 
 def pooled(curves: dict[str, tuple[Array, Array]], **options: object) -> pl.PooledFit:
@@ -66,23 +83,22 @@ def test_errors_reach_the_pooled_bound_and_intervals_shrink_to_it() -> None:
         curves = {str(number): each[:2] for number, each in enumerate(made)}
         found = pooled(curves, contact_points=True)
         members = [
-            Likelihood(z, f, pl.indenter("paraboloid", radius=radius), noise, (0, 1, 2))  # type: ignore[arg-type]
+            Likelihood(z, f, tension_model(pl.indenter("paraboloid", radius=radius)), noise, FREE)  # type: ignore[arg-type]
             for (z, f, _, noise), radius in zip(made, RADII, strict=True)
         ]
-        shared = [np.log(TRUE_MODULUS), TRUE_TENSION]
-        parts = [np.array([point, *shared, 0.0, 0.0]) for _, _, point, _ in made]
+        parts = [truth(point) for _, _, point, _ in made]
         pool = Pool.of(members)
         bound = pool.deviations(pool.joined(parts))
         alone = [m.deviations(part) for m, part in zip(members, parts, strict=True)]
-        for which, estimate, truth in (
+        for which, estimate, true in (
             (MODULUS, found.reduced_modulus, TRUE_MODULUS),
             (TENSION, found.tension, TRUE_TENSION),
         ):
             assert estimate.low is not None
             assert estimate.high is not None
             deviation = bound[which] * (TRUE_MODULUS if which == MODULUS else 1)
-            errors.append((estimate.value - truth) / deviation)
-            covered.append(estimate.low < truth < estimate.high)
+            errors.append((estimate.value - true) / deviation)
+            covered.append(estimate.low < true < estimate.high)
             widths.append((estimate.high - estimate.low) / 2 / deviation)
             gains.append(min(each[which] for each in alone) / bound[which])
         for own, (_, _, point, _) in zip(found.curves, made, strict=True):
@@ -121,22 +137,24 @@ def test_pool_of_the_same_curve_twice(measured: dict[str, tuple[Array, Array]]) 
 
 def test_slopes_and_bound_are_those_of_all_points(fit: pl.PooledFit) -> None:
     """The six rows that stand for a curve keep χ², its gradient and the Fisher information."""
-    free = (0, 1, 2, 3, 4)
-    pool = Pool.of([replace(member, free=free) for member in fit.pool.members])
-    here = fit.parameters + 0.3 * pool.deviations(fit.parameters)
+    pool = Pool.of([replace(member, free=member.parameters) for member in fit.pool.members])
+    away = pool.deviations(fit.parameters)
+    here = {p: value + 0.3 * away[p] for p, value in fit.parameters.items()}
     parts = pool.parts(here)
     whole = sum(m.chi_squared(part) for m, part in zip(pool.members, parts, strict=True))
     assert pool.chi_squared(here) == pytest.approx(whole, rel=1e-12)
-    stacked = np.zeros((sum(m.force.size for m in pool.members), here.size))
+    stacked = np.zeros((sum(m.force.size for m in pool.members), len(here)))
     left = np.concatenate([m.residuals(p) for m, p in zip(pool.members, parts, strict=True)])
-    first, *others = [m.slopes(p) for m, p in zip(pool.members, parts, strict=True)]
+    first, *others = [m.jacobian(p) for m, p in zip(pool.members, parts, strict=True)]
     stacked[: len(first), :5] = first
     stacked[len(first) :, [5, 1, 2, 6, 7]] = others[0]
-    gradient = pool.slopes(here).T @ pool.residuals(here)
-    assert gradient * pool.scale == pytest.approx(stacked.T @ left * pool.scale, rel=1e-8, abs=1e-6)
-    scaled = stacked * pool.scale
-    bound = np.sqrt(np.diag(np.linalg.inv(scaled.T @ scaled))) * pool.scale
-    assert pool.deviations(here) == pytest.approx(bound, rel=1e-6)
+    gradient = pool.jacobian(here).T @ pool.residuals(here)
+    scale = np.array([pool.ranges[p].scale for p in pool.parameters])
+    assert gradient * scale == pytest.approx(stacked.T @ left * scale, rel=1e-8, abs=1e-6)
+    scaled = stacked * scale
+    bound = np.sqrt(np.diag(np.linalg.inv(scaled.T @ scaled))) * scale
+    deviations = pool.deviations(here)
+    assert [deviations[p] for p in pool.parameters] == pytest.approx(bound, rel=1e-6)
 
 
 def test_ends_are_where_the_profile_has_risen(fit: pl.PooledFit) -> None:
@@ -147,11 +165,13 @@ def test_ends_are_where_the_profile_has_risen(fit: pl.PooledFit) -> None:
     for which, ends in (
         (MODULUS, np.log([fit.reduced_modulus.low, fit.reduced_modulus.high])),
         (TENSION, [fit.tension.low, fit.tension.high]),
-        *((fit.pool.place(at, POINT), [each.low, each.high]) for at, each in enumerate(points)),
+        *((CONTACT_POINT.of_curve(at), [each.low, each.high]) for at, each in enumerate(points)),
     ):
         for end in ends:
-            start = fit.parameters + 2 * bound * random.standard_normal(bound.size)
-            start[which] = end
+            start = {
+                p: value + 2 * bound[p] * random.standard_normal()
+                for p, value in fit.parameters.items()
+            } | {which: end}
             least = fit.pool.minimise(start, (which,)).chi_squared
             assert least - fit.chi_squared == pytest.approx(fit.rise, rel=0.02)
 
@@ -224,20 +244,17 @@ def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> Non
         bead, {"type": "tensed_membrane"}, depths, ratios, np.log(1.01 * forces), (0.5, 0.0), 1.0
     )
     exact = replace(coarse, log_forces=np.log(forces))
-    starts = [
-        np.array([z[z.size // 4], np.log(TRUE_MODULUS), TRUE_TENSION, 0.0, 0.0])
-        for z, _ in measured.values()
-    ]
+    starts = [truth(float(z[z.size // 4])) for z, _ in measured.values()]
     ends = []
     for model in (exact, replace(exact, coarse=coarse)):
         members = []
         for (z, f), radius in zip(measured.values(), RADII, strict=True):
             coarser = model.coarse and replace(model.coarse, unit=radius)
             here = replace(model, unit=radius, coarse=coarser)
-            members.append(Likelihood(z, f, here, 0.01 * float(np.ptp(f)), (0, 1, 2)))
+            members.append(Likelihood(z, f, here, 0.01 * float(np.ptp(f)), FREE))
         pool = Pool.of(members)
         best = pool.minimise(pool.joined(starts))
-        ends.append(widened({MODULUS: (0.0, 0.0)}, pool, best)[0])
+        ends.append(widen({MODULUS: (0.0, 0.0)}, pool, best)[0])
     assert ends[0] == {MODULUS: (0.0, 0.0)}
     low, high = ends[1][MODULUS]
     assert low is not None
@@ -257,7 +274,14 @@ def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Re
     assert "95 % of contact_point" in shown
     said = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
     assert said["reduced_modulus"]["low"] < TRUE_MODULUS < said["reduced_modulus"]["high"]
-    assert Path("out/pool.png").stat().st_size > 10_000
+    # The curves, their residuals, and what each parameter costs.
+    for columns, rows in (
+        ((0.0, 0.5), (0.0, 0.68)),
+        ((0.0, 0.5), (0.72, 1.0)),
+        ((0.5, 1.0), (0.0, 0.5)),
+        ((0.5, 1.0), (0.5, 1.0)),
+    ):
+        assert drawn_width(Path("out/pool.png"), columns, rows) > 0.6
     page = Path("out/pool.html").read_text(encoding="utf-8")
     for words in (
         "The curves agree",

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.fitting.models import simulation
-from pellicle.fitting.models.extent import half_widths
 from pellicle.fitting.models.interpolated import SimulatedCurve
-from pellicle.fitting.models.simulation import plan, simulate
+from pellicle.fitting.models.simulation import half_widths, plan, simulate
 from pellicle.fitting.models.solid import scaled, solid
 
 Array = NDArray[np.float64]

@@ -9,14 +9,16 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 import pellicle as pl
-from pellicle.fitting.statistics.likelihood import (
+from pellicle.fitting.models.force_model import (
+    CONTACT_POINT,
     MODULUS,
     OFFSET,
-    POINT,
     SLOPE,
     TENSION,
-    Likelihood,
+    Parameter,
+    tension_model,
 )
+from pellicle.fitting.statistics.likelihood import Likelihood
 
 Array = NDArray[np.float64]
 MODULUS_TRUE, RADIUS = 5e3, 10e-6
@@ -71,42 +73,55 @@ def test_jacobian(ratio: float) -> None:
     """The Jacobian is the derivative of the residuals in every parameter."""
     position, force = synthetic(ratio)
     indenter = pl.indenter("paraboloid", radius=RADIUS)
-    likelihood = Likelihood(position, force, indenter, 1e-9, (0, 1, 2, 3, 4))  # type: ignore[arg-type]
+    assert isinstance(indenter, pl.HasForceCurve)
+    likelihood = Likelihood(position, force, tension_model(indenter), 1.0, ())
     tension = ratio * RADIUS * MODULUS_TRUE / 2
     # Between two points, so that the step crosses none.
-    here = np.array([1e-6 - 0.4e-9, np.log(MODULUS_TRUE), tension, 1e-9, 1e-3])
+    here = {
+        CONTACT_POINT: 1e-6 - 0.4e-9,
+        MODULUS: float(np.log(MODULUS_TRUE)),
+        TENSION: tension,
+        OFFSET: 1e-9,
+        SLOPE: 1e-3,
+    }
     jacobian = likelihood.jacobian(here)
-    for which in (POINT, MODULUS, TENSION, OFFSET, SLOPE):
-        step = np.zeros(5)
-        step[which] = 1e-5 * likelihood.scale[which]
-        ends = [likelihood.model(here), likelihood.model(here + step)]
-        near = likelihood.jacobian(here + step)[:, which] + jacobian[:, which]
-        slope = (ends[1] - ends[0]) / step[which]
+    for column, parameter in enumerate(likelihood.parameters):
+        step = 1e-5 * likelihood.ranges[parameter].scale
+        beyond = here | {parameter: here[parameter] + step}
+        near = likelihood.jacobian(beyond)[:, column] + jacobian[:, column]
+        slope = (likelihood.model(beyond) - likelihood.model(here)) / step
         # The first point in contact is left out: force is not smooth where it begins.
-        away = np.abs(position - here[POINT]) > 20e-9
-        tolerance = 1e-4 * np.abs(jacobian[:, which]).max()
+        away = np.abs(position - here[CONTACT_POINT]) > 20e-9
+        tolerance = 1e-4 * np.abs(jacobian[:, column]).max()
         assert np.allclose(slope[away], near[away] / 2, atol=tolerance)
 
 
 def test_interval_ends_are_where_the_profile_has_risen() -> None:
     """A minimiser of another kind finds χ² up by the stated rise at each end."""
     fit = fitted(*synthetic(0.3))
-    others = {MODULUS: (POINT, TENSION), TENSION: (POINT, MODULUS), POINT: (MODULUS, TENSION)}
+    others = {
+        MODULUS: (CONTACT_POINT, TENSION),
+        TENSION: (CONTACT_POINT, MODULUS),
+        CONTACT_POINT: (MODULUS, TENSION),
+    }
     ends = {
         MODULUS: np.log([fit.reduced_modulus.low, fit.reduced_modulus.high]),
         TENSION: [fit.tension.low, fit.tension.high],
-        POINT: [fit.contact_point.low, fit.contact_point.high],
+        CONTACT_POINT: [fit.contact_point.low, fit.contact_point.high],
     }
     bound = fit.likelihood.deviations(fit.parameters)
     for which, free in others.items():
         for end in ends[which]:
 
             def chi_squared(
-                u: Array, which: int = which, free: object = free, end: object = end
+                u: Array,
+                which: Parameter = which,
+                free: tuple[Parameter, ...] = free,
+                end: float = end,
             ) -> float:
-                parameters = fit.parameters.copy()
-                parameters[which] = end
-                parameters[list(free)] += u * bound[list(free)]  # type: ignore[call-overload]
+                parameters = fit.parameters | {which: end}
+                for parameter, change in zip(free, u, strict=True):
+                    parameters[parameter] += change * bound[parameter]
                 return fit.likelihood.chi_squared(parameters)
 
             found = minimize(chi_squared, [0.0, 0.0], method="Nelder-Mead", options={"xatol": 1e-3})
@@ -132,20 +147,20 @@ def test_interval_ends_of_a_cone_without_tension() -> None:
         assert max(estimate.high - estimate.value, estimate.value - estimate.low) > estimate.bound
     assert fit.tension.bound == np.inf
     assert fit.tension.high is not None
-    step = np.array([5e-9, 0.01, fit.tension.high / 5, 0, 0])
+    step = {CONTACT_POINT: 5e-9, MODULUS: 0.01, TENSION: fit.tension.high / 5}
     for which, end in (
-        (POINT, fit.contact_point.low),
-        (POINT, fit.contact_point.high),
+        (CONTACT_POINT, fit.contact_point.low),
+        (CONTACT_POINT, fit.contact_point.high),
         (TENSION, fit.tension.high),
     ):
-        free = [k for k in (POINT, MODULUS, TENSION) if k != which]
+        free = [p for p in step if p != which]
 
         def chi_squared(
-            u: Array, which: int = which, free: list[int] = free, end: float | None = end
+            u: Array, which: Parameter = which, free: object = free, end: float | None = end
         ) -> float:
-            parameters = fit.parameters.copy()
-            parameters[which] = end
-            parameters[free] += u * step[free]
+            parameters = fit.parameters | {which: end}
+            for parameter, change in zip(free, u, strict=True):
+                parameters[parameter] += change * step[parameter]
             parameters[TENSION] = abs(parameters[TENSION])
             return fit.likelihood.chi_squared(parameters)
 

@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from pellicle.errors import ConfigError
+from pellicle_plugins.analytic.abel_transform import HasAbelTransform
 from pellicle_plugins.analytic.axisymmetric import AxisymmetricContact, indent
-from pellicle_plugins.analytic.axisymmetric_indenters import Cone, Indenter, Paraboloid, Sphere
 from pellicle_plugins.analytic.cone import cone
 from pellicle_plugins.analytic.hertz import sphere
 from pellicle_plugins.analytic.tensed_punch import punch
+from pellicle_plugins.indenters.cone import Cone
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.sphere import Sphere
 
 DATA = Path(__file__).parents[2] / "data" / "paraboloid.csv"
 ROWS = [
@@ -18,7 +21,7 @@ ROWS = [
     for line in DATA.read_text(encoding="utf-8").splitlines()
     if line and line[0].isdigit()
 ]
-INDENTERS = [Paraboloid(2e-3), Sphere(2e-3), Cone(1.2)]
+INDENTERS = [Paraboloid(radius=2e-3), Sphere(radius=2e-3), Cone(half_angle=1.2)]
 E = 1e4
 
 
@@ -36,7 +39,7 @@ def test_paraboloid_matches_the_reference(row: tuple[float, ...]) -> None:
     """Load, depth, centre and edge pressure equal the tabulated ones."""
     ratio, load, depth, centre, edge = row
     a, radius = 3e-4, 2e-3
-    contact = indent(Paraboloid(radius), E, ratio * a * E / 2, contact_radius=a)
+    contact = indent(Paraboloid(radius=radius), E, ratio * a * E / 2, contact_radius=a)
     assert contact.force / (4 * E * a**3 / (3 * radius)) == pytest.approx(load, rel=1e-11)
     assert contact.depth / (a**2 / radius) == pytest.approx(depth, rel=1e-11)
     p = contact.pressure([0.0, a]) * radius / (E * a)
@@ -46,7 +49,7 @@ def test_paraboloid_matches_the_reference(row: tuple[float, ...]) -> None:
 
 @pytest.mark.parametrize("tension", [0.0, 1e-5, 0.1, 1e3])
 @pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
-def test_pressure_carries_the_force(indenter: Indenter, tension: float) -> None:
+def test_pressure_carries_the_force(indenter: HasAbelTransform, tension: float) -> None:
     """The pressure integrates to the force for every profile."""
     contact = indent(indenter, E, tension, contact_radius=3e-4)
     assert integrated(contact) == pytest.approx(contact.force, rel=1e-8)
@@ -57,7 +60,8 @@ def test_stiffness_is_that_of_a_punch(ratio: float) -> None:
     """dP/dδ of a smooth indenter is the stiffness of the punch of its contact."""
     a, tension = 3e-4, ratio * 3e-4 * E / 2
     low, high = (
-        indent(Paraboloid(2e-3), E, tension, contact_radius=a * (1 + h)) for h in (-1e-4, 1e-4)
+        indent(Paraboloid(radius=2e-3), E, tension, contact_radius=a * (1 + h))
+        for h in (-1e-4, 1e-4)
     )
     slope = (high.force - low.force) / (high.depth - low.depth)
     assert slope == pytest.approx(punch(a, E, tension, depth=1.0).force, rel=1e-7)
@@ -68,18 +72,21 @@ def test_no_tension_is_hertz_and_sneddon() -> None:
     a = 3e-4
     r = np.array([1e-6, 1e-4, 2.9e-4, 4e-4])
     round_, exact = (
-        indent(Paraboloid(2e-3), E, 0.0, contact_radius=a),
+        indent(Paraboloid(radius=2e-3), E, 0.0, contact_radius=a),
         sphere(2e-3, E, contact_radius=a),
     )
     assert (round_.force, round_.depth) == pytest.approx((exact.force, exact.depth), rel=1e-13)
     assert round_.pressure(r) == pytest.approx(exact.pressure(r), rel=1e-12)
-    pointed, sneddon = indent(Cone(1.2), E, 0.0, contact_radius=a), cone(1.2, E, contact_radius=a)
+    pointed, sneddon = (
+        indent(Cone(half_angle=1.2), E, 0.0, contact_radius=a),
+        cone(1.2, E, contact_radius=a),
+    )
     assert (pointed.force, pointed.depth) == pytest.approx((sneddon.force, sneddon.depth))
     assert pointed.pressure(r) == pytest.approx(sneddon.pressure(r), rel=1e-12)
 
 
 @pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
-def test_little_tension_changes_little(indenter: Indenter) -> None:
+def test_little_tension_changes_little(indenter: HasAbelTransform) -> None:
     """Force and depth tend to those without tension as s/a → 0."""
     a = 3e-4
     none = indent(indenter, E, 0.0, contact_radius=a)
@@ -91,7 +98,7 @@ def test_little_tension_changes_little(indenter: Indenter) -> None:
 def test_strong_tension_limit() -> None:
     """P/P_H → (3π/4)(s/a) + 2 and δR/a² → ½ + ln(2s/a) − γ."""
     ratio, a, radius = 1e6, 3e-4, 2e-3
-    contact = indent(Paraboloid(radius), E, ratio * a * E / 2, contact_radius=a)
+    contact = indent(Paraboloid(radius=radius), E, ratio * a * E / 2, contact_radius=a)
     hertz = 4 * E * a**3 / (3 * radius)
     assert contact.force / hertz == pytest.approx(3 * np.pi / 4 * ratio + 2, rel=1e-10)
     expected = 0.5 + np.log(2 * ratio) - np.euler_gamma
@@ -102,7 +109,7 @@ def test_strong_tension_limit() -> None:
 
 def test_pressure_near_the_edge_has_the_known_logarithm() -> None:
     """Near the edge p ≈ p(a⁻) [1 + (e/πs) ln(1/e)] at a small distance e from the edge."""
-    contact = indent(Paraboloid(1.0), 1.0, 0.5, contact_radius=1.0)
+    contact = indent(Paraboloid(radius=1.0), 1.0, 0.5, contact_radius=1.0)
     e = np.array([1e-4, 2e-4])
     edge = contact.pressure(1.0)
     rise = (contact.pressure(1 - e) / edge - 1) / e
@@ -111,7 +118,7 @@ def test_pressure_near_the_edge_has_the_known_logarithm() -> None:
 
 def test_cone_pressure_at_its_apex() -> None:
     """The product p r → τ₀ cot α at the apex of a cone, and p(0) is infinite."""
-    contact = indent(Cone(1.2), E, 0.1, contact_radius=3e-4)
+    contact = indent(Cone(half_angle=1.2), E, 0.1, contact_radius=3e-4)
     r = 3e-13
     assert contact.pressure(r) * r == pytest.approx(0.1 / np.tan(1.2), rel=1e-6)
     assert contact.pressure(0.0) == np.inf
@@ -121,14 +128,15 @@ def test_small_sphere_contact_is_a_paraboloid() -> None:
     """A sphere pressed far less than its radius behaves as its osculating paraboloid."""
     a, radius = 2e-6, 2e-3
     exact, near = (
-        indent(i, E, a * E, contact_radius=a) for i in (Sphere(radius), Paraboloid(radius))
+        indent(i, E, a * E, contact_radius=a)
+        for i in (Sphere(radius=radius), Paraboloid(radius=radius))
     )
     assert (exact.force, exact.depth) == pytest.approx((near.force, near.depth), rel=2e-6)
 
 
 @pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
 @pytest.mark.parametrize("tension", [0.0, 0.3])
-def test_given_depth_or_force_finds_the_radius(indenter: Indenter, tension: float) -> None:
+def test_given_depth_or_force_finds_the_radius(indenter: HasAbelTransform, tension: float) -> None:
     """Radius → depth or force → radius closes."""
     contact = indent(indenter, E, tension, contact_radius=3e-4)
     for same in (
@@ -140,7 +148,7 @@ def test_given_depth_or_force_finds_the_radius(indenter: Indenter, tension: floa
 
 def test_nothing_presses_outside() -> None:
     """The pressure is zero beyond the contact and keeps the shape of its argument."""
-    contact = indent(Paraboloid(2e-3), E, 0.1, contact_radius=3e-4)
+    contact = indent(Paraboloid(radius=2e-3), E, 0.1, contact_radius=3e-4)
     p = contact.pressure([[1e-4, 3.1e-4], [2e-4, 1.0]])
     assert p.shape == (2, 2)
     assert (p > 0).tolist() == [[True, False], [True, False]]
@@ -149,9 +157,9 @@ def test_nothing_presses_outside() -> None:
 def test_contact_beyond_the_sphere_is_refused() -> None:
     """A force or radius that would need more than a hemisphere is an error."""
     with pytest.raises(ConfigError, match="wider"):
-        indent(Sphere(2e-3), E, 0.1, force=1e6)
+        indent(Sphere(radius=2e-3), E, 0.1, force=1e6)
     with pytest.raises(ConfigError, match="less than"):
-        indent(Sphere(2e-3), E, 0.1, contact_radius=2e-3)
+        indent(Sphere(radius=2e-3), E, 0.1, contact_radius=2e-3)
 
 
 @pytest.mark.parametrize(("ratio", "share"), [(0.1, 0.35), (10.0, 0.95)])

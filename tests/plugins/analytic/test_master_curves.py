@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle.components import HasForceCurve
 from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.axisymmetric_indenters import Cone, Paraboloid, Sphere
 from pellicle_plugins.analytic.tensed_punch import punch
+from pellicle_plugins.indenters.cone import Cone
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.sphere import Sphere
 
 Array = NDArray[np.float64]
 ACCURACY = 1e-6
@@ -42,7 +44,10 @@ def _curve(type_: str, depth: float, length: float) -> tuple[float, float, float
 def test_one_variable_curves_solve_the_equation(ratio: float) -> None:
     """Paraboloid, cone and punch agree with the equation to 1e-6 at any s/a."""
     a = 0.4e-6
-    for type_, shape in (("paraboloid", Paraboloid(RADIUS)), ("cone", Cone(ANGLE))):
+    for type_, shape in (
+        ("paraboloid", Paraboloid(radius=RADIUS)),
+        ("cone", Cone(half_angle=ANGLE)),
+    ):
         exact = indent(shape, 1.0, ratio * a / 2, contact_radius=a)
         assert _curve(type_, exact.depth, ratio * a)[0] == pytest.approx(exact.force, rel=ACCURACY)
     exact_punch = punch(RADIUS, 1.0, ratio * RADIUS / 2, depth=a)
@@ -55,7 +60,7 @@ def test_one_variable_curves_solve_the_equation(ratio: float) -> None:
 def test_sphere_solves_the_equation(contact: float, ratio: float) -> None:
     """The sphere agrees up to depths of R."""
     exact = indent(
-        Sphere(RADIUS), 1.0, ratio * contact * RADIUS / 2, contact_radius=contact * RADIUS
+        Sphere(radius=RADIUS), 1.0, ratio * contact * RADIUS / 2, contact_radius=contact * RADIUS
     )
     force = _curve("sphere", exact.depth, ratio * contact * RADIUS)[0]
     assert force == pytest.approx(exact.force, rel=ACCURACY)

@@ -73,10 +73,11 @@ def test_array_is_recorded_by_its_hash() -> None:
 
 def test_recorded_array_is_asked_for_again() -> None:
     """A configuration that only holds a hash says that the array must be given again."""
-    recorded = pl.indenter("heights", values=ROUGH, unit=1).model_dump(exclude_none=True)
+    indenter = pl.indenter("heights", values=ROUGH, unit=1)
+    recorded = indenter.model_dump(exclude_none=True)
     with pytest.raises(pl.ConfigError, match=r"records only the hash .*give values again"):
         pl.indenter(recorded.pop("type"), **recorded)
-    assert pl.indenter("heights", **recorded, values=ROUGH)
+    assert pl.indenter("heights", **recorded, values=ROUGH) == indenter
     with pytest.raises(pl.ConfigError, match="they have changed"):
         pl.indenter("heights", **recorded, values=ROUGH * 2)
 

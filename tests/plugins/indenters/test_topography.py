@@ -450,10 +450,15 @@ def test_size_and_slope_of_a_wrong_unit_are_remarked_on(
 def test_any_file_of_the_right_length_is_no_terrain(tmp_path: Path) -> None:
     """Bare whole numbers, a format without a mark, are read from files named so only."""
     path = tmp_path / "a.bin"
-    path.write_bytes(np.random.default_rng(1).integers(0, 500, 24**2).astype(">i2").tobytes())
+    heights = np.random.default_rng(1).integers(0, 500, (24, 24))
+    path.write_bytes(heights.astype(">i2").tobytes())
     with pytest.raises(pl.ConfigError, match=r"^path: .*no format that can be read"):
         pl.indenter("topography", path=path, unit="1 nm", size="1 um")
-    assert pl.indenter("topography", path=path.rename(tmp_path / "a.hgt"), unit=1e-9, size="1 mm")
+    fields = {"unit": 1e-9, "size": "1 mm", "level": "none"}
+    terrain = pl.indenter("topography", path=path.rename(tmp_path / "a.hgt"), **fields)
+    profile = terrain.profile(*pl.Grid(points=24, size="1 mm").coordinates())
+    lowered = np.sort(heights - heights.max(), axis=None) * 1e-9
+    np.testing.assert_allclose(np.sort(profile, axis=None), lowered, atol=1e-18)
 
 
 def test_complex_heights_are_refused(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from tests.pictures import drawn_width, pixels
 
 import pellicle as pl
 from pellicle.errors import ConvergenceWarning
@@ -88,7 +89,7 @@ def test_an_output_that_fails_keeps_no_other_from_drawing(tmp_path: Path) -> Non
             {"type": "curves", "by": "nothing"},
             {"type": "distributions", "by": TENSION},
         )
-    assert (tmp_path / "study-distributions.png").is_file()
+    assert drawn_width(tmp_path / "study-distributions.png") > 0.3
 
 
 def test_derived_columns_build_on_each_other_and_on_constants(tmp_path: Path) -> None:
@@ -157,7 +158,9 @@ def test_map_of_nothing_finite_is_empty(tmp_path: Path) -> None:
     run = {key: value for key, value in study().items() if key != "study"}
     nowhere = {"type": "maps", "field": "1 / (0 * depth + 0 * pressure)"}
     pl.run(run | {"outputs": [nowhere]}, directory=tmp_path, progress=False)
-    assert (tmp_path / "run-maps.png").stat().st_size > 0
+    # Right of the panel is the bar of colours.
+    assert drawn_width(tmp_path / "run-maps.png", columns=(0, 0.7)) == 0
+    assert drawn_width(tmp_path / "run-maps.png", columns=(0.7, 1)) > 0
 
 
 @pytest.mark.parametrize("type_", ["compliance", "spectrum"])
@@ -175,7 +178,10 @@ def test_a_single_cell_has_no_waves_to_draw(type_: str, tmp_path: Path) -> None:
         warnings.simplefilter("ignore", ConvergenceWarning)
         pl.run(run, directory=tmp_path, progress=False)
     assert rows(tmp_path / f"run-{type_}.csv") == []
-    assert (tmp_path / f"run-{type_}.png").stat().st_size > 0
+    image = pixels(tmp_path / f"run-{type_}.png")
+    # A frame as wide as the figure, nearly, and nothing in it.
+    assert (image.max(axis=-1) < 0.2).mean(axis=1).max() > 0.7
+    assert drawn_width(tmp_path / f"run-{type_}.png", columns=(0, 0.75)) == 0
 
 
 def test_symbol_is_drawn_of_the_runs_that_are_there(tmp_path: Path) -> None:

@@ -9,9 +9,10 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
-import matplotlib.image
+import matplotlib
 import numpy as np
 import pytest
+from tests.pictures import colourfulness, drawn_width, pixels
 from typer.testing import CliRunner
 
 import pellicle as pl
@@ -50,16 +51,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def _colours(path: Path) -> np.ndarray:
-    """Return how far the pixels of a figure are from grey."""
-    return np.ptp(matplotlib.image.imread(path)[..., :3], axis=-1)
-
-
 def test_contact_is_drawn_black_on_white(folder: Path) -> None:
     """A field of truth values has no colours and no bar; in arithmetic it is a number with both."""
-    assert _colours(folder / "run-maps.png").max() < 0.02
-    assert _colours(folder / "run-number.png").max() > 0.5
-    image = matplotlib.image.imread(folder / "run-maps.png")[..., 0]
+    assert colourfulness(folder / "run-maps.png").max() < 0.02
+    assert colourfulness(folder / "run-number.png").max() > 0.5
+    image = pixels(folder / "run-maps.png")[..., 0]
     contact = pl.load(folder / "run.h5").dataset["contact"].mean().item()
     assert (image < 0.1).mean() > contact / 4
     assert (image > 0.9).mean() > (1 - contact) / 4
@@ -97,8 +93,8 @@ def test_map_of_one_value_has_the_colour_of_its_value(tmp_path: Path) -> None:
     outputs = [{"type": "maps", "field": f, "name": f} for f in ("gap", "mean_pressure")]
     pl.run({**full, "outputs": outputs}, directory=tmp_path, progress=False)
     for field, end in (("gap", 0.0), ("mean_pressure", 1.0)):
-        image = matplotlib.image.imread(tmp_path / f"run-{field}.png")
-        middle = image[image.shape[0] // 2, image.shape[1] // 3, :3]
+        image = pixels(tmp_path / f"run-{field}.png")
+        middle = image[image.shape[0] // 2, image.shape[1] // 3]
         np.testing.assert_allclose(middle, matplotlib.colormaps["viridis"](end)[:3], atol=0.01)
 
 
@@ -127,12 +123,22 @@ def test_curves_of_fields_say_what_to_write(output: dict[str, Any], tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    "output", [{"type": "maps", "field": "1"}, {"type": "profiles", "y": "2", "x": "depth"}]
+    "output", [{"type": "maps", "field": "1"}, {"type": "profiles", "y": "2", "x": "x"}]
 )
 def test_bare_numbers_are_drawn(output: dict[str, Any], tmp_path: Path) -> None:
     """An expression without a variable is the same everywhere."""
     pl.run({**RUN, "outputs": [output]}, directory=tmp_path, progress=False)
-    assert (tmp_path / f"run-{output['type']}.png").stat().st_size > 0
+    assert drawn_width(tmp_path / f"run-{output['type']}.png", columns=(0.0, 0.75)) > 0.7
+
+
+def test_a_bare_number_may_stand_against_a_bare_number(tmp_path: Path) -> None:
+    """A profile over the depth of its step has all its points in one place."""
+    output = {"type": "profiles", "y": "2", "x": "depth"}
+    pl.run({**RUN, "outputs": [output]}, directory=tmp_path, progress=False)
+    with (tmp_path / "run-profiles.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["y"]) for row in rows] == [2.0] * 16
+    assert len({row["x"] for row in rows}) == 1
 
 
 def test_control_characters_stay_out_of_figures_and_pages(tmp_path: Path) -> None:

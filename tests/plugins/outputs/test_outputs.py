@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import csv
+import re
+import zlib
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.colors import to_hex
+from tests.pictures import drawn_width, pixels
 
 import pellicle as pl
 
-SIGNATURES = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
-FIGURES = ["pressure", "profile", "force_depth", "area_force"]
+BLUE, ORANGE = "#1f77b4", "#ff7f0e"
+FIGURES = {
+    "pressure": set[str](),
+    "profile": {BLUE, ORANGE},
+    "force_depth": {BLUE},
+    "area_force": {BLUE, ORANGE},
+}
+"""The colours of the lines in each figure."""
 
 
 def _run(outputs: list[dict[str, Any]], **changes: Any) -> pl.Run:
@@ -89,16 +100,30 @@ def _interrupt_in_step(step: int, monkeypatch: pytest.MonkeyPatch, module: Any) 
     monkeypatch.setattr(module, "solve_step", solve_or_interrupt)
 
 
-@pytest.mark.parametrize("format_", SIGNATURES)
+def _line_colours(path: Path) -> set[str]:
+    """Return the colours of the lines in a figure: of PNG those of all pixels."""
+    if path.suffix == ".png":
+        return {to_hex(pixel) for pixel in np.unique(pixels(path).reshape(-1, 3), axis=0)}
+    if path.suffix == ".svg":
+        return set(re.findall(r"(?<=stroke: )#\w{6}", path.read_text(encoding="utf-8")))
+    streams = re.findall(rb"(?s)stream\n(x.*?)\nendstream", path.read_bytes())
+    content = b"\n".join(zlib.decompressobj().decompress(stream) for stream in streams)
+    strokes = re.findall(rb"([\d.]+)\s([\d.]+)\s([\d.]+)\sRG\b", content)
+    return {to_hex([float(part) for part in stroke]) for stroke in strokes}
+
+
+@pytest.mark.parametrize("format_", ["png", "svg", "pdf"])
 def test_figures(tmp_path: Path, format_: str) -> None:
     """Every figure is drawn in the format that is asked for."""
     outputs = [{"type": "figures", "formats": [format_]}]
     pl.run(_run(outputs), directory=tmp_path, progress=False)
     names = sorted(path.name for path in tmp_path.iterdir())
     assert names == sorted(f"two-steps-{figure}.{format_}" for figure in FIGURES)
-    for path in tmp_path.iterdir():
-        assert path.read_bytes().startswith(SIGNATURES[format_])
-        assert path.stat().st_size > 2000
+    for figure, colours in FIGURES.items():
+        assert colours <= _line_colours(tmp_path / f"two-steps-{figure}.{format_}")
+    if format_ == "png":
+        # The contact is half as wide as the panel; right of it is the bar of colours.
+        assert 0.3 < drawn_width(tmp_path / "two-steps-pressure.png", columns=(0, 0.75)) < 0.6
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,8 @@ import numpy as np
 
 from pellicle.errors import ConfigError, PellicleError, StorageError
 
-from .columns import Calibration, Measured
+from .columns import Calibration
+from .curve import Curve
 
 SUFFIXES = (
     ".jpk-force",
@@ -25,24 +26,24 @@ SUFFIXES = (
     ".tab",
     ".zip",
 )
-"""Endings that nothing else reads; .h5, .csv and .txt may be an instrument's as well."""
+"""Suffixes of instrument files alone; .h5, .csv and .txt may be an instrument's as well."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
 _SPRING, _TIP = "spring constant", "tip position"
 _HEIGHTS = ("height (measured)", "height (piezo)")
 
 
 def installed() -> bool:
-    """Return whether afmformats is there."""
+    """Return whether afmformats is installed."""
     return find_spec("afmformats") is not None
 
 
-def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Measured | PellicleError]:
-    """Return the ``segment`` of each curve of a file, by its number; that of an only one is empty.
+def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve | PellicleError]:
+    """Return the ``segment`` of each curve of a file by its number; that of an only one is empty.
 
     Raises
     ------
     ConfigError
-        The file holds no calibration and none is given, or holds one beside the given one.
+        The file holds no calibration and none is given, or its own differs from the given one.
     StorageError
         The file cannot be read, or afmformats is not installed.
     """
@@ -51,42 +52,38 @@ def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Measur
     from afmformats.formats import get_recipe
 
     given = {
-        name: value
-        for name, value in (
-            (_SPRING, calibration.spring_constant),
-            ("sensitivity", calibration.sensitivity),
-        )
-        if value is not None
+        name.replace("_", " "): value
+        for name, value in calibration.model_dump(exclude_none=True).items()
     }
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
-    curves: dict[str, Measured | PellicleError] = {}
-    with warnings.catch_warnings(record=True) as strange:
+    curves: dict[str, Curve | PellicleError] = {}
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        with _explained(path):
+        with _pellicle_errors(path):
             loader = get_recipe(path).loader
             try:
-                found = loader(path, meta_override=given)
+                recordings = loader(path, meta_override=given)
             except NotImplementedError:
-                # A format with a calibration of its own.
-                found = loader(path)
-        for each in found:
-            label = "" if len(found) == 1 else str(each["metadata"]["enum"])
+                # Formats that always hold their calibration do not take another.
+                recordings = loader(path)
+        for recording in recordings:
+            label = "" if len(recordings) == 1 else str(recording["metadata"]["enum"])
             try:
-                with _explained(path):
-                    curves[label] = _curve(path, each, given, segment)
+                with _pellicle_errors(path):
+                    curves[label] = _curve(path, recording, given, segment)
             except PellicleError as error:
                 curves[label] = error
-    messages = tuple(dict.fromkeys(f"afmformats: {each.message}" for each in strange))
+    messages = tuple(dict.fromkeys(f"afmformats: {warning.message}" for warning in caught))
     return {
-        label: replace(curve, messages=messages) if isinstance(curve, Measured) else curve
+        label: replace(curve, messages=messages) if isinstance(curve, Curve) else curve
         for label, curve in curves.items()
     }
 
 
 @contextmanager
-def _explained(path: Path) -> Iterator[None]:
-    """Turn what afmformats raises, some of it no Exception, into errors of ours."""
+def _pellicle_errors(path: Path) -> Iterator[None]:
+    """Raise the errors of afmformats, some of which are not Exceptions, as errors of pellicle."""
     from afmformats import errors, meta
 
     try:
@@ -99,15 +96,15 @@ def _explained(path: Path) -> Iterator[None]:
             "sensitivity with their units (--spring-constant and --sensitivity on the command line)"
         ) from None
     except (Exception, errors.AFMFileFormatError, meta.MetaDataMissingError) as error:
-        said = " ".join(str(error).split()) or type(error).__name__
-        raise StorageError(f"{path}: afmformats cannot read it ({said})") from None
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise StorageError(f"{path}: afmformats cannot read it ({reason})") from None
 
 
 def _curve(
-    path: Path, found: Mapping[str, Any], given: Mapping[str, float], segment: str
-) -> Measured:
+    path: Path, recording: Mapping[str, Any], given: Mapping[str, float], segment: str
+) -> Curve:
     """Return one segment of one curve in SI."""
-    data, metadata = found["data"], found["metadata"]
+    data, metadata = recording["data"], recording["metadata"]
     for name, value in given.items():
         if not np.isclose(metadata.get(name, value), value, rtol=1e-6):
             raise ConfigError(
@@ -123,12 +120,12 @@ def _curve(
         height = next((name for name in _HEIGHTS if name in data), None)
         if height is None:
             raise ConfigError(f"{path}: has no height over the sample (has {', '.join(data)})")
-        bending = force / Calibration(stiffness).stiffness()
+        bending = force / Calibration(spring_constant=stiffness).required_spring_constant()
         tip = np.asarray(data[height], dtype=float) + bending
     rows = _rows(np.asarray(data["segment"]), segment) if "segment" in data else slice(None)
-    return Measured(force[rows], -tip[rows], stiffness=stiffness)
+    return Curve(-tip[rows], force[rows], stiffness=stiffness)
 
 
 def _rows(segments: Any, segment: str) -> Any:
-    """Return which rows are the first segment, or the last; all where there is one only."""
+    """Return which rows belong to the first segment, or to the last: all if there is only one."""
     return segments == (segments.min() if segment == "approach" else segments.max())

@@ -1,8 +1,8 @@
-"""One measured curve, cleaned: which rows are used, and what is wrong with the rest."""
+"""One measured curve, and the selection of the rows that are fitted."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -14,69 +14,66 @@ from pellicle.errors import ConfigError, shown
 Segment = Literal["approach", "retract"]
 
 FEWEST = 8
-"""Points that a fit needs at least."""
+"""Least number of points of a fit."""
 _FEW = 30
-_ALIKE = 1e6
-"""Stiffness of a cantilever over that of a curve, or the reverse, that is fitted at most."""
+_LARGEST_RATIO = 1e6
+"""Largest ratio of the stiffnesses of cantilever and curve, either way, that is fitted."""
 LARGEST = 1e30
-"""Largest number in SI units that is fitted, and one over the smallest."""
-_PASS = 0.5
-"""A change of direction counts if the position then moves by this share of its range."""
-_SEEN = 4.0
+"""Largest SI value that is fitted; the smallest is one over this."""
+_TURN = 0.5
+"""Share of its range by which the position must move back for a change of direction to count."""
+_SIGNIFICANT = 4.0
 """Standard errors that the rise of the force must exceed."""
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Position [m], growing into the solid, and force [N] of one approach, in order of position."""
+    """One measured curve: position [m] that grows into the solid and force [N], of shape (n,)."""
 
     position: Array
     force: Array
+    is_depth: bool = False
+    """Whether the position is a depth, so that the contact point is known to be 0."""
     messages: tuple[str, ...] = ()
-    """What was left out, and what to be careful of."""
+    """Rows that were left out, and warnings."""
     stiffness: float | None = None
-    """Of the cantilever [N/m], if its deflection was subtracted to get the position."""
+    """Spring constant of the cantilever [N/m], if its deflection was subtracted from position."""
 
 
-def clean(
-    position: ArrayLike,
-    force: ArrayLike,
-    segment: Segment = "approach",
-    stiffness: float | None = None,
-) -> Curve:
-    """Return the rows of one pass into the solid (or out of it), in order of position.
+def clean(curve: Curve, segment: Segment = "approach") -> Curve:
+    """Return the rows of one pass into the solid (or out of it), sorted by position.
 
-    Where the ``stiffness`` [N/m] of a cantilever is known its base, which has no noise, tells the
-    passes apart.
+    Where the spring constant is known, the passes are told apart by the position of the
+    cantilever's base, which has no noise.
 
     Raises
     ------
     ConfigError
-        Shapes that differ, too few points, several passes, the other pass only, force that falls
-        as the position grows, or no rise of the force at all.
+        Shapes differ, there are too few points, several passes or only the other pass, or the
+        force falls, or does not rise, as the position grows.
     """
-    z, f = _array(position, "position"), _array(force, "force")
+    z, f = _array(curve.position, "position"), _array(curve.force, "force")
     if z.shape != f.shape:
         raise ConfigError(
             f"has {f.size} values and position {z.size}; give one for each position", "force"
         )
-    messages = []
+    messages = list(curve.messages)
     known = np.isfinite(z) & np.isfinite(f)
     if missing := int(np.sum(~known)):
         messages.append(f"{missing} of {z.size} rows hold no finite number and were left out")
         z, f = z[known], f[known]
-    _enough(z, "the curve")
-    _in_si(z, "position", "m")
-    _in_si(f, "force", "N")
+    _check_count(z, "the curve")
+    _check_si(z, "position", "m")
+    _check_si(f, "force", "N")
     span = float(np.ptp(z))
     if not span:
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
-    base = z if stiffness is None else _base(z, f, stiffness)
-    _stiffens(base, f)
+    base = z if curve.stiffness is None else _base(z, f, curve.stiffness)
+    _check_rise(base, f)
     rows = _one_pass(base, segment, messages)
     z, f, base = z[rows], f[rows], base[rows]
-    _enough(z, f"its {segment}")
-    # The position of a tip holds the noise of the force: in its order, the noise has a slope.
+    _check_count(z, f"its {segment}")
+    # The position of a tip holds the noise of the force: sorted by it, the noise has a slope.
     order = np.argsort(base, kind="stable")
     z, f = z[order], f[order]
     if z.size < _FEW:
@@ -85,7 +82,7 @@ def clean(
         raise ConfigError(
             f"has {np.unique(z).size} different values; give at least {FEWEST}", "position"
         )
-    return Curve(z, f, tuple(messages), stiffness)
+    return replace(curve, position=z, force=f, messages=tuple(messages))
 
 
 def _array(values: ArrayLike, name: str) -> Array:
@@ -94,7 +91,9 @@ def _array(values: ArrayLike, name: str) -> Array:
     try:
         array = np.asarray(values, dtype=float)
     except (TypeError, ValueError):
-        raise ConfigError(f"{shown(values)} is no list of numbers; give SI values", name) from None
+        raise ConfigError(
+            f"{shown(values)} is not a list of numbers; give SI values", name
+        ) from None
     if array.ndim != 1:
         raise ConfigError(f"is of shape {array.shape}; give a list, one curve at a time", name)
     return array
@@ -106,21 +105,21 @@ def _base(z: Array, f: Array, stiffness: float) -> Array:
     Raises
     ------
     ConfigError
-        Its deflection is of another order than the position.
+        The range of its deflection differs from that of the position by orders of magnitude.
     """
-    deflection = float(np.ptp(f)) / float(np.ptp(z))
-    if not 1 / _ALIKE <= deflection / stiffness <= _ALIKE:
+    slope = float(np.ptp(f)) / float(np.ptp(z))
+    if not 1 / _LARGEST_RATIO <= slope / stiffness <= _LARGEST_RATIO:
         raise ConfigError(
-            f"of {stiffness:.3g} N/m is far from the {deflection:.3g} N/m that this curve has "
-            "itself, so that one of force and deflection is nothing beside the other; give that of "
-            "the cantilever with its unit",
+            f"of {stiffness:.3g} N/m is far from the {slope:.3g} N/m of this curve itself, so "
+            "that deflection and position differ by orders of magnitude; give that of the "
+            "cantilever with its unit",
             "spring_constant",
         )
     return z + f / stiffness
 
 
-def _in_si(values: Array, name: str, unit: str) -> None:
-    """Raise if values are so large or small that they cannot be what they are called."""
+def _check_si(values: Array, name: str, unit: str) -> None:
+    """Raise if values are too large or too small to be in SI units."""
     largest = float(np.max(np.abs(values)))
     if largest and not 1 / LARGEST <= largest <= LARGEST:
         raise ConfigError(
@@ -130,20 +129,20 @@ def _in_si(values: Array, name: str, unit: str) -> None:
         )
 
 
-def _enough(z: Array, what: str) -> None:
+def _check_count(z: Array, rows: str) -> None:
     if z.size < FEWEST:
-        raise ConfigError(f"{what} has {z.size} points; a fit needs at least {FEWEST}", "position")
+        raise ConfigError(f"{rows} has {z.size} points; a fit needs at least {FEWEST}", "position")
 
 
-def _stiffens(z: Array, f: Array) -> None:
-    """Raise unless the force is higher at the greatest positions than at the least."""
+def _check_rise(z: Array, f: Array) -> None:
+    """Raise unless the force is higher at the largest positions than at the smallest."""
     order = np.argsort(z, kind="stable")
     tenth = max(z.size // 10, 2)
     low, high = f[order[:tenth]], f[order[-tenth:]]
     rise = float(high.mean() - low.mean())
-    # Neighbours differ by noise and by the slope, so this is too high if anything.
+    # Neighbours differ by the noise and by the slope, so this is an upper bound of the noise.
     noise = float(np.sqrt(np.mean(np.diff(f[order]) ** 2) / 2))
-    least = _SEEN * noise * np.sqrt(2 / tenth)
+    least = _SIGNIFICANT * noise * np.sqrt(2 / tenth)
     if rise < -least:
         raise ConfigError(
             f"falls by {-rise:.3g} N as the position grows: a negative stiffness; position must "
@@ -159,8 +158,8 @@ def _stiffens(z: Array, f: Array) -> None:
 
 
 def _one_pass(z: Array, segment: Segment, messages: list[str]) -> slice:
-    """Return the rows that move into the solid, or out of it."""
-    turns = _turns(z, _PASS * float(np.ptp(z)))
+    """Return the rows of the first pass into the solid, or out of it."""
+    turns = _turns(z, _TURN * float(np.ptp(z)))
     passes = list(zip([0, *turns], [*turns, z.size - 1], strict=True))
     inward = [bool(z[last] > z[first]) for first, last in passes]
     if len(passes) > 2:
@@ -169,16 +168,16 @@ def _one_pass(z: Array, segment: Segment, messages: list[str]) -> slice:
             "curve at a time, its rows in order",
             "position",
         )
-    wanted = segment == "approach"
-    if wanted not in inward:
-        found = "retract" if wanted else "approach"
+    approach = segment == "approach"
+    if approach not in inward:
+        other = "retract" if approach else "approach"
         raise ConfigError(
-            f"only moves {'out of' if wanted else 'into'} the solid: this is a {found} and the "
-            f"{segment} is asked; give the {segment}, or ask for segment {found!r}",
+            f"only moves {'out of' if approach else 'into'} the solid: this is a {other}, and the "
+            f"{segment} is to be fitted; give the {segment}, or set segment to {other!r}",
             "position",
         )
-    first, last = passes[inward.index(wanted)]
-    # A retract begins where a dwell at the turn ends.
+    first, last = passes[inward.index(approach)]
+    # Rows of a dwell at the turn precede the retract.
     while first and z[first + 1] == z[first]:
         first += 1
     if len(passes) > 1:
@@ -186,26 +185,26 @@ def _one_pass(z: Array, segment: Segment, messages: list[str]) -> slice:
             f"rows {first + 1} to {last + 1} are the {segment}; "
             f"the other {z.size - 1 - last + first} were left out"
         )
-    if not wanted:
+    if not approach:
         messages.append("a retract is fitted as if nothing adhered: compare with the approach")
     return slice(first, last + 1)
 
 
 def _turns(z: Array, least: float) -> list[int]:
-    """Return the first rows of those where the direction changes for at least this far."""
+    """Return the rows after which the position moves the other way by at least this much."""
     turns: list[int] = []
     low = high = 0
     direction = 0
-    for row, here in enumerate(z.tolist()):
-        if here > z[high]:
+    for row, value in enumerate(z.tolist()):
+        if value > z[high]:
             high = row
-        if here < z[low]:
+        if value < z[low]:
             low = row
-        if direction >= 0 and z[high] - here >= least:
+        if direction >= 0 and z[high] - value >= least:
             if direction:
                 turns.append(high)
             direction, low = -1, row
-        elif direction <= 0 and here - z[low] >= least:
+        elif direction <= 0 and value - z[low] >= least:
             if direction:
                 turns.append(low)
             direction, high = 1, row

@@ -11,50 +11,52 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
 from pellicle.arrays import Array
-from pellicle.components import Component, ForceCurve, HasForceCurve, Indenter
+from pellicle.components import ForceCurve, Indenter
+
+from .force_model import TensionModel
 
 SCALE = 0.1
-"""Of s over the width of the contact: where the nodes turn from even to logarithmic spacing."""
+"""Ratio of s to contact width at which the spacing of nodes turns from uniform to logarithmic."""
 
 
 def stretched(x: Array) -> Array:
-    """Return log(1 + x/SCALE), in which log P is smooth from no tension to nothing but tension."""
+    """Return log(1 + x/SCALE), on which log F is smooth from no tension to tension alone."""
     return np.log1p(x / SCALE)
 
 
 @dataclass(frozen=True)
-class SimulatedCurve:
-    """P/E* of an indenter on a solid under tension, between the nodes of a study.
+class SimulatedCurve(TensionModel):
+    """F/E* of an indenter on a solid under tension, interpolated between the runs of a study.
 
-    log(P/E*) is a cubic spline of log δ and of `stretched` s/w, where w(δ) is about the width of
-    the contact; beyond the nodes it goes on straight.  With lengths in a unit of the problem's own
-    the table holds for every size; `unit` is what the unit is here.
+    log(F/E*) is a cubic spline of log δ and of `stretched` s/w, where w(δ) is approximately the
+    width of the contact; beyond the nodes it is extrapolated linearly.  Lengths are stored over a
+    unit length, so that one table serves every size; `unit` is the value of that length here.
     """
 
     indenter: Indenter
     kernel: Mapping[str, Any]
-    """The solid: table of a kernel without modulus and tension."""
+    """The solid: the table of a kernel without modulus and tension."""
     depths: Array
-    """Nodes δ over the unit, rising, of shape (m,)."""
+    """Nodes δ over the unit, increasing, of shape (m,)."""
     ratios: Array
-    """Nodes s/w, rising from 0, of shape (n,)."""
+    """Nodes s/w, increasing from 0, of shape (n,)."""
     log_forces: Array
-    """log(P/E*) over the unit squared, of shape (m, n)."""
+    """log(F/E*) over the unit squared, of shape (m, n)."""
     width: tuple[float, float]
-    """Slope and value at δ = 1 of log w over log δ."""
+    """Slope of log w over log δ, and its value at δ = 1."""
     unit: float
     """[m]"""
     coarse: SimulatedCurve | None = None
-    """The same from grids of half as many cells each way."""
+    """The same curve from grids of half as many cells along each axis."""
 
     @property
     def depth_limit(self) -> float:
-        """Deepest node [m]."""
+        """Depth [m] of the deepest node."""
         return float(self.depths[-1]) * self.unit
 
     @property
     def accuracy(self) -> float:
-        """The largest relative change of a force from half as many cells each way."""
+        """Largest relative change of a force when the cells along each axis are halved."""
         if self.coarse is None:
             return 0.0
         return float(np.max(np.abs(np.expm1(self.coarse.log_forces - self.log_forces))))
@@ -64,7 +66,7 @@ class SimulatedCurve:
         return RectBivariateSpline(np.log(self.depths), stretched(self.ratios), self.log_forces)
 
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
-        """Return P/E* and its sensitivities; 0 where there is no contact."""
+        """Return F/E* [m²] and its partial derivatives at depths [m] and s = ``length`` [m]."""
         touching = depth > 0
         d = np.maximum(depth[touching] / self.unit, 1e-60)
         slope, intercept = self.width
@@ -73,15 +75,15 @@ class SimulatedCurve:
         x = length / self.unit / width
         t = stretched(x)
         first, last = np.log(self.depths[[0, -1]])
-        at_u = np.clip(log_depth, first, last)
-        at_t = np.minimum(t, stretched(self.ratios[-1:])[0])
+        u_inside = np.clip(log_depth, first, last)
+        t_inside = np.minimum(t, stretched(self.ratios[-1:])[0])
         value, by_u, by_t, by_both = (
-            self._spline(at_u, at_t, dx=dx, dy=dy, grid=False)
+            self._spline(u_inside, t_inside, dx=dx, dy=dy, grid=False)
             for dx, dy in ((0, 0), (1, 0), (0, 1), (1, 1))
         )
-        u_left, t_left = log_depth - at_u, t - at_t
-        force = np.exp(value + by_u * u_left + by_t * t_left + by_both * u_left * t_left)
-        rate_u, rate_t = by_u + by_both * t_left, by_t + by_both * u_left
+        u_beyond, t_beyond = log_depth - u_inside, t - t_inside
+        force = np.exp(value + by_u * u_beyond + by_t * t_beyond + by_both * u_beyond * t_beyond)
+        rate_u, rate_t = by_u + by_both * t_beyond, by_t + by_both * u_beyond
         rate_x = rate_t / (x + SCALE)
         out = np.zeros((3, depth.size))
         out[0, touching] = force * self.unit**2
@@ -89,12 +91,10 @@ class SimulatedCurve:
         out[2, touching] = force * rate_x / width * self.unit
         return ForceCurve(*out)
 
-
-def described(curve: HasForceCurve) -> dict[str, Any]:
-    """Return indenter and, if it was simulated, kernel of a force curve, as JSON has them."""
-    if isinstance(curve, SimulatedCurve):
-        said = {"kernel": dict(curve.kernel), "accuracy": curve.accuracy}
-        return {"indenter": curve.indenter.model_dump(mode="json", exclude_none=True), **said}
-    if isinstance(curve, Component):
-        return {"indenter": curve.model_dump(mode="json", exclude_none=True)}
-    return {"indenter": {"type": type(curve).__name__}}
+    def description(self) -> dict[str, Any]:
+        """Return indenter, kernel and accuracy as JSON data."""
+        return {
+            "indenter": self.indenter.model_dump(mode="json", exclude_none=True),
+            "kernel": dict(self.kernel),
+            "accuracy": self.accuracy,
+        }

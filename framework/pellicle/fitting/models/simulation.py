@@ -1,4 +1,4 @@
-"""Plans, runs and keeps the study that the force curve of any indenter on any solid needs."""
+"""Plan, run and cache the study behind the force curve of any indenter on any solid."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from pellicle.arrays import Array
 from pellicle.components import Executor, Indenter
 from pellicle.config.study import Study
 from pellicle.errors import ConfigError, ConvergenceError
+from pellicle.grid import Grid
 from pellicle.plugins import registry
 from pellicle.studies.runner import carry_out, is_table, read
 from pellicle.studies.summary import failures
 
-from .extent import half_widths
 from .interpolated import SCALE, SimulatedCurve, stretched
 from .solid import Solid, lengths, scaled, scales
 
@@ -31,12 +31,18 @@ if TYPE_CHECKING:
 GRID_POINTS = 64
 _FEWEST = 16
 _OCTAVES = 6
-"""Depths go down from the deepest by factors of 2."""
+"""Number of factors of 2 between the deepest and the shallowest node."""
 _RATIOS: Array = SCALE * np.expm1(np.linspace(0, stretched(np.array([30.0]))[0], 11))
-"""Nodes s/w; the spline between them errs by 1e-4."""
+"""Nodes s/w; the spline between them has a relative error of about 1e-4."""
 _MARGIN = 1.08
 _MARGIN_OF_LAYERS = 1.9
-"""A thin incompressible layer swells beside the contact, which is then up to √3 times as wide."""
+"""Edge of the grid over the width of the indenter: an incompressible thin layer bulges beside the
+contact, which is then up to √3 times as wide."""
+_CELLS = 129
+"""Samples of the indenter along each axis when its width is measured."""
+_CLOSE = 0.95
+"""Least width of the indenter over that of the sampled domain."""
+_WIDEST = 1e9
 
 
 def simulate(
@@ -49,34 +55,34 @@ def simulate(
     grid_points: int = GRID_POINTS,
     progress: bool = False,
 ) -> SimulatedCurve:
-    """Return the force curve of an indenter, from a study that is run unless it is there already.
+    """Return the force curve of an indenter on a solid from a study, cached or run here.
 
-    The study is that of a reduced modulus of 1 Pa and of lengths over one of the problem's own, so
-    that it serves every indenter and solid of these proportions.
+    The study has a reduced modulus of 1 Pa and lengths relative to a length of the problem, so that
+    one study serves every indenter and solid of the same proportions.
 
     Parameters
     ----------
     indenter, solid
-        What is pressed in, and into what.
+        The indenter and the solid that it is pressed into.
     deepest
         Depth [m] up to which the curve is needed.
     cache
         Folder that keeps the studies; the user's cache folder if None.
     executor
-        What carries out the runs.
+        Executor of the runs.
     grid_points
         Cells of each grid along x and y.
     progress
-        Show how far the study is.
+        Show the progress of the study.
 
     Raises
     ------
     ConfigError
-        The indenter has no size of its own, or the solid's fields count against the modulus.
+        The indenter ends where the grid does, or a field of the solid scales with the modulus.
     ConvergenceError
         A run of the study failed; its table says which and why.
     StorageError
-        The folder cannot be used, or another process is at it.
+        The folder cannot be used, or is locked by another process.
     """
     planned = plan(indenter, solid, deepest, grid_points)
     if isinstance(executor, str):
@@ -86,7 +92,7 @@ def simulate(
     forces = table["force"].values.reshape(2, planned.depths.size, _RATIOS.size)
     if not (forces > 0).all():
         raise ConvergenceError("some contacts of the study carry no force; give more grid points")
-    made = partial(
+    curve = partial(
         SimulatedCurve,
         indenter,
         solid.given,
@@ -95,58 +101,30 @@ def simulate(
         width=planned.width,
         unit=planned.unit,
     )
-    return made(np.log(forces[0]), coarse=made(np.log(forces[1])))
+    return curve(np.log(forces[0]), coarse=curve(np.log(forces[1])))
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The contacts that a force curve needs, in lengths over `unit`."""
+    """The contacts from which a force curve is interpolated, in lengths over `unit`."""
 
     unit: float
     """[m]"""
-    kernel: Mapping[str, Any]
-    tension: str
-    """Dotted path of the tension in the kernel."""
-    indenter: Mapping[str, Any]
     depths: Array
-    boxes: Array
-    """Edges of the grid at each depth, of shape (m, 2)."""
+    """Nodes δ, of shape (m,)."""
     width: tuple[float, float]
-    """Slope and value at δ = 1 of log w over log δ."""
-    grid_points: int
+    """Slope of log w over log δ, and its value at δ = 1."""
+    table: dict[str, Any]
+    """Configuration of the study without its executor."""
 
     def study(self, executor: Mapping[str, Any] | Executor) -> Study:
         """Return the study: each contact on a grid of its own, and on one of half the cells."""
-        slope, intercept = self.width
-        widths = np.exp(intercept + slope * np.log(self.depths))
-        count = _RATIOS.size
-        return Study.from_mapping(
-            {
-                "title": f"force curve of {self.indenter['type']} on {self.kernel['type']}",
-                "grid": {"points": self.grid_points, "size": 1.0},
-                "kernel": self.kernel,
-                "indenter": self.indenter,
-                "loading": {"depth": 1.0},
-                "outputs": [],
-                "study": {
-                    "vary": {"grid.points": [self.grid_points, self.grid_points // 2]},
-                    "zip": [
-                        {
-                            "loading.depth": np.repeat(self.depths, count).tolist(),
-                            f"kernel.{self.tension}": np.outer(widths, _RATIOS / 2)
-                            .ravel()
-                            .tolist(),
-                            "grid.size": np.repeat(self.boxes, count, axis=0).tolist(),
-                        }
-                    ],
-                    "executor": executor,
-                },
-            }
-        )
+        study = self.table["study"] | {"executor": executor}
+        return Study.from_mapping(self.table | {"study": study})
 
 
 def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GRID_POINTS) -> Plan:
-    """Return which contacts the force curve of an indenter needs down to a depth [m].
+    """Return the contacts that the force curve of an indenter needs down to a depth [m].
 
     Raises
     ------
@@ -163,12 +141,10 @@ def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GR
         raise ConfigError(
             f"{grid_points} is not allowed; give an even number ≥ {_FEWEST}", "grid_points"
         )
-    given = [*lengths(indenter), *lengths(solid.kernel), deepest]
-    unit = (
-        next(value for value in given if value > 0)
-        if scales(indenter) and scales(solid.kernel)
-        else 1.0
-    )
+    unit = 1.0
+    if scales(indenter) and scales(solid.kernel):
+        candidates = (*lengths(indenter), *lengths(solid.kernel), deepest)
+        unit = next(value for value in candidates if value > 0)
     try:
         kernel = scaled(solid.kernel, unit, (solid.modulus, solid.tension))
     except ConfigError as error:
@@ -177,35 +153,76 @@ def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GR
     # Rounded up, so that curves of about the same depth share a study.
     top = int(np.ceil(np.log2(deepest / unit) - 1e-9))
     depths: Array = 2.0 ** np.arange(top - _OCTAVES, top + 1, dtype=np.float64)
-    made = registry().make(Indenter, shape)
-    halves = np.array([half_widths(made, depth) for depth in depths])
+    body = registry().make(Indenter, shape)
+    halves = np.array([half_widths(body, depth) for depth in depths])
     slope, intercept = np.polyfit(np.log(depths), np.log(halves.prod(axis=1)) / 2, 1)
-    margin = _MARGIN_OF_LAYERS if lengths(solid.kernel) else _MARGIN
-    return Plan(
-        unit,
-        kernel,
-        solid.tension,
-        shape,
-        depths,
-        2 * margin * halves,
-        (float(slope), float(intercept)),
-        grid_points,
-    )
+    widths = np.exp(intercept + slope * np.log(depths))
+    boxes = 2 * (_MARGIN_OF_LAYERS if lengths(solid.kernel) else _MARGIN) * halves
+    contacts = {
+        "loading.depth": np.repeat(depths, _RATIOS.size).tolist(),
+        f"kernel.{solid.tension}": np.outer(widths, _RATIOS / 2).ravel().tolist(),
+        "grid.size": np.repeat(boxes, _RATIOS.size, axis=0).tolist(),
+    }
+    table: dict[str, Any] = {
+        "title": f"force curve of {shape['type']} on {kernel['type']}",
+        "grid": {"points": grid_points, "size": 1.0},
+        "kernel": kernel,
+        "indenter": shape,
+        "loading": {"depth": 1.0},
+        "outputs": [],
+        "study": {"vary": {"grid.points": [grid_points, grid_points // 2]}, "zip": [contacts]},
+    }
+    return Plan(unit, depths, (float(slope), float(intercept)), table)
+
+
+def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
+    """Return half the width [m] along x and y of the indenter below the undeformed surface.
+
+    On any kernel whose Green's function is positive the contact lies inside that part of the
+    indenter.
+
+    Raises
+    ------
+    ConfigError
+        The width exceeds 10⁹ times the depth.
+    """
+    half = np.array([depth, depth])
+    while True:
+        axes = Grid(points=_CELLS, size=tuple((2 * half).tolist())).coordinates()
+        below = np.asarray(indenter.profile(*axes)) >= -depth
+        reach = np.array(
+            [np.max(np.abs(np.broadcast_to(x, below.shape)[below]), initial=0.0) for x in axes]
+        )
+        outside = reach >= [np.max(np.abs(x)) for x in axes]
+        if outside.any():
+            half = np.where(outside, 2 * half, half)
+            if half.max() > _WIDEST * depth:
+                raise ConfigError(
+                    f"is less than {depth:g} m high out to {half.max():.2g} m; give one whose "
+                    "contact ends",
+                    "indenter",
+                )
+            continue
+        fitted = reach + half / _CELLS
+        if (fitted >= _CLOSE * half).all():
+            return float(fitted[0]), float(fitted[1])
+        # At least one cell, so that the domain cannot shrink past the shape in one step.
+        half = np.maximum(1.02 * fitted, 2 * half / _CELLS)
 
 
 def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:
-    """Return the table of a study, run if need be; of its runs nothing else is kept."""
+    """Return the table of a study, run unless it is cached; fields of its runs are not kept."""
     runs = [point.run.identity for point in study.points]
     folder = cache / hashlib.sha256("".join(runs).encode()).hexdigest()[:16]
     if is_table(folder):
-        found, _ = read(folder)
-        if not failures(found):
-            return found
-    made = carry_out(study, folder, progress=progress).table
-    if said := failures(made):
+        cached, _ = read(folder)
+        if not failures(cached):
+            return cached
+    table = carry_out(study, folder, progress=progress).table
+    if reasons := failures(table):
         raise ConvergenceError(
-            f"the force curve needs the study in {folder}: {said}; another number of grid points "
-            "may help"
+            f"the force curve needs the study in {folder}: {reasons}; another number of grid "
+            "points may help"
         )
     shutil.rmtree(folder / "runs")
-    return made
+    return table

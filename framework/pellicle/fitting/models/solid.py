@@ -1,4 +1,4 @@
-"""What is pressed: a kernel without its modulus and its tension, which a fit is to find."""
+"""The solid of a fit: a kernel without reduced modulus and tension, which the fit determines."""
 
 from __future__ import annotations
 
@@ -11,17 +11,18 @@ from pydantic.fields import FieldInfo
 from pellicle.components import Component, Kernel
 from pellicle.errors import ConfigError, shown
 from pellicle.model.base import Model
-from pellicle.model.paths import replaced
+from pellicle.model.paths import get, replaced, walk
 from pellicle.plugins import registry
 from pellicle.units import Quantity, quantity_of
 
 DEFAULT_KERNEL = "tensed_membrane"
 _DIGITS = 12
+"""Digits of a scaled length, so that problems of equal proportions share a study."""
 
 
 @dataclass(frozen=True)
 class Solid:
-    """A kernel of E* = 1 Pa and no tension, and where it has the two."""
+    """A kernel with E* = 1 Pa and no tension, and the paths of these two fields."""
 
     kernel: Kernel
     modulus: str
@@ -32,121 +33,102 @@ class Solid:
 
     @property
     def given(self) -> dict[str, Any]:
-        """What is known of the kernel: its table without modulus and tension."""
+        """The table of the kernel without modulus and tension."""
         table: dict[str, Any] = self.kernel.model_dump(mode="json", exclude_none=True)
         for path in (self.modulus, self.tension):
-            at = table
-            *parents, name = path.split(".")
-            for parent in parents:
-                at = at[parent]
-            del at[name]
+            owner, _, name = path.rpartition(".")
+            del (get(table, owner) if owner else table)[name]
         return table
 
 
 def solid(given: str | Mapping[str, Any], poissons_ratio: float | None = None) -> Solid:
-    """Return the solid that a kernel describes, all but its reduced modulus and its tension.
+    """Return the solid that the type or the table of a kernel describes.
 
-    ``poissons_ratio`` is that of the kernel if it needs one and has none of its own.
+    ``poissons_ratio`` is used if the kernel needs one and its table has none.
 
     Raises
     ------
     ConfigError, PluginError
-        The kernel cannot be made, has no reduced modulus or no tension, or has them given.
+        The kernel is not valid, has no field for the reduced modulus or the tension, or has a value
+        for one of them.
     """
     table: Any = {"type": given} if isinstance(given, str) else dict(given)
     try:
-        modulus, _ = _owner(table, "reduced_modulus")
-        tension, _ = _owner(table, "tension")
+        modulus, _ = _field(table, "reduced_modulus")
+        tension, _ = _field(table, "tension")
         for path in (modulus, tension, f"{modulus.rpartition('.')[0]}.youngs_modulus".lstrip(".")):
-            if _reach(table, path) is not None:
+            if get(table, path) is not None:
                 raise ConfigError(
-                    "is what the fit finds; leave it out of the kernel, or hold it with fix", path
+                    "is what the fit finds; leave it out of the kernel, or fix it with fix", path
                 )
-        ratio, info = _owner(table, "poissons_ratio")
-        stated = _reach(table, ratio)
-        if stated is None and poissons_ratio is not None and info.is_required():
-            stated, table = poissons_ratio, replaced(table, ratio, poissons_ratio)
+        path, info = _field(table, "poissons_ratio")
+        ratio = get(table, path)
+        if ratio is None and poissons_ratio is not None and info.is_required():
+            ratio, table = poissons_ratio, replaced(table, path, poissons_ratio)
         kernel = registry().make(Kernel, replaced(replaced(table, modulus, 1.0), tension, 0.0))
     except ConfigError as error:
         raise error.within("kernel") from None
-    return Solid(kernel, modulus, tension, poissons_ratio if stated is None else stated)
+    return Solid(kernel, modulus, tension, poissons_ratio if ratio is None else ratio)
 
 
-def _owner(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:
-    """Return the dotted path of a field in a kernel or in those it is made of, and the field."""
-    found = next(_owners(table, name, ""), None)
-    if found is None:
-        remedy = (
-            '; put it under a skin: type = "coated", with this kernel as its substrate'
-            if name == "tension"
-            else "; a fit needs one that has it"
-        )
-        raise ConfigError(f"{table.get('type')!r} has no field {name}{remedy}")
-    return found
-
-
-def _owners(table: Mapping[str, Any], name: str, at: str) -> Iterator[tuple[str, FieldInfo]]:
-    kind = registry().find("kernel", table.get("type"))
-    if name in kind.model_fields:
-        yield f"{at}{name}", kind.model_fields[name]
-    for key, inner in table.items():
+def _field(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:
+    """Return path and definition of the first field of a name in a kernel and those inside it."""
+    for path, inner, _ in [("", table, None), *walk(table)]:
         if isinstance(inner, Mapping):
-            yield from _owners(inner, name, f"{at}{key}.")
-
-
-def _reach(table: Any, path: str) -> Any:
-    for name in path.split("."):
-        table = table.get(name) if isinstance(table, Mapping) else None
-    return table
+            fields = registry().find("kernel", inner.get("type")).model_fields
+            if name in fields:
+                return f"{path}.{name}".lstrip("."), fields[name]
+    remedy = (
+        '; put it under a skin: type = "coated", with this kernel as its substrate'
+        if name == "tension"
+        else "; a fit needs one that has it"
+    )
+    raise ConfigError(f"{table.get('type')!r} has no field {name}{remedy}")
 
 
 def lengths(component: Component) -> list[float]:
-    """Return the lengths [m] among the fields of a component and those it is made of."""
+    """Return the lengths [m] among the fields of a component and of those inside it."""
     return [
         value
-        for _, quantity, value in _fields(component)
+        for _, quantity, value in _quantities(component)
         if quantity is not None and quantity.powers() == (0, 1)
     ]
 
 
 def scales(component: Component) -> bool:
-    """Return whether all that decides a component's lengths is known to be lengths."""
+    """Return whether every field of a component has a unit, text and integers aside."""
     return all(
         quantity is not None or isinstance(value, (str, int))
-        for _, quantity, value in _fields(component)
+        for _, quantity, value in _quantities(component)
     )
 
 
 def scaled(component: Component, unit: float, free: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Return the table of a component with every length over ``unit`` [m].
+    """Return the table of a component with every length divided by ``unit`` [m].
 
     Raises
     ------
     ConfigError
-        A field that is not in ``free`` has to be seen against the modulus, which is not known.
+        A field at a path not in ``free`` scales with the modulus, which is not known.
     """
-    table: Any = component.model_dump(exclude_none=True)
-    for path, quantity, value in _fields(component):
+    table: dict[str, Any] = component.model_dump(exclude_none=True)
+    for path, quantity, value in _quantities(component):
         if quantity is None or path in free:
             continue
         pressure, length = quantity.powers()
         if pressure and value:
             raise ConfigError(
                 f"{shown(value)} {quantity.unit} counts against the modulus, which is not known "
-                "yet; a fit can hold lengths and plain numbers only, so leave it out",
+                "yet; a fit allows only lengths and plain numbers, so leave it out",
                 path,
             )
         table = replaced(table, path, float(f"{value / unit**length:.{_DIGITS}g}"))
-    made: dict[str, Any] = table
-    return made
+    return table
 
 
-def _fields(component: Model, at: str = "") -> Iterator[tuple[str, Quantity | None, Any]]:
-    """Yield dotted path, quantity and value of each field that has a value."""
-    for name, info in type(component).model_fields.items():
-        value = getattr(component, name)
-        if isinstance(value, Model):
-            yield from _fields(value, f"{at}{name}.")
-        elif value is not None and name != "type":
-            quantity = quantity_of(info) if isinstance(value, float) else None
-            yield f"{at}{name}", quantity, value
+def _quantities(component: Component) -> Iterator[tuple[str, Quantity | None, Any]]:
+    """Yield path, quantity and value of each field that has a value, the type aside."""
+    for path, value, info in walk(component):
+        is_type = path.rpartition(".")[2] == "type"
+        if info is not None and value is not None and not isinstance(value, Model) and not is_type:
+            yield path, quantity_of(info) if isinstance(value, float) else None, value

@@ -12,19 +12,19 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.fitting.fit import Fit
-from pellicle.fitting.pooled import PooledFit
-from pellicle.fitting.statistics.estimate import Estimate
-from pellicle.fitting.statistics.likelihood import (
+from pellicle.fitting.models.force_model import (
     MODULUS,
     OFFSET,
-    POINT,
     SLOPE,
     TENSION,
-    Likelihood,
+    Coordinates,
+    Parameter,
 )
-from pellicle.fitting.statistics.pooled_likelihood import SHARED
-from pellicle.report.plotting import axis_unit
+from pellicle.fitting.pooled import PooledFit
+from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle.fitting.statistics.profile import Estimate
 from pellicle.report.plotting import save_figure as save_drawing
+from pellicle.units import axis_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -207,24 +207,21 @@ def _likelihood_grid(fit: Fit) -> tuple[Array, Array, Array]:
     tensions = np.empty((_MODULI, _TENSIONS))
     rise = np.empty_like(tensions)
     for row, modulus in enumerate(moduli):
-        start = fit.parameters.copy()
-        start[MODULUS] = np.log(modulus)
+        start = fit.parameters | {MODULUS: MODULUS.coordinate(modulus)}
         ridge = fixed.minimise(start).parameters
-        deviation = float(fixed.deviations(ridge)[TENSION])
+        deviation = fixed.deviations(ridge)[TENSION]
         half = _MAP_HALF_WIDTH * (deviation if np.isfinite(deviation) else ridge[TENSION])
         lowest = max(ridge[TENSION] - half, 0.0)
         tensions[row] = np.linspace(lowest, ridge[TENSION] + half, _TENSIONS)
         for column, tension in enumerate(tensions[row]):
-            start = ridge.copy()
-            start[TENSION] = tension
+            start = ridge | {TENSION: tension}
             rise[row, column] = fixed.minimise(start, (TENSION,)).chi_squared - fit.chi_squared
     return np.repeat(moduli[:, None], _TENSIONS, axis=1), tensions, rise
 
 
-def profile(fit: PooledFit, which: int, axes: Axes) -> None:
+def profile(fit: PooledFit, parameter: Parameter, axes: Axes) -> None:
     """Draw the profile likelihood of a pool: Δχ² against fixed values of modulus or tension."""
-    name = "reduced_modulus" if which == MODULUS else "tension"
-    estimate = fit.estimates()[name]
+    estimate = fit.estimates()[parameter.name]
     half = _OPEN_DEVIATIONS * (estimate.bound if np.isfinite(estimate.bound) else estimate.value)
     low = max(estimate.value - half, 0.0) if estimate.low is None else estimate.low
     high = estimate.value + half if estimate.high is None else estimate.high
@@ -232,14 +229,13 @@ def profile(fit: PooledFit, which: int, axes: Axes) -> None:
     values = np.linspace(max(low - margin, 1e-3 * estimate.value), high + margin, 15)
     rises = np.empty_like(values)
     for index, value in enumerate(values):
-        start = fit.parameters.copy()
-        start[which] = np.log(value) if which == MODULUS else value
-        rises[index] = fit.pool.minimise(start, (which,)).chi_squared - fit.chi_squared
+        start = fit.parameters | {parameter: parameter.coordinate(value)}
+        rises[index] = fit.pool.minimise(start, (parameter,)).chi_squared - fit.chi_squared
     scale, unit = axis_unit(values, estimate.unit)
     axes.plot(values * scale, rises, "C0-")
     axes.axhline(fit.rise, color="0.3", linewidth=0.8, linestyle="--")
     _mark_interval(estimate, scale, axes.axvline)
-    label = f"{name.replace('_', ' ')} [{unit}]"
+    label = f"{parameter.name.replace('_', ' ')} [{unit}]"
     axes.set(xlabel=label, ylabel="Δχ²", ylim=(0, 3 * fit.rise))
 
 
@@ -278,7 +274,7 @@ def _with_residuals(fit: Fit | PooledFit, figure: FigureBase) -> None:
 
 
 def _profiles(fit: PooledFit, figure: FigureBase) -> None:
-    free = [which for which in SHARED if which in fit.pool.free]
+    free = [parameter for parameter in fit.pool.free if parameter.shared]
     for number, which in enumerate(free, 1):
         profile(fit, which, figure.add_subplot(len(free), 1, number))
 
@@ -294,12 +290,12 @@ def _estimates(rows: Rows, figure: FigureBase) -> None:
         lower.set_xlabel("curve")
 
 
-def _members(fit: PooledFit) -> list[tuple[Likelihood, Array]]:
+def _members(fit: PooledFit) -> list[tuple[Likelihood, Coordinates]]:
     """Return likelihood and parameters of each curve of a pool."""
     return list(zip(fit.pool.members, fit.pool.parts(fit.parameters), strict=True))
 
 
-def _relative_depth(member: Likelihood, parameters: Array) -> Array:
-    depth: Array = member.position - parameters[POINT]
+def _relative_depth(member: Likelihood, parameters: Coordinates) -> Array:
+    depth = member.depth(parameters)
     depth /= depth[-1]
     return depth

@@ -13,13 +13,14 @@ import numpy as np
 from pellicle.config.describe import inputs
 from pellicle.files import atomic_write, storage_errors
 from pellicle.fitting.fit import Fit
+from pellicle.fitting.many import FITTED
 from pellicle.fitting.pooled import PooledFit
-from pellicle.fitting.statistics.interval import CONFIDENCE
-from pellicle.fitting.table import FITTED
-from pellicle.fitting.written import as_json
+from pellicle.fitting.result import as_json
+from pellicle.fitting.statistics.profile import CONFIDENCE
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
-from pellicle.report.plotting import axis_unit, svg
+from pellicle.report.plotting import svg
+from pellicle.units import axis_unit
 
 from .figures import SIZE, Rows, panels
 

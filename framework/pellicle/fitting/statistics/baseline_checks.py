@@ -1,4 +1,4 @@
-"""Checks of the rows before contact: adhesion, drift, offset, slow noise, steps."""
+"""Checks of the points before contact: adhesion, drift, offset, slow noise, detector steps."""
 
 from __future__ import annotations
 
@@ -6,59 +6,67 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from pellicle.arrays import Array
+from pellicle.fitting.models.force_model import SLOPE
 
-from .likelihood import SLOPE
-from .noise import BinnedNoise, binned_noise, neighbour_noise
-from .residuals import CHANCE, FailedCheck, NoiseEstimate, Residuals, exceeds, independent_freedom
+from .noise import (
+    CHANCE,
+    BinnedNoise,
+    FailedCheck,
+    NoiseEstimate,
+    Residuals,
+    binned_noise,
+    independent_freedom,
+    neighbour_noise,
+)
 
-_OFF = 4.0
-"""Standard errors that the force before contact may be from 0."""
+_OFFSET_LIMIT = 4.0
+"""Standard errors beyond which the mean force before contact counts as an offset."""
 _WINDOWS = (1 / 2, 1 / 4, 1 / 8, 1 / 16, 1 / 32)
-"""Shares of the rows before contact in which a dip is sought, next to contact."""
+"""Widths of the windows next to contact in which a dip is sought, over the points before it."""
 _FEWEST = 3
-"""Rows of the narrowest such window."""
+"""Points of the narrowest window."""
 _DEEPEST = float(ndtri(CHANCE / len(_WINDOWS)))
-"""Standard errors by which the deepest of these windows lies off the baseline by chance."""
+"""Standard errors of the deepest dip that is due to chance (Bonferroni's correction)."""
 _BINS = 8
 _COARSE = 2.0
-"""Steps of the detector larger than this, over the noise, hide what lies between them."""
+"""Detector step, over the noise, beyond which values between the steps are lost."""
 
 
 def check_baseline(residuals: Residuals) -> NoiseEstimate:
-    """Return the noise before contact, about its trend, and what there is besides noise."""
+    """Return the noise before contact about its trend, and the checks that fail there."""
     before = residuals.before
     force, travel = residuals.force[before], residuals.likelihood.travel[before]
-    rows = force.size
+    points = force.size
     independent = residuals.independent_noise(before)
-    line = np.column_stack([np.ones(rows), travel / travel[-1]])
-    # As measured: a slope of the baseline that is fitted takes up a part of a dip.
+    line = np.column_stack([np.ones(points), travel / travel[-1]])
+    # The force as measured, since a fitted slope of the baseline absorbs part of a dip.
     measured = residuals.likelihood.force[before]
     depth, window, drop = _deepest_dip(measured, line[:, :1], independent)
     if abs(_slope(measured, line)[0]) > abs(depth) * independent:
-        # A line explains more than a dip, which must then show beside the line.
+        # A line explains more than a dip, so the dip has to be significant beside the line.
         depth, window, drop = _deepest_dip(measured, line, independent)
     # A dip may begin before its window.
-    far = max(rows - 2 * window, rows // 4) if depth < _DEEPEST else rows
-    slow = _slow(force[:far], line[:far], independent)
+    far = max(points - 2 * window, points // 4) if depth < _DEEPEST else points
+    slow = _slow_noise(force[:far], line[:far], independent)
     noise_of_sums = independent if slow is None else max(slow.noise, independent)
     failed: list[FailedCheck] = []
     trend = line
     if depth * independent < _DEEPEST * noise_of_sums:
-        trend = np.column_stack([line, _last(window, rows)])
+        trend = np.column_stack([line, _last(window, points)])
         failed.append(_adhesion(drop, window))
     else:
-        far = rows
+        far = points
     failed += _drift_or_offset(residuals, force[:far], line[:far], noise_of_sums)
     if slow is not None:
-        failed.append(_slow_noise(slow, independent, far))
+        failed.append(_correlated(slow, independent, far))
     if residuals.step > _COARSE * neighbour_noise(force):
         failed.append(_steps(residuals.step))
-    left = force - trend @ np.linalg.lstsq(trend, force, rcond=None)[0]
-    freedom = rows - trend.shape[1]
-    noise = max(float(np.sqrt(np.sum(left**2) / freedom)), residuals.floor)
+    remainder = force - trend @ np.linalg.lstsq(trend, force, rcond=None)[0]
+    freedom = points - trend.shape[1]
+    noise = max(float(np.sqrt(np.sum(remainder**2) / freedom)), residuals.floor)
     if failed:
         bins = np.zeros((residuals.force.size, _BINS))
-        bins[before] = _equal_bins(rows)
+        bins[before] = _equal_bins(points)
         sums = residuals.binned(bins)
         if sums is not None and sums.noise > noise:
             return NoiseEstimate(sums.noise, sums.freedom, tuple(failed), slow)
@@ -66,7 +74,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
 
 
 def falling_baseline(residuals: Residuals) -> tuple[str, ...]:
-    """Return a caution if a fitted baseline falls towards contact, as attraction would have it."""
+    """Return a warning if a fitted baseline falls towards contact, as attraction would cause."""
     if not residuals.is_free(SLOPE):
         return ()
     before = residuals.before
@@ -77,16 +85,17 @@ def falling_baseline(residuals: Residuals) -> tuple[str, ...]:
         return ()
     change = slope * steepness * float(np.ptp(line[:, 1]))
     return (
-        f"the baseline falls by {-change:.3g} N towards contact, which drift does, and attraction "
-        "of long range too, which bends a curve as tension does: see whether it falls as much "
-        "further out",
+        f"the baseline falls by {-change:.3g} N towards contact: drift does that, but so does "
+        "attraction of long range, which bends a curve as tension does; check whether it falls as "
+        "much further out",
     )
 
 
 def _deepest_dip(force: Array, baseline: Array, noise: float) -> tuple[float, int, float]:
-    """Return the depth of the deepest dip next to contact in standard errors, its rows, and [N].
+    """Return the depth of the deepest dip next to contact, its number of points, and its drop [N].
 
-    The depth is negative.  What the columns of ``baseline`` span is fitted beside the dip.
+    The depth is in standard errors, and negative.  The columns of ``baseline`` are fitted together
+    with the dip.
     """
     deepest, width, drop = 0.0, 0, 0.0
     basis, _ = np.linalg.qr(baseline)
@@ -103,38 +112,40 @@ def _deepest_dip(force: Array, baseline: Array, noise: float) -> tuple[float, in
     return deepest, width, drop
 
 
-def _slow(force: Array, line: Array, independent: float) -> BinnedNoise | None:
-    """Return the noise about a line, if it is more than what neighbours show, else None.
+def _slow_noise(force: Array, line: Array, independent: float) -> BinnedNoise | None:
+    """Return the noise about a line if it exceeds that from differences of neighbours, else None.
 
-    Sums over bins show slow noise best; the scatter itself shows data that were smoothed.
+    Sums over bins reveal slow noise best; the scatter of the points reveals smoothed data.
     """
-    rows = force.size
-    left = force - line @ np.linalg.lstsq(line, force, rcond=None)[0]
-    scatter = BinnedNoise(float(np.sqrt(np.sum(left**2) / (rows - 2))), rows - 2)
-    shown = [scatter, binned_noise(force, line, _equal_bins(rows))]
+    points = force.size
+    remainder = force - line @ np.linalg.lstsq(line, force, rcond=None)[0]
+    scatter = BinnedNoise(float(np.sqrt(np.sum(remainder**2) / (points - 2))), points - 2)
     slow = [
         noise
-        for noise in shown
-        if noise is not None and exceeds(noise, independent, independent_freedom(rows))
+        for noise in (scatter, binned_noise(force, line, _equal_bins(points)))
+        if noise is not None and noise.exceeds(independent, independent_freedom(points))
     ]
     return max(slow, default=None, key=lambda noise: noise.noise)
 
 
 def _slope(force: Array, line: Array) -> tuple[float, float]:
-    """Return the slope of the force in units of the noise of one row, and the slope of 1 of it."""
+    """Return the slope of the force in units whose standard error is the noise of one point.
+
+    The second value is the slope of one such unit.
+    """
     basis, triangle = np.linalg.qr(line)
     return float(basis[:, 1] @ force), 1 / float(triangle[1, 1])
 
 
-def _last(window: int, rows: int) -> Array:
-    """Return 1 in the last rows, 0 elsewhere."""
-    return np.where(np.arange(rows) >= rows - window, 1.0, 0.0)
+def _last(window: int, points: int) -> Array:
+    """Return 1 at the last ``window`` of the points, 0 elsewhere."""
+    return np.where(np.arange(points) >= points - window, 1.0, 0.0)
 
 
-def _equal_bins(rows: int) -> Array:
-    """Return a column for each bin of neighbouring rows, all of about the same size."""
-    number = np.arange(rows) * _BINS // max(rows, 1)
-    return np.where(number[:, None] == np.arange(_BINS), 1.0, 0.0)
+def _equal_bins(points: int) -> Array:
+    """Return a column for each bin of neighbouring points, all bins of about the same size."""
+    index = np.arange(points) * _BINS // max(points, 1)
+    return np.where(index[:, None] == np.arange(_BINS), 1.0, 0.0)
 
 
 def _adhesion(drop: float, window: int) -> FailedCheck:
@@ -149,7 +160,7 @@ def _adhesion(drop: float, window: int) -> FailedCheck:
 def _drift_or_offset(
     residuals: Residuals, force: Array, line: Array, noise: float
 ) -> list[FailedCheck]:
-    """Return whether the force before contact drifts, or is not 0, and is fitted without that."""
+    """Return the check that the force before contact is constant and 0, unless that is fitted."""
     slope, steepness = _slope(force, line)
     if not residuals.is_free(SLOPE) and 2 * ndtr(-abs(slope) / noise) < CHANCE:
         change = slope * steepness * float(np.ptp(line[:, 1]))
@@ -157,12 +168,12 @@ def _drift_or_offset(
             FailedCheck(
                 "drift",
                 f"the force drifts by {change:.3g} N before contact, and modulus and tension are "
-                "off by what it drifts in contact; fit the baseline too, with baseline 'slope'",
+                "off by its drift in contact; fit the baseline too, with baseline 'slope'",
             )
         ]
     mean = float(np.mean(force))
     least = 10 * residuals.likelihood.accuracy * float(np.max(np.abs(residuals.likelihood.force)))
-    if residuals.baseline or abs(mean) <= max(_OFF * noise / np.sqrt(force.size), least):
+    if residuals.baseline or abs(mean) <= max(_OFFSET_LIMIT * noise / np.sqrt(force.size), least):
         return []
     return [
         FailedCheck(
@@ -173,18 +184,18 @@ def _drift_or_offset(
     ]
 
 
-def _slow_noise(slow: BinnedNoise, independent: float, rows: int) -> FailedCheck:
-    excess = slow.excess(independent)
+def _correlated(slow: BinnedNoise, independent: float, points: int) -> FailedCheck:
     return FailedCheck(
         "slow_noise",
-        f"the noise before contact is correlated: {rows} points tell no more than "
-        f"{max(rows / excess, 1):.2g} independent ones, and the intervals are widened by that",
+        f"the noise before contact is correlated: {points} points carry as much information as "
+        f"{max(points / slow.excess(independent), 1):.2g} independent ones, and the intervals are "
+        "widened by that",
     )
 
 
 def _steps(step: float) -> FailedCheck:
     return FailedCheck(
         "steps",
-        f"the force comes in steps of {step:.3g} N, larger than its noise, and what lies between "
-        "them is not known; measure with a finer range of the detector",
+        f"the force comes in steps of {step:.3g} N, larger than its noise, and values between them "
+        "are not known; measure with a finer range of the detector",
     )

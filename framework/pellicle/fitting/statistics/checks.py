@@ -1,78 +1,125 @@
-"""Checks of a fit by its own residuals, and the noise that they leave."""
+"""Least-squares fit of one curve with its noise, and the checks that its residuals fail."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import fdtrc
+from scipy.special import chdtri, fdtrc
 
 from pellicle.arrays import Array
+from pellicle.components import HasForceCurve, IsShallowLimit
+from pellicle.errors import ConfigError, ConvergenceError
+from pellicle.fitting.models.force_model import (
+    CONTACT_POINT,
+    MODULUS,
+    TENSION,
+    ClosedFormModel,
+    Coordinates,
+)
 
 from .baseline_checks import check_baseline, falling_baseline
-from .likelihood import POINT, Likelihood
-from .noise import BinnedNoise
-from .residuals import CHANCE, FailedCheck, NoiseEstimate, Residuals, exceeds, independent_freedom
+from .initial_guess import initial_guesses
+from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
+from .noise import (
+    CHANCE,
+    BinnedNoise,
+    FailedCheck,
+    NoiseEstimate,
+    Residuals,
+    independent_freedom,
+)
+from .pooled_likelihood import Pool
+from .profile import CONFIDENCE
 
 _QUIET = 20
-"""Rows before contact that the noise can be taken from."""
+"""Least number of points before contact from which the noise is estimated."""
 _DEPTHS = (0, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 3 / 4, 1)
-"""Edges of bins of the rows in contact, over the depth: most models fail near first touch."""
+"""Edges of bins in contact, over the depth; narrow near first touch, where most models fail."""
 _WILD = 7.0
-"""Standard deviations from the mean of its neighbours beyond which a row is a spike."""
+"""Standard deviations from the mean of its neighbours beyond which a point is a spike."""
 _NORMAL = 1.4826
 """Standard deviation of normal numbers over their median absolute deviation."""
+SHALLOW = 0.1
+"""Depth over radius beyond which a paraboloid differs from the sphere that it approximates."""
+_ALIKE = 10.8
+"""Δχ² below which another shape describes a curve as well (by chance exceeded in 0.1 %)."""
 
 
-class Examined(NamedTuple):
-    """Noise of a curve, and what its residuals show of the model."""
+@dataclass(frozen=True)
+class SingleFit:
+    """The best parameters of one curve, its noise, and the checks that it fails."""
 
-    noise: float
-    """Standard deviation of the force [N], widened by the checks that fail."""
+    likelihood: Likelihood
+    """With the estimated noise."""
+    parameters: Coordinates
     freedom: float
-    """Degrees of freedom."""
-    source: str
-    """What the noise was taken from."""
-    failed: tuple[FailedCheck, ...]
+    """Degrees of freedom of the noise."""
+    noise_from: str
+    """Source of the noise estimate."""
+    failed_checks: tuple[FailedCheck, ...]
     messages: tuple[str, ...]
+    """Further warnings."""
 
 
-def examine(likelihood: Likelihood, parameters: Array) -> Examined:
-    """Return the noise of a curve at its best parameters, and the checks that it fails there.
+def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
+    """Return the best parameters of a curve, its noise, and the checks that it fails.
 
-    The noise is the scatter before contact about what drifts or dips there, or what the sums of
-    residuals over bins show if a check fails.  The noise of ``likelihood`` cancels.
+    The noise is the scatter before contact about drift or a dip there, or, if a check fails, what
+    sums of residuals over bins show.  The noise of ``likelihood`` has no effect but to scale χ².
+
+    Raises
+    ------
+    ConfigError
+        No modulus above 0 describes the curve.
+    ConvergenceError
+        No search for the best parameters converges.
     """
-    residuals = Residuals.of(likelihood, parameters)
-    spikes = _spikes(residuals)
+    guesses = initial_guesses(likelihood, fixed)
+    if not guesses:
+        raise ConfigError(
+            "is nowhere pushed back as an indenter would be; check signs, indenter and fix", "force"
+        )
+    minimum = best_minimum(likelihood, guesses)
+    residuals = Residuals.of(likelihood, minimum.parameters)
     count = int(residuals.before.sum())
     messages: tuple[str, ...] = ()
     if count < _QUIET:
         source = "residuals of the fit"
         messages = (
             f"only {count} points lie before contact, so the noise is taken from the residuals of "
-            "the fit, and drift or adhesion before contact cannot be told; start further out, or "
-            "fit the baseline too if the force out there is not 0",
+            "the fit, and drift or adhesion before contact cannot be detected; start further out, "
+            "or fit the baseline too if the force out there is not 0",
         )
-        whole = _check_whole(residuals)
+        estimate = _check_whole(residuals)
     else:
         source = f"{count} points before contact"
         messages = falling_baseline(residuals)
-        whole = _check_contact(residuals, check_baseline(residuals))
-    failed = (*spikes, *whole.failed)
+        estimate = _check_contact(residuals, check_baseline(residuals))
+    failed = (*_spikes(residuals), *estimate.failed)
     if failed:
         source += f"; checks that fail: {', '.join(check.code for check in failed)}"
-    return Examined(whole.noise, whole.freedom, source, failed, messages)
+    scaled = minimum.chi_squared * (likelihood.noise / estimate.noise) ** 2
+    likelihood = replace(likelihood, noise=estimate.noise)
+    notes, shape = _check_shape(likelihood, minimum._replace(chi_squared=scaled))
+    return SingleFit(
+        likelihood,
+        minimum.parameters,
+        estimate.freedom,
+        source,
+        (*failed, *shape),
+        (*messages, *notes),
+    )
 
 
 def _spikes(residuals: Residuals) -> list[FailedCheck]:
-    """Return whether rows lie far from both neighbours."""
+    """Return the check that no point lies far from the mean of its neighbours."""
     force = residuals.force
     if force.size < _QUIET:
         return []
     off = force[1:-1] - (force[2:] + force[:-2]) / 2
     spread = max(_NORMAL * float(np.median(np.abs(off - np.median(off)))), residuals.floor)
-    # A spike also moves the means beside it, by half as much and to the other side.
+    # A spike also shifts the means beside it, by half as much and in the other direction.
     wild = np.abs(off) > _WILD * spread
     wild[1:-1] &= (np.abs(off[1:-1]) >= np.abs(off[:-2])) & (np.abs(off[1:-1]) >= np.abs(off[2:]))
     if not (count := int(wild.sum())):
@@ -82,20 +129,20 @@ def _spikes(residuals: Residuals) -> list[FailedCheck]:
         FailedCheck(
             "spikes",
             f"{count} points lie more than {_WILD:g} standard deviations from their neighbours, "
-            f"first that at {residuals.likelihood.position[first]:.6g} m: such spikes are no "
+            f"first the one at {residuals.likelihood.position[first]:.6g} m: such spikes are not "
             "normal noise, and shift the fit; leave them out",
         )
     ]
 
 
 def _check_whole(residuals: Residuals) -> NoiseEstimate:
-    """Return the noise of a curve that has too few rows before contact."""
-    rows = residuals.force.size
-    freedom = rows - len(residuals.likelihood.free)
+    """Return the noise of a curve that has too few points before contact."""
+    points = residuals.force.size
+    freedom = points - len(residuals.likelihood.free)
     noise = max(float(np.sqrt(np.sum(residuals.force**2) / freedom)), residuals.floor)
-    independent = residuals.independent_noise(np.ones(rows, dtype=bool))
+    independent = residuals.independent_noise(np.ones(points, dtype=bool))
     sums = residuals.binned(_contact_bins(residuals))
-    if sums is None or not exceeds(sums, independent, independent_freedom(rows)):
+    if sums is None or not sums.exceeds(independent, independent_freedom(points)):
         return NoiseEstimate(noise, freedom, ())
     failed = (_pattern(residuals, sums, independent),)
     if sums.noise <= noise:
@@ -104,43 +151,43 @@ def _check_whole(residuals: Residuals) -> NoiseEstimate:
 
 
 def _check_contact(residuals: Residuals, before: NoiseEstimate) -> NoiseEstimate:
-    """Return the noise with what the residuals in contact add to that before."""
+    """Return the noise before contact, widened by the checks that residuals in contact fail."""
     contact = ~residuals.before
     count = int(contact.sum())
-    loose = max(count - len(residuals.likelihood.free) + residuals.baseline, 1)
-    scatter = float(np.sqrt(np.sum(residuals.force[contact] ** 2) / loose))
+    freedom_contact = max(count - len(residuals.likelihood.free) + residuals.baseline, 1)
+    scatter = float(np.sqrt(np.sum(residuals.force[contact] ** 2) / freedom_contact))
     noise, freedom, failed = before.noise, before.freedom, list(before.failed)
-    if scatter > noise and fdtrc(loose, freedom, (scatter / noise) ** 2) < CHANCE:
+    if scatter > noise and fdtrc(freedom_contact, freedom, (scatter / noise) ** 2) < CHANCE:
         failed.append(_misfit(residuals, scatter / noise))
-        noise, freedom = scatter, min(freedom, loose)
+        noise, freedom = scatter, min(freedom, freedom_contact)
     sums = residuals.binned(_contact_bins(residuals))
     if sums is None:
         return NoiseEstimate(noise, freedom, tuple(failed))
     independent = residuals.independent_noise(contact)
     if before.slow is None:
-        wrong = exceeds(sums, independent, independent_freedom(count))
+        wrong = sums.exceeds(independent, independent_freedom(count))
     else:
-        wrong = exceeds(sums, max(before.slow.noise, independent), before.slow.freedom)
+        wrong = sums.exceeds(max(before.slow.noise, independent), before.slow.freedom)
     if wrong:
         failed.append(_pattern(residuals, sums, independent))
-    # Noise that is slower than the bins before contact shows in the wider ones in contact.
+    # Noise slower than the bins before contact appears in the wider bins in contact.
     if (wrong or before.slow is not None) and sums.noise > noise:
         noise, freedom = sums.noise, sums.freedom
     return NoiseEstimate(noise, freedom, tuple(failed))
 
 
 def _contact_bins(residuals: Residuals) -> Array:
-    """Return a column for each bin of the rows in contact, narrow near first touch."""
+    """Return a column for each bin of the points in contact, narrow near first touch."""
     share = residuals.depth / float(residuals.depth[-1])
-    number = np.digitize(share, _DEPTHS[1:-1])
-    number[residuals.before] = -1
-    return np.where(number[:, None] == np.arange(len(_DEPTHS) - 1), 1.0, 0.0)
+    index = np.digitize(share, _DEPTHS[1:-1])
+    index[residuals.before] = -1
+    return np.where(index[:, None] == np.arange(len(_DEPTHS) - 1), 1.0, 0.0)
 
 
 def _model(residuals: Residuals) -> str:
-    """Return what the model takes for granted."""
-    point = residuals.parameters[POINT]
-    fixed = "" if residuals.is_free(POINT) else f", contact from {point:g} m on"
+    """Return the assumptions of the model in words."""
+    point = residuals.parameters[CONTACT_POINT]
+    fixed = "" if residuals.is_free(CONTACT_POINT) else f", contact from {point:g} m on"
     return f"the model (this indenter, this elastic solid, no adhesion{fixed})"
 
 
@@ -161,3 +208,87 @@ def _pattern(residuals: Residuals, sums: BinnedNoise, independent: float) -> Fai
         f"independent noise: {_model(residuals)} does not describe the curve; the intervals are "
         "widened by that factor",
     )
+
+
+def _whole_shape(
+    likelihood: Likelihood, parameters: Coordinates
+) -> tuple[IsShallowLimit, HasForceCurve] | None:
+    """Return the indenter and the shape it approximates, if pressed in too deep for that.
+
+    None if the depth exceeds the limit of that shape, too.
+    """
+    model = likelihood.force_model
+    if not isinstance(model, ClosedFormModel) or not isinstance(model.indenter, IsShallowLimit):
+        return None
+    depth = float(likelihood.depth(parameters)[-1])
+    shape = model.indenter.whole_shape()
+    if SHALLOW * model.indenter.radius < depth <= shape.depth_limit:
+        return model.indenter, shape
+    return None
+
+
+def _check_shape(likelihood: Likelihood, best: Minimum) -> tuple[list[str], list[FailedCheck]]:
+    """Return the effect of the whole shape in words, as a failed check if it replaces the tension.
+
+    The check fails if the whole shape describes the curve without tension as well as its shallow
+    limit does with a tension that it needs.
+    """
+    shapes = _whole_shape(likelihood, best.parameters)
+    if shapes is None:
+        return [], []
+    limit, shape = shapes
+    other = replace(likelihood, force_model=ClosedFormModel(shape))
+    try:
+        minimum = other.minimise(best.parameters)
+        fails = _needs_no_tension(other, minimum, likelihood, best)
+    except ConvergenceError:
+        return [], []
+    share = float(likelihood.depth(best.parameters)[-1]) / limit.radius
+    name, whole = (getattr(it, "type", type(it).__name__) for it in (limit, shape))
+    words = (
+        f"the depth is {share:.2g} of the radius, and beyond {SHALLOW:g} of it a {name} differs "
+        f"from the {whole} that it stands for: with indenter {whole!r} the reduced modulus is "
+        f"{np.exp(minimum.parameters[MODULUS]):.4g} Pa and the tension "
+        f"{minimum.parameters[TENSION]:.3g} N/m"
+    )
+    if not fails:
+        return [words], []
+    return [], [FailedCheck("shape", f"{words}; it explains the curve as well without tension")]
+
+
+def check_pooled_shape(pool: Pool, best: Minimum) -> list[FailedCheck]:
+    """Return the check that the whole shapes do not replace the tension of several curves."""
+    members, count = [], 0
+    for member, part in zip(pool.members, pool.parts(best.parameters), strict=True):
+        shapes = _whole_shape(member, part)
+        model = member.force_model if shapes is None else ClosedFormModel(shapes[1])
+        members.append(replace(member, force_model=model))
+        count += shapes is not None
+    if not count:
+        return []
+    other = Pool(tuple(members), pool.free)
+    try:
+        fails = _needs_no_tension(other, other.minimise(best.parameters), pool, best)
+    except ConvergenceError:
+        return []
+    text = (
+        f"{count} of {len(members)} curves go deeper than {SHALLOW:g} of the radius, and the "
+        "shapes that their indenters stand for explain the curves as well without tension"
+    )
+    return [FailedCheck("shape", text)] if fails else []
+
+
+def _needs_no_tension(
+    other: ChiSquared, minimum: Minimum, chi_squared: ChiSquared, best: Minimum
+) -> bool:
+    """Return whether ``other`` fits as well without tension where ``chi_squared`` needs one."""
+    if TENSION not in chi_squared.free or not best.parameters[TENSION]:
+        return False
+    needed = _without_tension(chi_squared, best) - best.chi_squared > chdtri(1, 1 - CONFIDENCE)
+    return needed and _without_tension(other, minimum) < best.chi_squared + _ALIKE
+
+
+def _without_tension(chi_squared: ChiSquared, minimum: Minimum) -> float:
+    """Return the least χ² without tension near a minimum with tension."""
+    start = minimum.parameters | {TENSION: 0.0}
+    return chi_squared.minimise(start, (TENSION,)).chi_squared

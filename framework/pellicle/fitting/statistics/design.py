@@ -1,70 +1,53 @@
-"""Which experiment would tell more: the Cramér–Rao bound of other radii and other ranges."""
+"""Experiments that would be more informative: Cramér–Rao bounds at other radii and ranges."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from pellicle.arrays import Array
+from pellicle.fitting.models.force_model import (
+    CONTACT_POINT,
+    MODULUS,
+    TENSION,
+    ClosedFormModel,
+    Coordinates,
+)
 
-from .estimate import Estimate
-from .likelihood import MODULUS, POINT, TENSION, Likelihood
+from .likelihood import Likelihood
+from .profile import Estimate
 
 _FACTORS = (1 / 10, 1 / 3, 3.0, 10.0)
 _DEEPEST = 0.5
-"""Depth over radius that no advice goes beyond: linear elasticity ends about there."""
+"""Largest depth over radius that is recommended, roughly the limit of linear elasticity."""
 _USELESS = 10.0
-"""A relative standard deviation that says nothing."""
+"""Relative standard deviation beyond which an experiment is not informative."""
 _GAIN = 1.3
-"""An experiment is worth naming if it tightens by this factor."""
+"""Least factor by which a recommended experiment has a smaller bound."""
 
 
-@dataclass(frozen=True)
-class Design:
-    """An experiment, and the standard deviations that no unbiased fit of it could beat."""
+class _Design(NamedTuple):
+    """An experiment, and its Cramér–Rao bounds as relative standard deviations."""
 
     words: str
     modulus: float
-    """Of the modulus, relative."""
     tension: float
-    """Of the tension, relative."""
 
     @property
     def worse(self) -> float:
-        """The greater of the two."""
+        """The greater of the two bounds."""
         return max(self.modulus, self.tension)
 
 
-def designs(likelihood: Likelihood, parameters: Array) -> tuple[Design, list[Design]]:
-    """Return the experiment as it was and others, best first.
+def advice(
+    likelihood: Likelihood, parameters: Coordinates, modulus: Estimate, tension: Estimate
+) -> str:
+    """Return the bounds of modulus and tension, and which experiment would tighten them.
 
-    The others keep the number of points, the share of them before contact, and the noise relative
-    to the largest force.
+    Empty if one of the two is fixed.  A curve that shows no tension is judged by one that it could
+    just miss.
     """
-    now = _design("this curve", likelihood, parameters)
-    deepest = float(likelihood.position[-1] - parameters[POINT])
-    others = []
-    radius = getattr(likelihood.indenter, "radius", None)
-    for factor in _FACTORS:
-        if radius is None or factor * deepest <= _DEEPEST * radius:
-            kind = "deeper" if factor > 1 else "shallower"
-            how = f"a {kind} range, to {_metres(factor * deepest)},"
-            others.append(_design(how, _deeper(likelihood, parameters, factor), parameters))
-        if radius is not None and deepest <= _DEEPEST * factor * radius:
-            how = f"a {'larger' if factor > 1 else 'smaller'} radius, {_metres(factor * radius)},"
-            others.append(_design(how, _other_radius(likelihood, parameters, factor), parameters))
-    return now, sorted(others, key=lambda design: design.worse)
-
-
-def decidable(now: Design, others: list[Design]) -> bool:
-    """Return whether this experiment or one of the others says anything of both parameters."""
-    return any(design.worse < _USELESS for design in [now, *others])
-
-
-def advice(likelihood: Likelihood, parameters: Array, modulus: Estimate, tension: Estimate) -> str:
-    """Return advice, if both modulus and tension were asked for."""
     if not {MODULUS, TENSION} <= set(likelihood.free):
         return ""
     if tension.value and not np.isfinite([modulus.bound, tension.bound]).all():
@@ -80,46 +63,38 @@ def advice(likelihood: Likelihood, parameters: Array, modulus: Estimate, tension
 
 
 def undecided(
-    modulus: Estimate,
-    tension: Estimate,
-    likelihood: Likelihood,
-    parameters: Array,
+    modulus: Estimate, tension: Estimate, likelihood: Likelihood, parameters: Coordinates
 ) -> list[str]:
-    """Say why an interval is open."""
-    if modulus.held or tension.held:
+    """Return why an interval is open, in words."""
+    if modulus.held or tension.held or None not in (modulus.low, modulus.high, tension.high):
         return []
-    if modulus.low is None or modulus.high is None or tension.high is None:
-        which = "modulus" if modulus.low is None or modulus.high is None else "tension"
-        depth = float(likelihood.position[-1] - parameters[POINT])
+    which = "modulus" if modulus.low is None or modulus.high is None else "tension"
+    text = (
+        f"the curve cannot tell modulus and tension apart: the interval of the {which} is open, "
+        "its value is one of many"
+    )
+    now, others = _designs(likelihood, _with_tension(likelihood, parameters, tension))
+    if _decidable(now, others):
         length = 2 * tension.value / modulus.value
-        text = (
-            f"the curve cannot tell modulus and tension apart: the interval of the {which} is "
-            "open, its value is one of many"
-        )
-        if decidable(*designs(likelihood, _with_tension(likelihood, parameters, tension))):
-            text += f"; the curve is too {'shallow' if length > depth else 'deep'}"
-        return [text]
-    return []
+        shallow = length > float(likelihood.depth(parameters)[-1])
+        text += f"; the curve is too {'shallow' if shallow else 'deep'}"
+    return [text]
 
 
-def _with_tension(likelihood: Likelihood, parameters: Array, tension: Estimate) -> Array:
-    """Return the parameters, with a tension that the curve could just miss if it shows none."""
-    supposed = parameters.copy()
-    if tension.low is None:
-        supposed[TENSION] = (tension.high or likelihood.scale[TENSION]) / 2
-    return supposed
+def percent(share: float) -> str:
+    """Return a share as a percentage for messages."""
+    return f"{100 * share:.2g} %" if share < 10 else "more than 1000 %"
 
 
-def _advice(likelihood: Likelihood, parameters: Array) -> str:
-    """Return in words which experiment would tighten modulus and tension."""
-    now, others = designs(likelihood, parameters)
+def _advice(likelihood: Likelihood, parameters: Coordinates) -> str:
+    now, others = _designs(likelihood, parameters)
     reached = (
         f"no unbiased fit of this curve could beat ± {percent(now.modulus)} of the modulus and "
         f"± {percent(now.tension)} of the tension (Cramér–Rao bound, one standard deviation)"
     )
-    if not decidable(now, others):
+    if not _decidable(now, others):
         return (
-            f"{reached}; with this indenter no other radius or range would tell them apart: hold "
+            f"{reached}; with this indenter no other radius or range would tell them apart: fix "
             "one of them, or press with another shape"
         )
     if not others or not others[0].worse * _GAIN < now.worse:
@@ -131,27 +106,58 @@ def _advice(likelihood: Likelihood, parameters: Array) -> str:
     )
 
 
-def _design(words: str, likelihood: Likelihood, parameters: Array) -> Design:
+def _designs(likelihood: Likelihood, parameters: Coordinates) -> tuple[_Design, list[_Design]]:
+    """Return this experiment and others, best first.
+
+    The others have the same number of points, the same share of them before contact, and the same
+    noise relative to the largest force.
+    """
+    now = _design("this curve", likelihood, parameters)
+    deepest = float(likelihood.depth(parameters)[-1])
+    others = []
+    model = likelihood.force_model
+    indenter: Any = model.indenter if isinstance(model, ClosedFormModel) else None
+    radius = getattr(indenter, "radius", None)
+    for factor in _FACTORS:
+        if radius is None or factor * deepest <= _DEEPEST * radius:
+            kind = "deeper" if factor > 1 else "shallower"
+            words = f"a {kind} range, to {_metres(factor * deepest)},"
+            position = parameters[CONTACT_POINT] + factor * likelihood.depth(parameters)
+            other = replace(likelihood, position=position)
+            others.append(_design(words, _same_noise(other, likelihood, parameters), parameters))
+        if radius is not None and deepest <= _DEEPEST * factor * radius:
+            kind = "larger" if factor > 1 else "smaller"
+            words = f"a {kind} radius, {_metres(factor * radius)},"
+            shape = ClosedFormModel(indenter.model_copy(update={"radius": factor * radius}))
+            other = replace(likelihood, force_model=shape)
+            others.append(_design(words, _same_noise(other, likelihood, parameters), parameters))
+    return now, sorted(others, key=lambda design: design.worse)
+
+
+def _design(words: str, likelihood: Likelihood, parameters: Coordinates) -> _Design:
     bound = likelihood.deviations(parameters)
-    return Design(words, float(bound[MODULUS]), float(bound[TENSION] / parameters[TENSION]))
+    return _Design(words, bound[MODULUS], bound[TENSION] / parameters[TENSION])
 
 
-def _deeper(likelihood: Likelihood, parameters: Array, factor: float) -> Likelihood:
-    position = parameters[POINT] + factor * (likelihood.position - parameters[POINT])
-    return _measured(replace(likelihood, position=position), likelihood, parameters)
-
-
-def _other_radius(likelihood: Likelihood, parameters: Array, factor: float) -> Likelihood:
-    indenter: Any = likelihood.indenter
-    other = indenter.model_copy(update={"radius": factor * indenter.radius})
-    return _measured(replace(likelihood, indenter=other), likelihood, parameters)
-
-
-def _measured(other: Likelihood, likelihood: Likelihood, parameters: Array) -> Likelihood:
+def _same_noise(other: Likelihood, likelihood: Likelihood, parameters: Coordinates) -> Likelihood:
     """Return an experiment with the same noise relative to its largest force."""
     share = likelihood.noise / np.max(np.abs(likelihood.model(parameters)))
     force = other.model(parameters)
     return replace(other, force=force, noise=share * float(np.max(np.abs(force))))
+
+
+def _decidable(now: _Design, others: list[_Design]) -> bool:
+    """Return whether any of the experiments determines both parameters."""
+    return any(design.worse < _USELESS for design in [now, *others])
+
+
+def _with_tension(
+    likelihood: Likelihood, parameters: Coordinates, tension: Estimate
+) -> Coordinates:
+    """Return the parameters, with a tension that the curve could just miss if it shows none."""
+    if tension.low is not None:
+        return parameters
+    return parameters | {TENSION: (tension.high or likelihood.ranges[TENSION].scale) / 2}
 
 
 def _metres(value: float) -> str:
@@ -159,8 +165,3 @@ def _metres(value: float) -> str:
         if value >= factor:
             return f"{value / factor:.3g} {unit}"
     return f"{value / 1e-9:.3g} nm"
-
-
-def percent(share: float) -> str:
-    """Return a share as a message shows it."""
-    return f"{100 * share:.2g} %" if share < 10 else "more than 1000 %"

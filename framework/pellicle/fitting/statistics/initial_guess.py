@@ -1,82 +1,83 @@
-"""Where a fit starts: the best of a scan of contact points and elastocapillary lengths."""
+"""Initial guesses of a fit: the best of a scan over contact points and values of the model."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components import HasForceCurve
-from pellicle.components.calls import force_curve_of
+from pellicle.fitting.models.force_model import (
+    CONTACT_POINT,
+    OFFSET,
+    SLOPE,
+    Coordinates,
+    Values,
+)
 
-from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, Likelihood
+from .likelihood import Likelihood
 
 _BINS = 200
 _POINTS = 50
-_LENGTHS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0)
-"""s over the measured range of positions."""
 BEFORE = 0.5
-"""How far before the first point contact may have begun, over the range."""
+"""Largest distance of the contact point before the first position, over the range of positions."""
 KEPT = 3
 
 
-def starts(likelihood: Likelihood, held: Array) -> list[Array]:
-    """Return the `KEPT` best of the scan, best first.
+def initial_guesses(likelihood: Likelihood, fixed: Coordinates) -> list[Coordinates]:
+    """Return the `KEPT` best of a scan over contact points and values of the model, best first.
 
-    ``held`` holds the parameters that are not free, and anything for those that are.  At a given
-    contact point and length the modulus and the baseline are linear, so they are solved for.
+    ``fixed`` has the coordinates of all parameters that are not free; others are ignored.  At each
+    node the force scale and the baseline, in which the model is linear, follow by least squares.
     """
+    fixed = {p: fixed[p] for p in likelihood.parameters if p not in likelihood.free}
     z, f = _binned(likelihood.position), _binned(likelihood.force)
     span = float(np.ptp(z))
-    points = np.linspace(z[0] - BEFORE * span, z[-1] - 0.02 * span, _POINTS)
-    if POINT not in likelihood.free:
-        points = held[POINT : POINT + 1]
-    lengths = _LENGTHS if TENSION in likelihood.free or held[TENSION] else (0.0,)
-    found = [
-        (misfit, parameters)
-        for point in points
-        for length in lengths
-        if (tried := _solved(likelihood, held, z, f, point, length * span)) is not None
-        for misfit, parameters in [tried]
+    points = np.linspace(z[0] - BEFORE * span, z[-1] - 0.02 * span, _POINTS).tolist()
+    if CONTACT_POINT in fixed:
+        points = [fixed[CONTACT_POINT]]
+    trials = [
+        values
+        for values in likelihood.force_model.guesses(span)
+        if not any(fixed.get(p) == p.minimum < value for p, value in values.items())
     ]
-    found.sort(key=lambda each: each[0])
-    return [parameters for _, parameters in found[:KEPT]]
+    guesses = [
+        guess
+        for point in points
+        for values in trials
+        if (guess := _linear_fit(likelihood, fixed, z, f, point, values)) is not None
+    ]
+    guesses.sort(key=lambda guess: guess[0])
+    return [parameters for _, parameters in guesses[:KEPT]]
 
 
 def _binned(values: Array) -> Array:
-    """Return means of neighbours, about `_BINS` of them."""
+    """Return the means of about `_BINS` groups of neighbours."""
     edges = np.linspace(0, values.size, min(values.size, _BINS) + 1).astype(int)
     sums = np.concatenate([[0.0], np.cumsum(values)])
     means: Array = (sums[edges[1:]] - sums[edges[:-1]]) / np.diff(edges)
     return means
 
 
-def _solved(
-    likelihood: Likelihood, held: Array, z: Array, f: Array, point: float, length: float
-) -> tuple[float, Array] | None:
-    """Return misfit and parameters at a contact point and length; None if force would pull."""
-    shape = _force(likelihood.indenter, z - point, length)
-    moved = z - likelihood.position[0]
-    columns = {MODULUS: shape, OFFSET: np.ones_like(z), SLOPE: moved}
-    fitted = [k for k in columns if k == MODULUS or k in likelihood.free]
-    matrix = np.column_stack([columns[k] for k in fitted])
+def _linear_fit(
+    likelihood: Likelihood, fixed: Coordinates, z: Array, f: Array, point: float, values: Values
+) -> tuple[float, Coordinates] | None:
+    """Return misfit [N²] and coordinates; None if the force would have to be negative."""
+    model = likelihood.force_model
+    shape = model.force(z - point, values).force
+    baseline = {OFFSET: np.ones_like(z), SLOPE: z - likelihood.position[0]}
+    fitted = [p for p in baseline if p not in fixed]
+    matrix = np.column_stack([shape, *(baseline[p] for p in fitted)])
     norms = np.linalg.norm(matrix, axis=0)
     if not norms.all():
         return None
-    target = f - sum(held[k] * columns[k] for k in (OFFSET, SLOPE) if k not in fitted)
+    target = f - sum(fixed[p] * baseline[p] for p in baseline if p in fixed)
     solution = np.linalg.lstsq(matrix / norms, target, rcond=None)[0] / norms
-    modulus = float(solution[0])
-    if MODULUS not in likelihood.free:
-        modulus = float(np.exp(held[MODULUS]))
-    if modulus <= 0:
+    factor = float(solution[0])
+    for p, value in values.items():
+        if p.logarithmic and p in fixed:
+            factor = p.value(fixed[p]) / value
+    if factor <= 0:
         return None
-    parameters = held.copy()
-    parameters[fitted] = solution
-    parameters[POINT], parameters[MODULUS] = point, np.log(modulus)
-    if TENSION in likelihood.free:
-        parameters[TENSION] = modulus * length / 2
+    scaled = {p: p.coordinate(value) for p, value in model.scaled(values, factor).items()}
+    linear = dict(zip(fitted, solution[1:].tolist(), strict=True))
     misfit = float(np.sum((matrix @ solution - target) ** 2))
-    return misfit, parameters
-
-
-def _force(indenter: HasForceCurve, depth: Array, length: float) -> Array:
-    return force_curve_of(indenter, depth, length).force
+    return misfit, {CONTACT_POINT: point} | scaled | linear | fixed

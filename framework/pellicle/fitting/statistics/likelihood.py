@@ -1,9 +1,9 @@
-"""How well parameters explain a curve: residuals, their Jacobian, minima and profiles."""
+"""Likelihood of measured forces: residuals, Jacobian, Fisher information and minima of χ²."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
@@ -12,57 +12,69 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from pellicle.arrays import Array
-from pellicle.components import HasForceCurve
-from pellicle.components.calls import force_curve_of
 from pellicle.errors import ConvergenceError
-from pellicle.fitting.models.interpolated import SimulatedCurve
+from pellicle.fitting.models.force_model import (
+    CONTACT_POINT,
+    OFFSET,
+    SLOPE,
+    Coordinates,
+    ForceModel,
+    Parameter,
+)
 
-POINT, MODULUS, TENSION, OFFSET, SLOPE = range(5)
-"""Parameters: contact point [m], log of E* in Pa, τ₀ [N/m], force offset [N], its slope [N/m]."""
-NAMES = ("contact_point", "reduced_modulus", "tension", "offset", "slope")
-"""What results call them."""
 REACH = np.log(100.0)
-"""How far in log E*, and in log τ₀ above, an interval is followed before it is called open."""
+"""Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""
 FARTHEST = 10.0
-"""How far outside the curve contact may have begun, over the range of positions."""
+"""Largest distance of the contact point before the first position, over the range of positions."""
+_LARGEST_CHANGE = 20.0
+"""Largest change of a logarithm in one search: beyond every interval, and exp does not overflow."""
 _METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 60), ("trf", 1000))
-"""Searches for a minimum, and the steps that they may take."""
+"""Optimisers, tried in this order, and their largest numbers of steps."""
 _TOLERANCE = 1e-10
-_ACCURACY = 1e-6
-"""Of the master curves."""
-_BALANCING = 200
-"""Steps of Newton's method in which they must."""
-_BALANCED = 1e-9
-"""To which cantilever and solid balance, relative to the range of the force."""
+_BALANCE_STEPS = 200
+"""Largest number of Newton steps for the balance of cantilever and solid."""
+_BALANCE_TOLERANCE = 1e-9
+"""Last Newton step of that balance, relative to the range of the force."""
 
 
 class Minimum(NamedTuple):
-    """Parameters of least χ²."""
+    """A minimum of χ²."""
 
-    parameters: Array
+    parameters: Coordinates
     chi_squared: float
 
 
-def least(found: Iterable[Minimum]) -> Minimum:
-    """Return the least of several minima."""
-    return min(found, key=lambda each: each.chi_squared)
+class Range(NamedTuple):
+    """How far a coordinate varies."""
+
+    scale: float
+    """Order of magnitude of its variation."""
+    low: float
+    """Least coordinate; for a logarithmic parameter relative to the start of a search."""
+    high: float
+    """Greatest coordinate, likewise."""
+
+
+def least(minima: Iterable[Minimum]) -> Minimum:
+    """Return the minimum with the smallest χ²."""
+    return min(minima, key=lambda minimum: minimum.chi_squared)
 
 
 def best_minimum(
-    chi_squared: ChiSquared, starts: Iterable[Array], held: Sequence[int] = ()
+    chi_squared: ChiSquared, starts: Iterable[Coordinates], fixed: Sequence[Parameter] = ()
 ) -> Minimum:
-    """Return the least of the minima near several starts, of those whose search ends.
+    """Return the smallest of the minima near several starts, ignoring searches that fail.
 
     Raises
     ------
     ConvergenceError
-        None of them ends.
+        All searches fail.
     """
     minima: list[Minimum] = []
     error: ConvergenceError | None = None
     for start in starts:
         try:
-            minima.append(chi_squared.minimise(start, held))
+            minima.append(chi_squared.minimise(start, fixed))
         except ConvergenceError as failure:
             error = failure
     if error is not None and not minima:
@@ -71,125 +83,131 @@ def best_minimum(
 
 
 class ChiSquared(ABC):
-    """χ² over parameters of which `POINT`, `MODULUS` and `TENSION` come first."""
+    """χ² = Σ (model − force)²/noise² as a function of the coordinates of parameters."""
 
-    free: tuple[int, ...]
-    """The parameters that are not held."""
-
-    @cached_property
-    @abstractmethod
-    def scale(self) -> Array:
-        """What each parameter moves by, about."""
+    free: tuple[Parameter, ...]
+    """The parameters that are fitted."""
 
     @cached_property
     @abstractmethod
-    def limits(self) -> tuple[Array, Array]:
-        """The least and the greatest value of each parameter; of the modulus, relative.
+    def parameters(self) -> tuple[Parameter, ...]:
+        """All parameters, fitted or fixed, in the order of the columns of the Jacobian."""
 
-        A contact point further away than `FARTHEST`, or a baseline that carries more than the
-        whole force, makes other parameters cancel it, along valleys that never end.
+    @cached_property
+    @abstractmethod
+    def ranges(self) -> Mapping[Parameter, Range]:
+        """Scale and limits of each coordinate.
+
+        Beyond the limits (contact further away than `FARTHEST`, a baseline that carries more than
+        the whole force) other parameters cancel the change, along valleys of χ² without end.
         """
 
     @abstractmethod
-    def expanded(self, parameters: Array) -> tuple[Array, Array]:
-        """Return residuals over the noise, whose squares add up to χ², and their derivatives.
+    def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
+        """Return residuals, whose sum of squares is χ², and their Jacobian.
 
-        The derivatives have a column for each parameter.
+        The Jacobian has a column for each of `parameters`.
         """
 
     @property
     @abstractmethod
     def accuracy(self) -> float:
-        """Of the model, relative to the largest force; less noise than this cannot be told."""
+        """Error of the model relative to the largest force; noise below it cannot be resolved."""
 
     @abstractmethod
     def coarse(self) -> ChiSquared | None:
-        """Return the same with force curves of coarser grids; None where none is simulated."""
+        """Return the same with force curves from coarser grids; None if none is simulated."""
 
-    def kind(self, which: int) -> int:
-        """Return which parameter of a curve a parameter is."""
-        return which
+    @cached_property
+    def _column(self) -> dict[Parameter, int]:
+        return {parameter: column for column, parameter in enumerate(self.parameters)}
 
-    def residuals(self, parameters: Array) -> Array:
-        """Return residuals over the noise; their squares add up to χ²."""
-        return self.expanded(parameters)[0]
+    def columns(self, parameters: Iterable[Parameter]) -> list[int]:
+        """Return the columns of the Jacobian that belong to some parameters."""
+        return [self._column[parameter] for parameter in parameters]
 
-    def slopes(self, parameters: Array) -> Array:
-        """Return the derivatives of the residuals in each parameter, a column for each."""
-        return self.expanded(parameters)[1]
+    def residuals(self, parameters: Coordinates) -> Array:
+        """Return (model − force)/noise; the sum of squares is χ²."""
+        return self.linearised(parameters)[0]
 
-    def chi_squared(self, parameters: Array) -> float:
+    def jacobian(self, parameters: Coordinates) -> Array:
+        """Return the derivatives of the residuals, with a column for each parameter."""
+        return self.linearised(parameters)[1]
+
+    def chi_squared(self, parameters: Coordinates) -> float:
         """Return the sum of squared residuals."""
         residuals = self.residuals(parameters)
         return float(residuals @ residuals)
 
-    def information(self, parameters: Array, free: Sequence[int]) -> Array:
-        """Return the Fisher information of some parameters, in units of `scale`."""
-        jacobian = self.slopes(parameters)[:, free] * self.scale[list(free)]
-        return jacobian.T @ jacobian
+    def deviations(self, parameters: Coordinates) -> Coordinates:
+        """Return the Cramér–Rao bound of each coordinate as a standard deviation; 0 if fixed.
 
-    def deviations(self, parameters: Array) -> Array:
-        """Return the Cramér–Rao bound of each parameter, as a standard deviation; 0 if held.
-
-        At its limit, 0, the tension has none, and the bounds of the others are those without it:
-        an interval that ends there may be narrower than the bound of a tension of either sign.
+        It is infinite for a parameter at its minimum (no tension), and then those of the others
+        hold with that one fixed: their intervals may be narrower than the bound that would hold if
+        the parameter could also take values below its minimum.
         """
-        if TENSION in self.free and not parameters[TENSION]:
-            bound = self.bounds(parameters, [k for k in self.free if k != TENSION])
-            bound[TENSION] = np.inf
-            return bound
-        return self.bounds(parameters, self.free)
+        edge = [p for p in self.free if parameters[p] == p.minimum]
+        bounds = self.bounds(parameters, [p for p in self.free if p not in edge])
+        return bounds | dict.fromkeys(edge, np.inf)
 
-    def bounds(self, parameters: Array, free: Sequence[int]) -> Array:
-        """Return the Cramér–Rao bound of each free parameter as a standard deviation, 0 else."""
-        bound = np.zeros(parameters.size)
+    def bounds(self, parameters: Coordinates, free: Sequence[Parameter]) -> Coordinates:
+        """Return the Cramér–Rao bound of the ``free`` coordinates as standard deviations; 0 else.
+
+        It is the root of the diagonal of the inverse Fisher information JᵀJ (Rao 1945).
+        """
+        bounds = dict.fromkeys(self.parameters, 0.0)
         if not free:
-            return bound
-        information = self.information(parameters, free)
+            return bounds
+        scale = np.array([self.ranges[p].scale for p in free])
+        jacobian = self.jacobian(parameters)[:, self.columns(free)] * scale
+        information = jacobian.T @ jacobian
         try:
             variances = np.diag(np.linalg.inv(information))
         except np.linalg.LinAlgError:
             variances = np.full(len(free), np.inf)
         variances = np.where(variances > 0, variances, np.inf)
-        bound[list(free)] = np.sqrt(variances) * self.scale[list(free)]
-        return bound
+        return bounds | dict(zip(free, (np.sqrt(variances) * scale).tolist(), strict=True))
 
-    def minimise(self, start: Array, held: Sequence[int] = ()) -> Minimum:
-        """Return the least χ² near ``start``, some of the parameters held."""
-        free = [k for k in self.free if k not in held]
-        best = np.array(start, dtype=float)
+    def minimise(self, start: Coordinates, fixed: Sequence[Parameter] = ()) -> Minimum:
+        """Return the minimum of χ² near ``start``, with some more parameters fixed there.
+
+        Raises
+        ------
+        ConvergenceError
+            No optimiser converges: parameters are not identifiable.
+        """
+        free = [p for p in self.free if p not in fixed]
         if not free:
-            return Minimum(best, self.chi_squared(best))
-        scale = self.scale[free]
-        lowest, highest = (limit.copy() for limit in self.limits)
-        lowest[MODULUS] += start[MODULUS]
-        highest[MODULUS] += start[MODULUS]
+            return Minimum(start, self.chi_squared(start))
+        columns = self.columns(free)
+        scale, lowest, highest = np.array([self.ranges[p] for p in free]).T
+        origin = np.array([start[p] if p.logarithmic else 0.0 for p in free])
+        lowest, highest = lowest + origin, highest + origin
 
-        def full(u: Array) -> Array:
-            parameters = best.copy()
-            parameters[free] = u * scale
-            return parameters
+        def full(u: Array) -> Coordinates:
+            return start | dict(zip(free, (u * scale).tolist(), strict=True))
 
-        # The optimiser asks for slopes where it has just asked for residuals.
-        slopes: dict[bytes, Array] = {}
+        # The optimiser asks for the Jacobian where it has just asked for the residuals.
+        jacobians: dict[bytes, Array] = {}
 
         def residuals(u: Array) -> Array:
-            slopes.clear()
-            found, slopes[u.tobytes()] = self.expanded(full(u))
-            return found
+            jacobians.clear()
+            values, jacobians[u.tobytes()] = self.linearised(full(u))
+            return values
 
         def jacobian(u: Array) -> Array:
-            known = slopes.get(u.tobytes())
-            return (self.slopes(full(u)) if known is None else known)[:, free] * scale
+            known = jacobians.get(u.tobytes())
+            scaled: Array = (self.jacobian(full(u)) if known is None else known)[:, columns] * scale
+            return scaled
 
-        u = np.clip(best[free], lowest[free], highest[free]) / scale
-        # Dogbox is the faster where bounds are active, but creeps along curved valleys.
+        u = np.clip([start[p] for p in free], lowest, highest) / scale
+        # Dogbox is faster at active bounds, but makes small steps along curved valleys.
         for method, most in _METHODS:
             solution = least_squares(
                 residuals,
                 u,
                 jacobian,
-                (lowest[free] / scale, highest[free] / scale),
+                (lowest / scale, highest / scale),
                 method=method,
                 xtol=_TOLERANCE,
                 ftol=_TOLERANCE,
@@ -200,36 +218,38 @@ class ChiSquared(ABC):
                 return Minimum(full(solution.x), 2 * float(solution.cost))
             u = solution.x
         raise ConvergenceError(
-            f"the search for the parameters of least χ² did not end in {_METHODS[-1][1]} steps: "
-            "the curve does not tell them apart; hold one of them (fix), or fit less of the "
+            f"the search for the parameters of least χ² did not converge in {_METHODS[-1][1]} "
+            "steps: the curve does not tell them apart; fix one of them, or fit less of the "
             "baseline"
         )
 
 
 @dataclass(frozen=True)
 class Likelihood(ChiSquared):
-    """χ² of a curve under normal noise in the force, equal at all points."""
+    """χ² of one curve under normal noise of the force, independent and equal at all points."""
 
     position: Array
+    """[m], of shape (n,), increasing into the solid."""
     force: Array
-    indenter: HasForceCurve
+    """[N], of shape (n,)."""
+    force_model: ForceModel
     noise: float
-    free: tuple[int, ...]
+    """Standard deviation of the force [N]."""
+    free: tuple[Parameter, ...]
     stiffness: float | None = None
-    """Of the cantilever [N/m] whose deflection was subtracted to get the position; noise of the
-    force is then in the position too, and what is exact is the position of its base."""
+    """Spring constant [N/m] of the cantilever whose deflection was subtracted to get the position.
+    Noise of the force is then in the position too; only the position of the base is exact."""
 
     @cached_property
-    def scale(self) -> Array:
-        """What each parameter moves by, about."""
-        span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
-        return np.array([span, 1.0, height / span, height, height / span])
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Contact point, those of the force model, offset and slope of the baseline."""
+        return (CONTACT_POINT, *self.force_model.parameters, OFFSET, SLOPE)
 
     @cached_property
     def base(self) -> Array:
-        """Position of the cantilever's base [m], or of the indenter if no stiffness is known.
+        """Position of the cantilever's base [m], or of the indenter without a stiffness.
 
-        This is what the instrument sets, so it holds no noise of the force.
+        The instrument sets it, so it does not contain noise of the force.
         """
         if self.stiffness is None:
             return self.position
@@ -239,87 +259,91 @@ class Likelihood(ChiSquared):
     def travel(self) -> Array:
         """Travel of the base since the first point [m], along which a baseline drifts.
 
-        The position of the tip holds the measured force over the stiffness: with a slope of minus
-        the stiffness along it, any curve would be reproduced exactly.
+        The position of the tip contains the measured force over the stiffness: a baseline along it
+        with a slope of minus the stiffness would reproduce any curve exactly.
         """
         travel: Array = self.base - self.base[0]
         return travel
 
     @property
     def accuracy(self) -> float:
-        """Of the model, relative to the largest force."""
-        curve = self.indenter
-        return curve.accuracy if isinstance(curve, SimulatedCurve) else _ACCURACY
+        """Error of the model relative to the largest force."""
+        return self.force_model.accuracy
 
     @cached_property
-    def limits(self) -> tuple[Array, Array]:
-        """The least and the greatest value of each parameter; of the modulus, relative."""
-        span, height = float(np.ptp(self.position)), float(np.ptp(self.force))
+    def ranges(self) -> Mapping[Parameter, Range]:
+        """Scale and limits of each coordinate; the scale of a force model's follows its unit."""
+        z, force = self.position, self.force
+        span, height = float(np.ptp(z)), float(np.ptp(force))
+        sizes = {"m": span, "N": height, "N/m": height / span}
         steepest = height / float(self.travel[-1])
-        # E* moves far beyond every interval, and to where no exponential overflows.
-        lowest = [self.position.min() - FARTHEST * span, -20, 0, self.force.min() - height]
-        highest = [self.position.max(), 20, np.inf, self.force.max() + height]
-        return np.array([*lowest, -steepest]), np.array([*highest, steepest])
+        ranges = {
+            p: Range(1.0, -_LARGEST_CHANGE, _LARGEST_CHANGE)
+            if p.logarithmic
+            else Range(sizes[p.unit], p.minimum, np.inf)
+            for p in self.force_model.parameters
+        }
+        return ranges | {
+            CONTACT_POINT: Range(span, z.min() - FARTHEST * span, z.max()),
+            OFFSET: Range(height, force.min() - height, force.max() + height),
+            SLOPE: Range(height / span, -steepest, steepest),
+        }
 
     def coarse(self) -> Likelihood | None:
-        """Return the same with the force curve of a coarser grid, if it has one."""
-        curve = self.indenter
-        if not isinstance(curve, SimulatedCurve) or curve.coarse is None:
-            return None
-        return replace(self, indenter=curve.coarse)
+        """Return the same with the force model of a coarser grid, if there is one."""
+        coarse = self.force_model.coarse
+        return None if coarse is None else replace(self, force_model=coarse)
 
-    def model(self, parameters: Array) -> Array:
+    def depth(self, parameters: Coordinates) -> Array:
+        """Return the position relative to the contact point [m]."""
+        depth: Array = self.position - parameters[CONTACT_POINT]
+        return depth
+
+    def model(self, parameters: Coordinates) -> Array:
         """Return the force [N] at every position."""
         return self._model(self.position, parameters)[0]
 
-    def _model(self, position: Array, parameters: Array) -> tuple[Array, Array]:
-        point, log_modulus, tension, offset, slope = parameters
-        modulus = np.exp(log_modulus)
-        length = 2 * tension / modulus
-        curve = force_curve_of(self.indenter, position - point, length)
-        moved = self.travel
-        force = modulus * curve.force + offset + slope * moved
-        jacobian = np.column_stack(
-            [
-                -modulus * curve.by_depth,
-                modulus * (curve.force - length * curve.by_length),
-                2 * curve.by_length,
-                np.ones_like(moved),
-                moved,
-            ]
+    def _model(self, position: Array, parameters: Coordinates) -> tuple[Array, Array]:
+        """Return force [N] and its Jacobian by coordinate, of shape (n, number of parameters)."""
+        model = self.force_model
+        values = {p: p.value(parameters[p]) for p in model.parameters}
+        elastic = model.force(position - parameters[CONTACT_POINT], values)
+        force = elastic.force + parameters[OFFSET] + parameters[SLOPE] * self.travel
+        columns = [
+            elastic.by_parameter[p] * (value if p.logarithmic else 1.0)
+            for p, value in values.items()
+        ]
+        return force, np.column_stack(
+            [-elastic.by_depth, *columns, np.ones_like(self.travel), self.travel]
         )
-        return force, jacobian
 
-    def jacobian(self, parameters: Array) -> Array:
-        """Return the derivatives of the force, shape (n, 5)."""
-        return self._model(self.position, parameters)[1]
-
-    def expanded(self, parameters: Array) -> tuple[Array, Array]:
-        """Return (model − force) / noise and its derivatives, shapes (n,) and (n, 5)."""
+    def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
+        """Return (model − force)/noise, of shape (n,), and its Jacobian."""
         force, jacobian = self._balanced(parameters)
         return (force - self.force) / self.noise, jacobian / self.noise
 
-    def _balanced(self, parameters: Array) -> tuple[Array, Array]:
-        """Return force and derivatives where the base of the cantilever is, not its tip.
+    def _balanced(self, parameters: Coordinates) -> tuple[Array, Array]:
+        """Return force and Jacobian at the exact position of the base rather than the noisy tip.
 
-        There the force F solves F = P(z − F/k). P grows ever faster, so that Newton's steps are
-        monotonic after the first.
+        There the force solves F = P(z − F/k). P is convex in the depth, so Newton's iteration is
+        monotonic after its first step.
         """
         if self.stiffness is None:
             return self._model(self.position, parameters)
         force = self.force.copy()
-        # Positions that are far from 0 are rounded, and so is the force that they balance.
+        # Positions far from 0 are rounded, and so is the force that balances them.
         rounding = 8 * float(np.finfo(float).eps * np.max(np.abs(self.base))) * self.stiffness
-        enough = max(_BALANCED * float(np.ptp(self.force)), rounding)
-        for _ in range(_BALANCING):
-            there, jacobian = self._model(self.base - force / self.stiffness, parameters)
-            give = 1 - jacobian[:, POINT] / self.stiffness
-            step = (there - force) / give
+        tolerance = max(_BALANCE_TOLERANCE * float(np.ptp(self.force)), rounding)
+        contact_point = self._column[CONTACT_POINT]
+        for _ in range(_BALANCE_STEPS):
+            response, jacobian = self._model(self.base - force / self.stiffness, parameters)
+            give = 1 - jacobian[:, contact_point] / self.stiffness
+            step = (response - force) / give
             force += step
-            # Written so that NaN ends it.
-            if not np.max(np.abs(step)) > enough:
+            # Negated so that NaN ends the iteration.
+            if not np.max(np.abs(step)) > tolerance:
                 return force, jacobian / give[:, None]
         raise ConvergenceError(
-            f"the force of the cantilever does not balance that of the solid in {_BALANCING} "
+            f"the force of the cantilever does not balance that of the solid in {_BALANCE_STEPS} "
             "steps; is the spring constant right?"
         )

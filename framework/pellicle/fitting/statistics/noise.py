@@ -1,65 +1,169 @@
-"""Estimates of the noise of a curve: of neighbours, of steps of the detector, and of bins."""
+"""Noise of a curve, estimated from neighbouring points, detector steps, and sums over bins."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import fdtrc
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
+from pellicle.fitting.models.force_model import OFFSET, SLOPE, Coordinates, Parameter
 
+from .likelihood import Likelihood
+
+CHANCE = 3e-3
+"""Probability that a check flags a curve without fault."""
+_NEAR = 0.01
+"""Distance from contact beyond which a point counts as before it, over the range of positions."""
+_OF_NOISE = ("slow_noise", "spikes", "steps")
 _TIES = 0.9
-"""Different values per row below which values are taken to be steps of a detector."""
+"""Number of distinct values over that of points below which the values may be detector steps."""
 _OFF_STEP = 0.05
-"""Share of a step by which values of a detector may lie beside it, after conversion."""
+"""Largest deviation of a value from a multiple of the detector step, over the step."""
 _EQUAL = 1e-9
-"""Values closer than this, over the range, differ by rounding only."""
+"""Difference, over the range, below which values differ by rounding only."""
 _RANK = 1e-6
-"""Singular values below this, over the largest, belong to combinations of bins without rows."""
+"""Singular values below this share of a norm belong to combinations of bins without points."""
+
+
+class FailedCheck(NamedTuple):
+    """A check that a curve fails."""
+
+    code: str
+    message: str
+
+    @property
+    def of_model(self) -> bool:
+        """Whether it contradicts the model (so that no tension is shown) or only the noise."""
+        return self.code not in _OF_NOISE
+
+    def to_dict(self) -> dict[str, str]:
+        """Return JSON data."""
+        return self._asdict()
 
 
 class BinnedNoise(NamedTuple):
-    """Noise that sums over bins of rows show."""
+    """Noise estimated from sums over bins of points."""
 
     noise: float
-    """Standard deviation of a row, if the sums were those of independent noise."""
+    """Standard deviation of a point [N], if noise is independent."""
     freedom: int
     """Degrees of freedom."""
 
     def excess(self, noise: float) -> float:
-        """Return the variance of the sums over that of independent noise."""
+        """Return the variance of the sums over that of independent noise [N]."""
         return (self.noise / noise) ** 2
+
+    def exceeds(self, noise: float, freedom: float) -> bool:
+        """Return whether an F-test rejects noise [N] known with ``freedom`` degrees of freedom."""
+        return bool(fdtrc(self.freedom, freedom, self.excess(noise)) < CHANCE)
+
+
+class NoiseEstimate(NamedTuple):
+    """Noise of all or of some points, and the checks that they fail."""
+
+    noise: float
+    """Standard deviation of the force [N], widened by the failed checks."""
+    freedom: float
+    """Degrees of freedom."""
+    failed: tuple[FailedCheck, ...]
+    slow: BinnedNoise | None = None
+    """Noise before contact from sums over bins, where it exceeds that of independent points."""
+
+
+class Residuals(NamedTuple):
+    """Residuals of a fit, in the order of the points."""
+
+    likelihood: Likelihood
+    parameters: Coordinates
+    force: Array
+    """Measured minus model [N]."""
+    jacobian: Array
+    """Derivatives of the model by the coordinates that the fit varies."""
+    before: Mask
+    """Whether a point lies before contact."""
+    depth: Array
+    """Position relative to the contact point [m]."""
+    step: float
+    """Step of the detector [N]; 0 if the force has none."""
+    floor: float
+    """Least noise [N] that can be resolved, by the accuracy of the model and the detector step."""
+
+    @classmethod
+    def of(cls, likelihood: Likelihood, parameters: Coordinates) -> Residuals:
+        """Return the residuals at the best parameters."""
+        scaled, jacobian = likelihood.linearised(parameters)
+        # The fit does not vary a parameter at its minimum.
+        varied = [p for p in likelihood.free if parameters[p] != p.minimum]
+        depth = likelihood.depth(parameters)
+        largest = float(np.max(np.abs(likelihood.force)))
+        step = resolution(likelihood.force)
+        return cls(
+            likelihood,
+            parameters,
+            -scaled * likelihood.noise,
+            jacobian[:, likelihood.columns(varied)] * likelihood.noise,
+            depth < -_NEAR * float(np.ptp(likelihood.position)),
+            depth,
+            step,
+            max(likelihood.accuracy * largest, step / np.sqrt(12)),
+        )
+
+    def is_free(self, parameter: Parameter) -> bool:
+        """Return whether a parameter is fitted."""
+        return parameter in self.likelihood.free
+
+    @property
+    def baseline(self) -> int:
+        """Number of fitted parameters of the baseline."""
+        return sum(map(self.is_free, (OFFSET, SLOPE)))
+
+    def independent_noise(self, points: Mask) -> float:
+        """Return the noise [N] of some points, from differences of neighbours."""
+        return max(neighbour_noise(self.force[points]), self.floor)
+
+    def binned(self, bins: Array) -> BinnedNoise | None:
+        """Return the noise from sums over bins; a column of ``bins`` is 1 at its points, else 0."""
+        return binned_noise(self.force, self.jacobian, bins)
+
+
+def independent_freedom(points: int) -> float:
+    """Return the degrees of freedom of `neighbour_noise`."""
+    return 2 * points / 3
 
 
 def neighbour_noise(values: Array) -> float:
     """Return the standard deviation of independent noise, from the differences of neighbours.
 
-    Drift and slow noise do not enter; two thirds as many degrees of freedom as values remain.
+    Drift and slow noise do not contribute.  The estimate has two thirds as many degrees of freedom
+    as there are values (von Neumann et al. 1941).
     """
     return float(np.sqrt(np.mean(np.diff(values) ** 2) / 2))
 
 
 def resolution(values: Array) -> float:
-    """Return the step of values that all lie a whole number of steps apart, 0 for any others."""
+    """Return the detector step if all values are a whole number of steps apart, else 0."""
     steps = np.diff(np.unique(values))
     steps = steps[steps > _EQUAL * float(np.ptp(values))]
     if not 0 < steps.size < _TIES * values.size:
         return 0.0
     step = float(steps.min())
-    # Equal values alone are no steps: a curve without noise is 0 before contact.
+    # Equal values alone do not mean steps: a curve without noise is 0 before contact.
     counts = steps / step
     return step if np.all(np.abs(counts - np.round(counts)) < _OFF_STEP) else 0.0
 
 
 def binned_noise(residuals: Array, jacobian: Array, bins: Array) -> BinnedNoise | None:
-    """Return the noise that the sums of residuals over bins show; None if no bin is left.
+    """Return the noise from sums of residuals over bins; None if no bin is left.
 
-    ``bins`` has a column for each bin, 1 in its rows.  The fit has removed what its ``jacobian``
-    spans, so that is removed from the bins too; the sums are then made independent.
+    ``bins`` has a column for each bin, 1 at its points and 0 elsewhere.  Residuals of a fit are
+    orthogonal to the columns of its ``jacobian``, so these are projected out of the bins too; the
+    sums are then orthogonalised.
     """
     span, _ = np.linalg.qr(jacobian / np.maximum(np.linalg.norm(jacobian, axis=0), _tiny(jacobian)))
-    left = bins - span @ (span.T @ bins)
-    basis, sizes, _ = np.linalg.svd(left, full_matrices=False)
+    remainder = bins - span @ (span.T @ bins)
+    basis, sizes, _ = np.linalg.svd(remainder, full_matrices=False)
     basis = basis[:, sizes > _RANK * np.sqrt(residuals.size)]
     sums = basis.T @ (residuals - span @ (span.T @ residuals))
     if not sums.size:
@@ -68,5 +172,5 @@ def binned_noise(residuals: Array, jacobian: Array, bins: Array) -> BinnedNoise 
 
 
 def _tiny(matrix: Array) -> float:
-    """Return a norm below which a column of a matrix counts as empty."""
+    """Return a norm below which a column of a matrix counts as zero."""
     return float(np.finfo(float).eps) * float(np.linalg.norm(matrix))

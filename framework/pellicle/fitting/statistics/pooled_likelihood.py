@@ -1,101 +1,142 @@
-"""How well one modulus and one tension explain several curves."""
+"""Likelihood of several curves that share some parameters, and where its minima are sought."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.fitting.models.force_model import MODULUS, TENSION, Coordinates, Parameter
 
-from .likelihood import MODULUS, OFFSET, POINT, SLOPE, TENSION, ChiSquared, Likelihood
+from .initial_guess import KEPT
+from .likelihood import ChiSquared, Likelihood, Minimum, Range, least
 
-SHARED = [MODULUS, TENSION]
-_OWN = (POINT, OFFSET, SLOPE)
-"""Parameters that each curve has for itself."""
-_ALL = 5
+_Value = TypeVar("_Value")
 
 
 @dataclass(frozen=True)
 class Pool(ChiSquared):
-    """χ² of several curves that share modulus and tension.
+    """χ² of several curves that have the values of their shared parameters in common.
 
-    Parameters are those of the first curve, in the order of `likelihood`, then contact point,
-    offset and slope of each other one.
+    Each curve has the other parameters (contact point, offset, slope) for itself.
     """
 
     members: tuple[Likelihood, ...]
     """One for each curve."""
-    free: tuple[int, ...]
+    free: tuple[Parameter, ...]
 
     @classmethod
     def of(cls, members: Sequence[Likelihood]) -> Pool:
-        """Return the pool in which what is free in a curve is free."""
-        places = (_places(number)[k] for number, member in enumerate(members) for k in member.free)
-        return cls(tuple(members), tuple(dict.fromkeys(places)))
-
-    def parts(self, parameters: Array) -> list[Array]:
-        """Return the parameters of each curve."""
-        return [parameters[_places(number)] for number in range(len(self.members))]
-
-    def joined(self, parts: Sequence[Array]) -> Array:
-        """Return all parameters; modulus and tension are those of the first curve."""
-        return np.concatenate([parts[0], *(part[list(_OWN)] for part in parts[1:])])
-
-    def place(self, number: int, which: int) -> int:
-        """Return where a parameter of a curve is among those of the pool."""
-        return _places(number)[which]
-
-    def kind(self, which: int) -> int:
-        """Return which parameter of a curve a parameter is."""
-        return which if which < _ALL else _OWN[(which - _ALL) % len(_OWN)]
+        """Return the pool in which the free parameters of each curve are free."""
+        free = (p.of_curve(index) for index, member in enumerate(members) for p in member.free)
+        return cls(tuple(members), tuple(dict.fromkeys(free)))
 
     @cached_property
-    def scale(self) -> Array:
-        """What each parameter moves by, about."""
-        return self.joined([member.scale for member in self.members])
+    def _own(self) -> list[dict[Parameter, Parameter]]:
+        """For each curve the parameters of the pool by those of the curve."""
+        return [
+            {p: p.of_curve(index) for p in member.parameters}
+            for index, member in enumerate(self.members)
+        ]
 
     @cached_property
-    def limits(self) -> tuple[Array, Array]:
-        """The least and the greatest value of each parameter; of the modulus, relative."""
-        lowest, highest = zip(*(member.limits for member in self.members), strict=True)
-        return self.joined(lowest), self.joined(highest)
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Those of the first curve, then what each other curve has for itself."""
+        return tuple(dict.fromkeys(p for own in self._own for p in own.values()))
+
+    @property
+    def shared(self) -> list[Parameter]:
+        """The parameters that all curves have in common."""
+        return [p for p in self.parameters if p.shared]
+
+    def parts(self, parameters: Coordinates) -> list[Coordinates]:
+        """Return the coordinates of each curve."""
+        return [{p: parameters[q] for p, q in own.items()} for own in self._own]
+
+    def joined(self, parts: Sequence[Mapping[Parameter, _Value]]) -> dict[Parameter, _Value]:
+        """Return what the curves have for the parameters of the pool, the first for shared ones."""
+        pairs = zip(reversed(self._own), reversed(parts), strict=True)
+        return {q: part[p] for own, part in pairs for p, q in own.items()}
+
+    @cached_property
+    def ranges(self) -> Mapping[Parameter, Range]:
+        """Scale and limits of each coordinate; those of the first curve for shared ones."""
+        return self.joined([member.ranges for member in self.members])
 
     @property
     def accuracy(self) -> float:
-        """Of the least exact force curve, relative to the largest force."""
+        """Largest error of a force model relative to the largest force."""
         return max(member.accuracy for member in self.members)
 
     def coarse(self) -> Pool | None:
-        """Return the same with force curves of coarser grids, if there are any."""
-        coarser = [member.coarse() for member in self.members]
-        if not any(coarser):
+        """Return the same with force models of coarser grids, if there are any."""
+        coarse = [member.coarse() for member in self.members]
+        if not any(coarse):
             return None
-        pairs = zip(coarser, self.members, strict=True)
-        return Pool(tuple(made or member for made, member in pairs), self.free)
+        pairs = zip(coarse, self.members, strict=True)
+        return Pool(tuple(coarser or member for coarser, member in pairs), self.free)
 
-    def expanded(self, parameters: Array) -> tuple[Array, Array]:
-        """Return residuals of the same squares as all, six for each curve, and their derivatives.
+    def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
+        """Return a QR-compressed residual vector, six entries per curve, and its Jacobian.
 
-        A rotation changes neither χ² nor a step of Gauss and Newton, and in the right coordinates
-        six are left of thousands of points: a hundred curves fit into memory.
+        An orthogonal transformation leaves χ² and the Gauss–Newton step unchanged.  That of the QR
+        decomposition of (Jacobian, residuals) reduces each curve to as many rows as there are
+        columns, so that a hundred curves fit into memory.
         """
-        rotated: list[Array] = []
+        triangles = []
         for member, part in zip(self.members, self.parts(parameters), strict=True):
-            residuals, slopes = member.expanded(part)
-            rotated.append(np.asarray(np.linalg.qr(np.column_stack([slopes, residuals]), mode="r")))
-        slopes = np.zeros((sum(map(len, rotated)), parameters.size))
-        for number, own in enumerate(rotated):
-            rows = slice((_ALL + 1) * number, (_ALL + 1) * (number + 1))
-            slopes[rows, _places(number)] = own[:, :_ALL]
-        return np.concatenate([own[:, _ALL] for own in rotated]), slopes
+            residuals, jacobian = member.linearised(part)
+            matrix = np.column_stack([jacobian, residuals])
+            triangles.append(np.asarray(np.linalg.qr(matrix, mode="r")))
+        jacobian = np.zeros((sum(map(len, triangles)), len(self.parameters)))
+        first = 0
+        for triangle, own in zip(triangles, self._own, strict=True):
+            rows = slice(first, first := first + len(triangle))
+            jacobian[rows, self.columns(own.values())] = triangle[:, :-1]
+        return np.concatenate([triangle[:, -1] for triangle in triangles]), jacobian
 
+    def initial_minimum(self, single: Sequence[Coordinates]) -> Minimum:
+        """Return the minimum of χ² near what the curves give on their own, one set for each.
 
-def _places(member: int) -> list[int]:
-    """Return where the parameters of a curve are among those of the pool."""
-    if not member:
-        return list(range(_ALL))
-    first = _ALL + len(_OWN) * (member - 1)
-    return [first, MODULUS, TENSION, first + 1, first + 2]
+        Shared parameters start from the curves with the smallest bound of the modulus and from the
+        median.
+        """
+        pairs = list(zip(self.members, single, strict=True))
+        informative = sorted(pairs, key=lambda pair: pair[0].deviations(pair[1])[MODULUS])[:KEPT]
+        tries = [part for _, part in informative]
+        return least(
+            self._minimise(single, {p: shared[p] for p in self.shared})
+            for shared in (*tries, self._median(single))
+        )
+
+    def without_tension(self, best: Minimum) -> Minimum:
+        """Return the minimum of χ² without tension, near the pool's and the single curves'."""
+        fixed = (TENSION,)
+        parts = [part | {TENSION: 0.0} for part in self.parts(best.parameters)]
+        single = [
+            member.minimise(part, fixed).parameters
+            for member, part in zip(self.members, parts, strict=True)
+        ]
+        return least(
+            [
+                self.minimise(self.joined(parts), fixed),
+                self._minimise(single, self._median(single), fixed),
+            ]
+        )
+
+    def _median(self, parts: Sequence[Coordinates]) -> Coordinates:
+        return {p: float(np.median([part[p] for part in parts])) for p in self.shared}
+
+    def _minimise(
+        self, parts: Sequence[Coordinates], shared: Coordinates, fixed: Sequence[Parameter] = ()
+    ) -> Minimum:
+        """Return the minimum near coordinates of each curve, the shared ones replaced."""
+        starts = [
+            member.minimise(part | shared, self.shared).parameters
+            for member, part in zip(self.members, parts, strict=True)
+        ]
+        return self.minimise(self.joined(starts), fixed)

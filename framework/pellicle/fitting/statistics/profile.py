@@ -1,123 +1,259 @@
-"""The least χ² with tension and without, and the interval of each parameter."""
+"""Profile likelihood: estimates, their confidence intervals, and the minimum without tension."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
+from scipy.special import stdtrit
 
-from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
-from pellicle.fitting.status import Report, ignore
+from pellicle.fitting.models.force_model import MODULUS, TENSION, Coordinates, Parameter
 
-from .estimate import Estimate
-from .interval import Better, Ends, interval
-from .likelihood import MODULUS, NAMES, TENSION, ChiSquared, Minimum, least
+from .likelihood import REACH, ChiSquared, Minimum, least
+
+Ends = tuple[float | None, float | None]
+"""Ends of a confidence interval; None for one that the curve does not determine."""
+
+CONFIDENCE = 0.95
+_ACCURACY = 2e-3
+"""Accuracy of an end, relative to its distance from the best value."""
+_FIRST = 1e-2
+"""First trial, as a share of the way to the limit, where the bound lies beyond the limit."""
+_LEAST = 1e-12
+"""Smallest share of the way to the limit that is resolved."""
+_IMPROVEMENT = 1e-3
+"""Decrease of χ² by which another minimum counts as better."""
 
 
 @dataclass(frozen=True)
-class Profiled:
-    """Minima of χ², and the intervals around the least."""
+class Estimate:
+    """A parameter of a fit: its value and the 95 % interval of its profile likelihood."""
+
+    value: float
+    low: float | None
+    """Lower end; None if the curve determines none (a tension may then be 0)."""
+    high: float | None
+    """Upper end; None if the curve determines none."""
+    unit: str
+    bound: float
+    """Cramér–Rao bound at the value, as a standard deviation; 0 if fixed."""
+    held: bool = False
+    """Whether it was fixed, not fitted."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return JSON data, with None for an open end or a bound that is infinite."""
+        return vars(self) | {"bound": self.bound if np.isfinite(self.bound) else None}
+
+    def exponential(self) -> Estimate:
+        """Return the estimate of the quantity whose natural logarithm this is."""
+        value = float(np.exp(self.value))
+        low, high = (None if end is None else float(np.exp(end)) for end in (self.low, self.high))
+        return replace(self, value=value, low=low, high=high, bound=self.bound * value)
+
+    def times(self, factor: float) -> Estimate:
+        """Return the estimate of a multiple."""
+        low, high = (None if end is None else end * factor for end in (self.low, self.high))
+        value, bound = self.value * factor, self.bound * factor
+        return replace(self, value=value, low=low, high=high, bound=bound)
+
+
+class ImprovedMinimum(Exception):  # noqa: N818 - not an error: the search continues from there
+    """Raised when a profile reaches a smaller χ² than the minimum it starts from."""
+
+    def __init__(self, minimum: Minimum) -> None:
+        super().__init__(minimum)
+        self.minimum = minimum
+
+
+@dataclass(frozen=True)
+class ProfileResult:
+    """Minima of χ² with and without tension, and confidence intervals."""
 
     likelihood: ChiSquared
     best: Minimum
     without_tension: Minimum
-    """The least with tension held at 0."""
-    ends: Mapping[int, Ends]
-    """Of the interval of each parameter; log E* in Pa for the modulus."""
+    """The minimum with the tension fixed at 0."""
+    ends: Mapping[Parameter, Ends]
+    """Intervals of coordinates: of log E* (E* in Pa) for the modulus."""
     messages: tuple[str, ...]
-    """By how much the intervals were widened, and which could not be found."""
+    """By how much intervals were widened, and which could not be determined."""
 
     @cached_property
-    def _bound(self) -> Array:
+    def _bounds(self) -> Coordinates:
         return self.likelihood.deviations(self.best.parameters)
 
-    def estimate(self, which: int, unit: str) -> Estimate:
-        """Return what is known of a parameter; of `MODULUS`, E* itself.
+    def estimate(self, parameter: Parameter) -> Estimate:
+        """Return value, interval and bound of a parameter; E* itself for the modulus.
 
-        What no interval was sought of has no ends.  An interval that is narrower than the bound
-        has none: the bound is that of a model linear in its parameters, and this one is not.
+        Without an interval the ends are None.  Where the interval is narrower than the Cramér–Rao
+        bound, that bound is infinite: it is that of a linear model, and this model is not linear.
         """
-        value, bound = float(self.best.parameters[which]), float(self._bound[which])
-        held = which not in self.likelihood.free
-        low, high = (value, value) if held else self.ends.get(which, (None, None))
-        # The tension ends at 0.
-        lowest = 0.0 if which == TENSION and low is None else low
-        if lowest is not None and high is not None and max(high - value, value - lowest) < bound:
+        value, bound = self.best.parameters[parameter], self._bounds[parameter]
+        fixed = parameter not in self.likelihood.free
+        low, high = (value, value) if fixed else self.ends.get(parameter, (None, None))
+        lowest = parameter.minimum if low is None else low
+        if high is not None and max(high - value, value - lowest) < bound:
             bound = np.inf
-        found = Estimate(value, low, high, unit, bound, held)
-        return found.exponential() if which == MODULUS else found
+        estimate = Estimate(value, low, high, parameter.unit, bound, fixed)
+        return estimate.exponential() if parameter.logarithmic else estimate
 
 
-def profiled(
+def chi_squared_threshold(freedom: float) -> float:
+    """Return Δχ² at the ends of an interval, for noise of that many degrees of freedom.
+
+    It is the square of the two-sided quantile of Student's t: 3.84 if the noise is known exactly.
+    """
+    return float(stdtrit(freedom, (1 + CONFIDENCE) / 2) ** 2)
+
+
+def profile_likelihood(
     likelihood: ChiSquared,
     best: Minimum,
-    rise: float,
-    wanted: Sequence[int],
+    threshold: float,
+    wanted: Sequence[Parameter],
     without_tension: Callable[[Minimum], Minimum],
-    report: Report = ignore,
-) -> Profiled:
-    """Return the minimum near ``best``, that without tension, and intervals of what is ``wanted``.
+    report: Callable[[str], None] = lambda words: None,
+) -> ProfileResult:
+    """Return the minimum near ``best``, the one without tension, and intervals of ``wanted``.
 
-    ``without_tension`` finds a minimum without tension from one with it.  The intervals are where
-    χ² has risen by ``rise``, widened by what the grids of a simulated curve may have shifted.
-    ``report`` is called with what is sought.
+    ``without_tension`` finds a minimum without tension from one with it.  The intervals end where
+    the profile of χ² exceeds its minimum by ``threshold``, and are widened by the change of the
+    estimates on coarser grids if the force curve is simulated.  ``report`` is called with the name
+    of each step.
     """
     while True:
         report("without tension")
         without = without_tension(best)
         if TENSION in likelihood.free and without.chi_squared <= best.chi_squared + 1e-6:
-            # As good, and then exactly on the edge.
+            # An equally good minimum without tension has it at exactly 0.
             best = without
-        ends: dict[int, Ends] = {}
-        lost = []
+        ends: dict[Parameter, Ends] = {}
+        failures = []
         try:
-            for which in wanted:
-                report(f"interval of {NAMES[likelihood.kind(which)]}")
+            for parameter in wanted:
+                report(f"interval of {parameter.name}")
                 try:
-                    ends[which] = interval(likelihood, best, which, rise)
+                    ends[parameter] = confidence_interval(likelihood, best, parameter, threshold)
                 except ConvergenceError:
-                    ends[which] = None, None
-                    lost.append(NAMES[likelihood.kind(which)])
-        except Better as better:
-            again = likelihood.minimise(better.minimum.parameters)
-            best = least([again, better.minimum])
+                    ends[parameter] = None, None
+                    failures.append(parameter.name)
+        except ImprovedMinimum as improved:
+            again = likelihood.minimise(improved.minimum.parameters)
+            best = least([again, improved.minimum])
         else:
-            wider, messages = widened(ends, likelihood, best)
-            if lost:
-                messages += (_unsettled(lost),)
-            return Profiled(likelihood, best, without, wider, messages)
+            wider, messages = widen(ends, likelihood, best)
+            if failures:
+                messages += (_unidentifiable(failures),)
+            return ProfileResult(likelihood, best, without, wider, messages)
 
 
-def _unsettled(lost: Sequence[str]) -> str:
+def _unidentifiable(names: Sequence[str]) -> str:
     return (
-        f"no search for the interval of {', '.join(lost)} came to an end, and it is left open: the "
-        "curve does not tell the parameters apart; hold one of them, or fit less of the baseline"
+        f"the search for the interval of {', '.join(names)} did not converge, and it is left open: "
+        "the curve does not tell the parameters apart; fix one of them, or fit less of the baseline"
     )
 
 
-def widened(
-    ends: Mapping[int, Ends], likelihood: ChiSquared, best: Minimum
-) -> tuple[Mapping[int, Ends], tuple[str, ...]]:
-    """Return intervals with what the grids of a simulated curve may have shifted, and say it."""
-    coarser = likelihood.coarse()
-    if coarser is None:
+def widen(
+    ends: Mapping[Parameter, Ends], likelihood: ChiSquared, best: Minimum
+) -> tuple[Mapping[Parameter, Ends], tuple[str, ...]]:
+    """Return intervals widened by the change of the estimates on coarser grids, with a message."""
+    coarse = likelihood.coarse()
+    if coarse is None:
         return ends, ()
-    shift = np.abs(coarser.minimise(best.parameters).parameters - best.parameters)
+    other = coarse.minimise(best.parameters).parameters
+    shift = {p: abs(other[p] - value) for p, value in best.parameters.items()}
     tension = best.parameters[TENSION]
-    said = [f"the modulus by {100 * np.expm1(shift[MODULUS]):.2g} %"] * (MODULUS in ends)
+    changes = [f"the modulus by {100 * np.expm1(shift[MODULUS]):.2g} %"] * (MODULUS in ends)
     if TENSION in ends and tension:
-        said.append(f"the tension by {100 * shift[TENSION] / tension:.2g} %")
+        changes.append(f"the tension by {100 * shift[TENSION] / tension:.2g} %")
     message = (
         f"the force curve is simulated, to {100 * likelihood.accuracy:.2g} %; half as many cells "
-        f"change {' and '.join(said)}, and the intervals are widened by that"
+        f"change {' and '.join(changes)}, and the intervals are widened by that"
     )
-    wider = {}
-    for which, (low, high) in ends.items():
-        low = None if low is None else low - shift[which]
-        if which == TENSION and low is not None and low <= 0:
-            low = None
-        wider[which] = low, None if high is None else high + shift[which]
+    wider: dict[Parameter, Ends] = {}
+    for p, (low, high) in ends.items():
+        low = None if low is None or low - shift[p] <= p.minimum else low - shift[p]
+        wider[p] = low, None if high is None else high + shift[p]
     return wider, (message,)
+
+
+def confidence_interval(
+    likelihood: ChiSquared, best: Minimum, parameter: Parameter, threshold: float
+) -> Ends:
+    """Return the ends at which the profile of χ² exceeds its minimum by ``threshold``.
+
+    None stands for an end that is not reached: no tension, a modulus or a tension a hundred times
+    as large or as small, or the limit of the contact point or of the baseline.
+
+    Raises
+    ------
+    ImprovedMinimum
+        The profile falls below ``best``.
+    """
+    lowest, highest = _search_limits(likelihood, best.parameters, parameter)
+    return (
+        _end(likelihood, best, parameter, lowest, threshold),
+        _end(likelihood, best, parameter, highest, threshold),
+    )
+
+
+def _search_limits(
+    likelihood: ChiSquared, best: Coordinates, parameter: Parameter
+) -> tuple[float, float]:
+    value, (scale, low, high) = best[parameter], likelihood.ranges[parameter]
+    if parameter.logarithmic:
+        return value - REACH, value + REACH
+    return low, float(np.exp(REACH)) * max(value, scale) if np.isinf(high) else high
+
+
+def _end(
+    likelihood: ChiSquared, best: Minimum, parameter: Parameter, limit: float, threshold: float
+) -> float | None:
+    """Return where the profile has risen by ``threshold``; None if it has not at ``limit``."""
+    value = best.parameters[parameter]
+    span = limit - value
+    if not span:
+        return None
+    # Searches that start further away may end in another valley, so each starts from the last.
+    path = {0.0: best.parameters}
+
+    def excess(share: float) -> float:
+        """Return √Δχ² − √threshold, which is nearly linear in the distance."""
+        start = path[max(nearer for nearer in path if nearer <= share)]
+        minimum = likelihood.minimise(start | {parameter: value + share * span}, (parameter,))
+        if minimum.chi_squared < best.chi_squared - _IMPROVEMENT:
+            raise ImprovedMinimum(minimum)
+        path[share] = minimum.parameters
+        difference = max(minimum.chi_squared - best.chi_squared, 0.0)
+        return float(np.sqrt(difference) - np.sqrt(threshold))
+
+    deviation = likelihood.bounds(best.parameters, likelihood.free)[parameter]
+    inside, below = 0.0, -float(np.sqrt(threshold))
+    share = float(np.sqrt(threshold)) * deviation / abs(span)
+    # On a cone without tension a small tension acts like a shift of the contact point, to first
+    # order, so the linear estimate may lie beyond the limit.
+    if share >= 1:
+        share = _FIRST
+    while (above := excess(share)) < 0:
+        if share == 1:
+            return None
+        inside, below = share, above
+        share = min(2 * share, 1.0)
+    if above == 0:
+        return value + share * span
+    # brentq evaluates both ends again, which are known.
+    known = {inside: below, share: above}
+    root = brentq(
+        lambda at: known[at] if at in known else excess(at),
+        inside,
+        share,
+        xtol=_LEAST,
+        rtol=_ACCURACY,
+    )
+    return value + float(root) * span

@@ -1,22 +1,21 @@
-"""The cases of known truth: closed forms and the axisymmetric integral equation."""
+"""Validation cases with known results: closed forms and the axisymmetric integral equation.
+
+Solutions are imported where a case is made: plugins load at every start, scipy.optimize need not.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from math import pi, radians
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle.components import Case
-from pellicle.results.result import Result
+from pellicle import hookimpl
+from pellicle.components import Case, Suite
 
-from .axisymmetric import indent
-from .axisymmetric_indenters import Paraboloid
-from .cone import cone
-from .flat_punch import flat_punch
-from .full_contact import pressure_amplitude
-from .hertz import ellipse, sphere
+if TYPE_CHECKING:
+    from pellicle.results.result import Result
 
 _MODULUS = 10e3
 _RADIUS = 1e-3
@@ -24,13 +23,15 @@ _DEPTH = 50e-6
 _TENSION = 1.0
 
 
-def suite() -> Iterator[Case]:
-    """Yield every case; those that share a run follow each other."""
+def closed_forms() -> Iterator[Case]:
+    """Yield every case; cases that share a run follow each other."""
     for make in (_hertz, _ellipse, _cone, _flat_punch, _tensed_paraboloid, _sine):
         yield from make()
 
 
 def _hertz() -> Iterator[Case]:
+    from .hertz import sphere
+
     true = sphere(_RADIUS, _MODULUS, depth=_DEPTH)
     paraboloid = {"type": "paraboloid", "radius": _RADIUS}
     case = _with("Hertz paraboloid", "Hertz 1882", paraboloid, 3 * true.semi_x)
@@ -40,6 +41,8 @@ def _hertz() -> Iterator[Case]:
 
 
 def _ellipse() -> Iterator[Case]:
+    from .hertz import ellipse
+
     true = ellipse(_RADIUS, 2 * _RADIUS, _MODULUS, depth=_DEPTH)
     quadric = {"type": "quadric", "radius_x": _RADIUS, "radius_y": 2 * _RADIUS}
     case = _with("Hertz ellipse", "Hertz 1882", quadric, 3 * true.semi_y)
@@ -48,6 +51,8 @@ def _ellipse() -> Iterator[Case]:
 
 
 def _cone() -> Iterator[Case]:
+    from .cone import cone
+
     angle = radians(70)
     true = cone(angle, _MODULUS, depth=_DEPTH)
     tip = {"type": "cone", "half_angle": angle}
@@ -57,6 +62,8 @@ def _cone() -> Iterator[Case]:
 
 
 def _flat_punch() -> Iterator[Case]:
+    from .flat_punch import flat_punch
+
     radius = 0.1 * _RADIUS
     true = flat_punch(radius, _MODULUS, depth=_DEPTH)
     end = {"type": "flat_punch", "radius": radius}
@@ -65,7 +72,11 @@ def _flat_punch() -> Iterator[Case]:
 
 
 def _tensed_paraboloid() -> Iterator[Case]:
-    true = indent(Paraboloid(_RADIUS), _MODULUS, _TENSION, depth=_DEPTH)
+    from pellicle_plugins.indenters.paraboloid import Paraboloid
+
+    from .axisymmetric import indent
+
+    true = indent(Paraboloid(radius=_RADIUS), _MODULUS, _TENSION, depth=_DEPTH)
     paraboloid = {"type": "paraboloid", "radius": _RADIUS}
     source = "integral equation, after Long et al. 2017"
     case = _with("tensed paraboloid", source, paraboloid, 2.6 * true.contact_radius, _TENSION)
@@ -76,6 +87,8 @@ def _tensed_paraboloid() -> Iterator[Case]:
 
 
 def _sine() -> Iterator[Case]:
+    from .full_contact import pressure_amplitude
+
     wavelength, amplitude, points = 1e-3, 1e-6, 64
     wave = np.cos(2 * pi * (np.arange(points) + 0.5) / points)
     true = pressure_amplitude(amplitude, wavelength, _MODULUS, _TENSION)
@@ -100,9 +113,9 @@ def _sine() -> Iterator[Case]:
 
 
 def _with(
-    what: str, source: str, indenter: dict[str, Any], size: float, tension: float = 0.0
+    name: str, source: str, indenter: dict[str, Any], size: float, tension: float = 0.0
 ) -> Callable[[str, float, str, float, Callable[[Result], float]], Case]:
-    """Return a maker of cases that share one run."""
+    """Return a function that makes the cases of one run, each for one quantity."""
     configuration = {
         "grid": {"points": 256, "size": size},
         "kernel": _kernel(tension),
@@ -118,8 +131,8 @@ def _with(
         tolerance: float,
         computed: Callable[[Result], float],
     ) -> Case:
-        name = f"{what}: {quantity}"
-        return Case(name, configuration, computed, expected, unit, tolerance, source)
+        row = f"{name}: {quantity}"
+        return Case(row, configuration, computed, expected, unit, tolerance, source)
 
     return case
 
@@ -140,3 +153,9 @@ def _area(result: Result) -> float:
 
 def _highest_pressure(result: Result) -> float:
     return float(result.dataset["pressure"][-1].max())
+
+
+@hookimpl
+def register_validations(register: Callable[[Suite], None]) -> None:
+    """Register the suite."""
+    register(closed_forms)

@@ -1,0 +1,112 @@
+"""The runs of a study: one for each combination of values."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from pellicle.errors import ConfigError, Problem, shown
+from pellicle.model.base import Model
+from pellicle.model.paths import get, replaced
+from pellicle.model.ranges import Axes
+from pellicle.units import split
+
+from .run import Run
+
+
+class Point(NamedTuple):
+    """One run of a study."""
+
+    position: tuple[int, ...]
+    """Index along each dimension of the study."""
+    name: str
+    """The varied parameters with their values."""
+    run: Run
+
+
+def points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Iterator[Point]:
+    """Yield the runs of a study, the last dimension varying fastest.
+
+    ``table`` is what all runs share; ``dimensions`` are those of `Study.dimensions`.
+
+    Raises
+    ------
+    ConfigError
+        All problems of the runs, each once, under the axis that causes it.
+    """
+    problems: dict[Problem, list[str]] = {}
+    names: dict[str, str] = {}
+    shared = dict(table)
+    shape = [len(next(iter(axes.values()))) for axes in dimensions.values()]
+    for index in itertools.product(*map(range, shape)):
+        values = {
+            key: of_axis[number]
+            for number, axes in zip(index, dimensions.values(), strict=True)
+            for key, of_axis in axes.items()
+        }
+        name = ", ".join(f"{key} = {short(value)}" for key, value in values.items())
+        try:
+            run = _run(shared, values)
+        except ConfigError as error:
+            for problem in error.problems:
+                problems.setdefault(_located(problem, table, values), []).append(name)
+            continue
+        if not names:
+            # Fields that no axis changes are made once: an indenter may hold a whole surface.
+            varied = {key.partition(".")[0] for key in values}
+            shared |= {field: getattr(run, field) for field in run.model_fields_set - varied}
+        if (identity := run.identity) in names:
+            message = f"({names[identity]}) and ({name}) are the same run; leave one out"
+            problems[Problem("vary", message)] = []
+        names[identity] = name
+        if not problems:
+            yield Point(index, name, run)
+    if problems:
+        total = math.prod(shape)
+        raise ConfigError(
+            Problem(field, _with_runs(message, runs, total) if field[:4] == "run." else message)
+            for (field, message), runs in problems.items()
+        )
+
+
+def _run(shared: Mapping[str, Any], values: Mapping[str, Any]) -> Run:
+    data: Any = shared
+    for key, value in values.items():
+        try:
+            data = replaced(data, key, value)
+        except ConfigError as error:
+            raise error.within(key) from None
+    return Run(**data)
+
+
+def _located(problem: Problem, table: Mapping[str, Any], values: Mapping[str, Any]) -> Problem:
+    """Return a problem of a run under the name of the axis that caused it, if one did."""
+    for key, value in values.items():
+        is_new_table = key.startswith(f"{problem.field}.") and get(table, problem.field) is None
+        if f"{problem.field}.".startswith(f"{key}.") or is_new_table:
+            prefix = "" if shown(value) in problem.message else f"{shown(value)}: "
+            return Problem(f"vary.{key}", f"{prefix}{problem.message}")
+    return Problem(f"run.{problem.field}".removesuffix("."), problem.message)
+
+
+def _with_runs(message: str, runs: list[str], total: int) -> str:
+    """Return a message with the runs that it concerns, unless that is all of them."""
+    if len(runs) == total:
+        return message
+    others = f" and {len(runs) - 1} more" if len(runs) > 1 else ""
+    return f"{message} (in the run of {runs[0]}{others})"
+
+
+def short(value: object) -> str:
+    """Return a value as names of runs have it."""
+    if isinstance(value, Model):
+        value = {"type": getattr(value, "type_name", "?")}
+    if isinstance(value, Mapping):
+        return str(value.get("type", "{…}"))
+    text = value if isinstance(value, str) else json.dumps(value, default=str)
+    if (parts := split(text)) is not None:
+        text = f"{parts[0]:.6g} {parts[1]}".rstrip()
+    return text if len(text) <= 30 else f"{text[:29]}…"

@@ -1,0 +1,314 @@
+"""The configuration of a fit: one frozen model for TOML files, keyword arguments and commands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import (
+    BeforeValidator,
+    Field,
+    PlainSerializer,
+    PlainValidator,
+    PrivateAttr,
+    model_validator,
+)
+
+from pellicle.components import Component, Executor, HasForceCurve, Indenter
+from pellicle.config.component_field import FromRegistry
+from pellicle.config.study import DEFAULT_EXECUTOR
+from pellicle.errors import ConfigError, shown
+from pellicle.model.from_file import FromFile, overridden
+from pellicle.model.input_path import paths_relative_to
+from pellicle.model.messages import nearest
+from pellicle.model.paths import replaced
+from pellicle.model.toml import read_toml
+from pellicle.plugins import registry
+from pellicle.units import PoissonsRatio, Quantity
+
+from .curves.columns import Calibration
+from .curves.curve import LARGEST, Segment
+from .curves.readers import Curves, Source, expanded, gather
+from .models.force_model import CONTACT_POINT, MODULUS, TENSION
+from .models.simulation import GRID_POINTS
+from .models.solid import DEFAULT_KERNEL, Solid, solid
+
+Baseline = Literal["none", "offset", "slope"]
+IndenterLike = str | Mapping[str, Any] | Indenter | HasForceCurve
+"""An indenter, its table, or its type; or anything that has a force curve."""
+ExecutorLike = str | Mapping[str, Any] | Executor
+"""An executor, its table, or its type."""
+
+FIXABLE = {parameter.name: parameter for parameter in (CONTACT_POINT, MODULUS, TENSION)}
+"""Parameters that can be fixed, by their names."""
+
+
+_COMPONENTS = ("indenter", "kernel", "executor")
+
+
+def _component(value: object) -> object:
+    """Return the table of a component whose type alone is given."""
+    return {"type": value} if isinstance(value, str) else value
+
+
+def _indenter(value: object) -> Any:
+    """Return an indenter, or its table where fields are missing that each file may have.
+
+    Raises
+    ------
+    ConfigError, PluginError
+        A field of the table is not allowed.
+    """
+    table = _component(value)
+    if isinstance(table, HasForceCurve):
+        return table
+    try:
+        return registry().make(Indenter, table)
+    except ConfigError as error:
+        if not isinstance(table, Mapping) or "type" not in table:
+            raise
+        problems = [p for p in error.problems if p.field.partition(".")[0] in table]
+        if problems:
+            raise ConfigError(problems) from None
+        return dict(table)
+
+
+def _fixed(value: object) -> dict[str, float]:
+    """Return the values of fixed parameters in SI."""
+    if not isinstance(value, Mapping):
+        raise ConfigError(f"{shown(value)} is not a table; give one such as {{tension = 0}}")
+    values = {}
+    for name, given in value.items():
+        if name not in FIXABLE:
+            raise ConfigError(f"is not a parameter; {nearest(name, FIXABLE)}", str(name))
+        parameter = FIXABLE[name]
+        least = 1 / LARGEST if parameter.logarithmic else max(parameter.minimum, -LARGEST)
+        try:
+            values[name] = Quantity(parameter.unit, at_least=least, at_most=LARGEST)(given)
+        except ValueError as error:
+            raise ConfigError(str(error), name) from None
+    if {MODULUS.name, TENSION.name} <= values.keys():
+        raise ConfigError("fixes both modulus and tension; leave one of them to the fit")
+    return values
+
+
+def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the content of a file with its paths as seen from the current folder.
+
+    Raises
+    ------
+    ConfigError
+        No file matches a pattern.
+    """
+    curves, cache = data.get("curves"), data.get("cache")
+    curves = [curves] if isinstance(curves, str) else curves
+    if isinstance(curves, list) and all(isinstance(curve, str) for curve in curves):
+        data = data | {"curves": [path for curve in curves for path in expanded(curve, folder)]}
+    return data | {"cache": folder / cache} if isinstance(cache, str) else data
+
+
+def _as_json(indenter: object) -> dict[str, Any]:
+    """Return an indenter as JSON has it."""
+    if isinstance(indenter, Component):
+        return indenter.model_dump(mode="json", exclude_none=True)
+    return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
+
+
+class FitConfig(FromFile, Calibration):
+    """What is fitted to which curves, and how.
+
+    Keyword arguments of `fit`, `fit_many` and `fit_pooled`, options of ``pellicle fit`` and the
+    keys of a TOML file have the names of these fields, and make such an object.
+    """
+
+    curves: Annotated[
+        tuple[Path, ...],
+        BeforeValidator(lambda value: [value] if isinstance(value, (str, Path)) else value),
+        Field(description="files, folders, patterns such as beads/*.csv, or tables of files"),
+    ] = ()
+    indenter: Annotated[
+        Indenter | HasForceCurve | dict[str, Any],
+        PlainValidator(_indenter, json_schema_input_type=dict[str, Any] | str),
+        PlainSerializer(_as_json),
+        Field(description="what was pressed in: its type and fields"),
+    ]
+    poissons_ratio: Annotated[
+        PoissonsRatio | None, Field(description="of the solid, to get Young's modulus as well")
+    ] = None
+    kernel: Annotated[
+        dict[str, Any] | None,
+        BeforeValidator(_component),
+        Field(description="the solid without its modulus and tension; a half-space if not given"),
+    ] = None
+    fix: Annotated[
+        dict[str, float],
+        BeforeValidator(_fixed),
+        Field(
+            description="parameters that are not fitted, with their values", default_factory=dict
+        ),
+    ]
+    baseline: Annotated[
+        Baseline, Field(description="what is fitted of the force before contact")
+    ] = "none"
+    segment: Annotated[Segment, Field(description="the pass that is fitted")] = "approach"
+    per_file: Annotated[
+        dict[str, tuple[Any, ...]],
+        Field(
+            description="fields of the indenter, spring_constant or sensitivity, each with a list "
+            "of one value for each file",
+            default_factory=dict,
+        ),
+    ]
+    pool: Annotated[
+        bool, Field(description="whether all curves share one modulus and one tension")
+    ] = False
+    contact_points: Annotated[
+        bool, Field(description="whether a pool gives the interval of each contact point too")
+    ] = False
+    executor: Annotated[
+        Executor,
+        FromRegistry(),
+        BeforeValidator(_component),
+        Field(
+            description="what carries out many fits and simulations",
+            default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}),
+        ),
+    ]
+    cache: Annotated[Path | None, Field(description="folder that keeps simulated force curves")] = (
+        None
+    )
+    grid_points: Annotated[
+        int, Field(description="cells along each edge of the grids of a simulation")
+    ] = GRID_POINTS
+    _solid: Solid | None = PrivateAttr(None)
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.contact_points and not self.pool:
+            raise ConfigError(
+                "is of a pool; otherwise they have intervals anyway", "contact_points"
+            )
+        if self.kernel is not None:
+            self._solid = solid(self.kernel, self.poissons_ratio)
+        return self
+
+    @classmethod
+    def from_toml(cls, path: str | Path, overrides: Iterable[str] = ()) -> Self:
+        """Return the configuration in a TOML file.
+
+        Parameters
+        ----------
+        path
+            The file; relative paths and patterns in it start from its folder.
+        overrides
+            Texts such as ``'indenter.radius="5 um"'`` that replace values of the file.
+
+        Raises
+        ------
+        ConfigError
+            The file cannot be read or used; all its problems are named at once.
+        PluginError
+            A component that it names is broken.
+        """
+        return cls.merged(path, overrides)
+
+    @classmethod
+    def merged(
+        cls,
+        base: FitConfig | Mapping[str, Any] | str | Path | None = None,
+        overrides: Iterable[str] = (),
+        **options: Any,
+    ) -> Self:
+        """Return a configuration with options in place of the values of another or of a TOML file.
+
+        An option that is None keeps the value of ``base``.  One that is not a field of the
+        configuration is a field of the indenter; a list as such, or as spring_constant or
+        sensitivity, has a value for each file.  Overrides replace values and options.
+
+        Raises
+        ------
+        ConfigError, PluginError
+            A value is not allowed, or the file cannot be read.
+        """
+        if isinstance(base, (str, Path)):
+            folder = Path(base).parent
+            with paths_relative_to(folder):
+                return cls.merged(_from_folder(read_toml(Path(base)), folder), overrides, **options)
+        if isinstance(base, FitConfig):
+            base = {name: getattr(base, name) for name in base.model_fields_set}
+        data: dict[str, Any] = {
+            name: _component(value) if name in _COMPONENTS else value
+            for name, value in (base or {}).items()
+        }
+        for name, value in options.items():
+            if value is None:
+                continue
+            of_curve = name in Calibration.model_fields or name not in cls.model_fields
+            if of_curve and isinstance(value, (list, tuple)):
+                data = replaced(data, f"per_file.{name}", value)
+                continue
+            if of_curve and isinstance(data.get("per_file"), Mapping):
+                data["per_file"] = {k: v for k, v in data["per_file"].items() if k != name}
+            if name in cls.model_fields:
+                data[name] = _component(value) if name in _COMPONENTS else value
+            else:
+                data["indenter"] = _component(data.get("indenter", {}))
+                data = replaced(data, f"indenter.{name}", value)
+        return cls(**overridden(data, overrides))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the whole configuration as JSON data, defaults included, in SI."""
+        return self.model_dump(mode="json", exclude_none=True, fallback=str)
+
+    @property
+    def calibration(self) -> Calibration:
+        """Spring constant and sensitivity."""
+        return Calibration(spring_constant=self.spring_constant, sensitivity=self.sensitivity)
+
+    def sources(self, curves: Curves | None = None) -> list[Source]:
+        """Return the curves, or other ones that are given, as they are read.
+
+        Raises
+        ------
+        ConfigError, StorageError
+            As for `gather`.
+        """
+        return gather(
+            self.curves if curves is None else curves, self.segment, self.calibration, self.per_file
+        )
+
+    def indenter_with(self, fields: Mapping[str, Any]) -> Indenter | HasForceCurve:
+        """Return the indenter with the fields of one curve in place of its own.
+
+        Raises
+        ------
+        ConfigError, PluginError
+            A field is missing or not allowed.
+        """
+        indenter: Any = self.indenter
+        if fields and not isinstance(indenter, (Indenter, Mapping)):
+            raise ConfigError(f"{', '.join(fields)} given beside an indenter that is complete")
+        for name, value in fields.items():
+            indenter = replaced(indenter, name, value)
+        if isinstance(indenter, HasForceCurve):
+            return indenter
+        try:
+            return registry().make(Indenter, indenter)
+        except ConfigError as error:
+            raise error.within("indenter") from None
+
+    def solid_under(self, indenter: Indenter | HasForceCurve) -> Solid | None:
+        """Return the solid to simulate; None if there is no kernel and none is needed.
+
+        Raises
+        ------
+        ConfigError
+            A kernel is given beside a force curve that is not that of an indenter.
+        """
+        if self._solid is None:
+            closed = isinstance(indenter, HasForceCurve)
+            return None if closed else solid(DEFAULT_KERNEL, self.poissons_ratio)
+        if not isinstance(indenter, Indenter):
+            raise ConfigError("is given beside a force curve, which has one already", "kernel")
+        return self._solid

@@ -1,0 +1,34 @@
+"""Rigid axisymmetric indenters, described by the Abel transform of their profile."""
+
+from __future__ import annotations
+
+from typing import Protocol, runtime_checkable
+
+from pellicle.arrays import Array
+
+
+@runtime_checkable
+class HasAbelTransform(Protocol):
+    """A smooth-edged indenter of revolution; optional for an indenter component.
+
+    For a profile f(r) ≤ 0 [m], 0 at the apex, the transform is
+
+        h(x) = −x ∫₀^x f'(r) / sqrt(x² − r²) dr   [m].
+
+    Without tension the depth is h(a) and the force 2 E* (a h(a) − ∫₀^a h dx) at contact radius a
+    (Sneddon 1965). An indenter that has it has a reference solution under tension too.
+    """
+
+    @property
+    def contact_radius_limit(self) -> float:
+        """Contact radius [m] that cannot be reached; infinite if there is none."""
+        ...
+
+    @property
+    def pointed(self) -> bool:
+        """Whether the profile has a corner at its apex."""
+        ...
+
+    def abel_slope(self, x: Array) -> Array:
+        """Return h'(x), dimensionless, at positions 0 ≤ x < `contact_radius_limit` [m]."""
+        ...

@@ -1,0 +1,37 @@
+"""What tests see of a picture: its pixels, and where they have a colour."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import IO
+
+import matplotlib.image
+import numpy as np
+
+from pellicle.arrays import Array
+
+
+def pixels(picture: Path | IO[bytes]) -> Array:
+    """Return red, green and blue of each pixel of a PNG, from 0 to 1."""
+    return np.asarray(matplotlib.image.imread(picture), dtype=float)[..., :3]
+
+
+def colourfulness(picture: Path | IO[bytes]) -> Array:
+    """Return how far each pixel is from grey: axes, their grid and text are 0."""
+    return np.ptp(pixels(picture), axis=-1)
+
+
+def drawn_width(
+    picture: Path | IO[bytes],
+    columns: tuple[float, float] = (0.0, 1.0),
+    rows: tuple[float, float] = (0.0, 1.0),
+) -> float:
+    """Return the share of the columns in a part of a picture that have a colour; 0 of empty axes.
+
+    Columns and rows are fractions of the picture's width and height, rows counted from the top.
+    """
+    colour = colourfulness(picture) > 0.2
+    height, width = colour.shape
+    first, last = (round(width * edge) for edge in columns)
+    top, bottom = (round(height * edge) for edge in rows)
+    return float(colour[top:bottom, first:last].any(axis=0).mean())
