@@ -121,7 +121,7 @@ class Problem:
 
     def is_rigid(self, contact: Mask) -> bool:
         """Whether no force more on ``contact`` makes it sink: full contact that keeps its mean."""
-        return bool(contact.all()) and not self.operator.fixes_mean
+        return bool(contact.all()) and not self.operator.has_mean_compliance
 
     def height_scale(self, contact: Mask, depth: float, total: float) -> float:
         """Return the length [m] by which gaps are judged.

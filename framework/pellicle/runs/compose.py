@@ -13,7 +13,7 @@ from pellicle.components.calls import (
 )
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
-from pellicle.numerics.grid_checks import warn_of_cells, warn_of_seam
+from pellicle.numerics.grid_checks import warn_of_cells, warn_of_period
 from pellicle.numerics.operators import Operator, make_operator
 from pellicle.numerics.problem import Depth, Force, Problem
 from pellicle.results.variables import VARIABLES
@@ -32,7 +32,7 @@ def problems_of(run: Run) -> list[Problem]:
         warn_of_cells(run.kernel.compliance, run.grid)
     profile = profile_of(run.indenter, run.grid)
     if run.indenter.footprint == "domain":
-        warn_of_seam(profile, run.grid)
+        warn_of_period(profile, run.grid)
 
     def each(kind: type[Depth] | type[Force], values: Iterable[float]) -> list[Problem]:
         return [Problem(run.grid, operator, profile, kind(value)) for value in values]
@@ -82,7 +82,7 @@ def _check_depths(
                 f"{-mean:g} m below its mean plane; give {mean:g} m or more",
                 field,
             )
-        if depth >= -mean and not operator.fixes_mean:
+        if depth >= -mean and not operator.has_mean_compliance:
             raise ConfigError(
                 f"{depth + shift:g} m is beyond full contact: on a periodic grid the depth is "
                 f"measured from the mean plane, and this indenter's is {-mean:g} m above its "

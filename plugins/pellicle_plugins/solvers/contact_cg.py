@@ -155,7 +155,11 @@ class _Uniform:
     def of(cls, problem: Problem, cells: Cells) -> _Uniform | None:
         """Return it under depth control, for a contact of more than half but not all cells."""
         off = problem.profile.size - cells.size
-        if problem.prescribed == "force" or problem.operator.fixes_mean or not 0 < off < cells.size:
+        if (
+            problem.prescribed == "force"
+            or problem.operator.has_mean_compliance
+            or not 0 < off < cells.size
+        ):
             return None
         outside = np.ones(problem.grid.shape)
         outside.ravel()[cells] = 0
