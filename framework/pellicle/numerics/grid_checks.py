@@ -57,8 +57,8 @@ def warn_of_cells(compliance: Callable[[Array], Array], grid: Grid) -> None:
     if not abs(error) > _ALLOWED:
         return
     warnings.warn(
-        f"grid.points: on cells of {grid.spacing[0]:.3g} × {grid.spacing[1]:.3g} m long waves are "
-        f"{abs(error):.0%} {'more' if error > 0 else 'less'} compliant than by the kernel, and "
+        f"grid.points: cells of {grid.spacing[0]:.3g} × {grid.spacing[1]:.3g} m yield to long "
+        f"waves by {abs(error):.0%} {'more' if error > 0 else 'less'} than the kernel does, and "
         "forces are likely to be as wrong; an incompressible layer needs cells no wider than it is "
         f"thick: use {_enough(compliance, grid)}",
         stacklevel=3,
