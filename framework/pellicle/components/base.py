@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
+from pellicle.errors import PluginError
 from pellicle.model.base import Model
 
 
@@ -13,6 +15,18 @@ class Component(Model):
     family: ClassVar[str]
     libraries: ClassVar[tuple[str, ...]] = ()
     """Distributions that it computes with, beside numpy and scipy; results state their versions."""
+    replaced: ClassVar[Mapping[str, str]] = {}
+    """Methods of the contract of earlier versions, and what to write instead."""
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        """Refuse a class that was written for the contract of an earlier version."""
+        super().__pydantic_init_subclass__(**options)
+        for name in vars(cls).keys() & cls.replaced.keys():
+            raise PluginError(
+                f"{cls.__name__}.{name}() belongs to the contract of an earlier version, and "
+                f"nothing calls it any more; write {cls.replaced[name]}"
+            )
 
     @property
     def type_name(self) -> str:

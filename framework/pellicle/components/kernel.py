@@ -16,7 +16,7 @@ class Kernel(Component):
     """How the surface yields to pressure: û(q) = G(q) p̂(q).
 
     That is all it needs to give. On free boundaries its closed form, ``greens_function(r)`` [m/N]
-    and ``radial_primitive(r)`` [m²/N] as in `pellicle.operators.HasClosedForm`, is used if it has
+    and ``radial_primitive(r)`` [m³/N] as in `pellicle.operators.HasClosedForm`, is used if it has
     one, and is otherwise tabulated from G(q). On periodic ones a uniform
     pressure has no displacement unless it also has `pellicle.operators.HasMeanCompliance`.
     """

@@ -11,6 +11,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.grid import Grid
+from pellicle.numerics.initial_guess import overlap_pressure
 from pellicle.numerics.operators import Operator
 from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
 from pellicle.numerics.solution import State
@@ -53,8 +54,7 @@ class Setting:
         displacement comes nearest to the overlap in energy.
         """
         overlap = np.maximum(self.profile + depth, 0.0)
-        share = float((overlap**2).sum()) / float((overlap * self.operator(overlap)).sum())
-        return self.grid.cell_area * share * float(overlap.sum())
+        return self.grid.cell_area * float(overlap_pressure(self.operator, overlap).sum())
 
 
 @dataclass(frozen=True)

@@ -113,9 +113,16 @@ class Problem:
         """
         return self.value if self.prescribed == "depth" else float(aloft.mean())
 
+    def gap(self, displacement: Array, contact: Mask) -> tuple[Array, float]:
+        """Return the gap A p − z − f and z [m] given A p, by `depth` on the contact."""
+        gap = displacement - self.profile
+        depth = self.depth(gap[contact])
+        gap -= depth
+        return gap, depth
+
     def is_rigid(self, contact: Mask) -> bool:
         """Whether no force more on ``contact`` makes it sink: full contact that keeps its mean."""
-        return bool(contact.all()) and not self.operator.fixes_mean
+        return bool(contact.all()) and not self.operator.has_mean_compliance
 
     def height_scale(self, contact: Mask, depth: float, total: float) -> float:
         """Return the length [m] by which gaps are judged.
@@ -173,6 +180,16 @@ class Equilibrium:
     def contact(self) -> Mask:
         """Where pressure acts, bool of the grid's shape."""
         return self.pressure > 0
+
+    @property
+    def residual(self) -> float:
+        """The largest of the residuals."""
+        return max(
+            self.residual_contact,
+            self.residual_penetration,
+            self.residual_complementarity,
+            self.residual_load,
+        )
 
     @cached_property
     def total(self) -> float:
@@ -296,7 +313,7 @@ def measure_stiffness(problem: Problem, contact: Mask, pressure: Array) -> Stiff
     """
     if not contact.any():
         return Stiffness(0.0, 0.0)
-    response = problem.operator(pressure)
+    response = problem.operator.held(0.0)(pressure)
     missed = 1.0 - response[contact]
     total = float(pressure.sum()) + float((pressure[contact] * missed).sum())
     return Stiffness(

@@ -6,7 +6,7 @@ from pellicle.checks import blamed
 from pellicle.components import Setting
 from pellicle.components.calls import check_value, profile_of
 from pellicle.config.run import Run
-from pellicle.numerics.grid_checks import warn_of_cells, warn_of_seam
+from pellicle.numerics.grid_checks import warn_of_cells, warn_of_period
 from pellicle.numerics.operators import make_operator
 
 
@@ -23,7 +23,7 @@ def compose(run: Run) -> Setting:
         warn_of_cells(run.kernel.compliance, run.grid)
     profile = profile_of(run.indenter, run.grid)
     if run.indenter.footprint == "domain":
-        warn_of_seam(profile, run.grid)
+        warn_of_period(profile, run.grid)
     setting = Setting(run.grid, operator, profile, run.indenter.footprint)
     for index, value in enumerate(run.loading.values):
         field = f"loading.{run.loading.prescribed}.{index}"

@@ -40,7 +40,7 @@ def refuse_beyond_full_contact(setting: Setting, depth: float, value: float) -> 
         The depth is that of full contact or more, where the mean displacement is 0.
     """
     mean = setting.mean_height
-    if depth >= -mean and not setting.operator.fixes_mean:
+    if depth >= -mean and not setting.operator.has_mean_compliance:
         raise ConfigError(
             f"{in_unit(value, 'm')} is beyond full contact: on a periodic grid the depth is "
             f"measured from the mean plane, and this indenter's is {-mean:g} m above its lowest "
