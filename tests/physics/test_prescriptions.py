@@ -125,7 +125,8 @@ def test_cantilever_with_hertz(solver: str) -> None:
     modulus, radius, spring, z = 1e4, 1e-3, 0.5, 3e-5
 
     def excess(depth: float) -> float:
-        return 4 / 3 * modulus * radius**0.5 * depth**1.5 - spring * (z - depth)
+        force: float = 4 / 3 * modulus * radius**0.5 * depth**1.5
+        return force - spring * (z - depth)
 
     depth = brentq(excess, 0, z)
     base = _base("free", BARE, TIP) | {"grid": {"points": 64, "size": 4e-4}}

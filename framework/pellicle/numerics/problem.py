@@ -242,9 +242,9 @@ class Equilibrium:
     @cached_property
     def _base(self) -> float:
         # Without pressure the lowest point just touches, wherever between the cells it is.
-        if not self.total:
-            return self.problem.depth(np.zeros(1))
         contact = self.contact
+        if not contact.any():
+            return self.problem.depth(np.zeros(1))
         return self.problem.depth(self.displacement[contact] - self.problem.profile[contact])
 
     @cached_property

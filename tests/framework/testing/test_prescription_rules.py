@@ -4,9 +4,9 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
-from tests.framework.testing.mutants import base, check_base, check_mutant, rules_of
 
 import pellicle as pl
+from tests.framework.testing.mutants import base, check_base, check_mutant, rules_of
 
 GapVolume: Any = base("prescription", "gap_volume")
 
