@@ -55,7 +55,7 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
         below = trials(low)
     while above < 0 and len(trials.excess) < _MOST_TRIALS:
         low, below = high, above
-        high += _stride(above, len(trials.excess))
+        high = min(high + _stride(above, len(trials.excess)), 0.5 * (high + trials.limit))
         above = trials(high)
     if jumps := below < 0 < above:
         brentq(trials, low, high, xtol=search.width, rtol=1e-15)
@@ -94,6 +94,8 @@ class _Trials:
     missed: float = math.inf
     below: float = -math.inf
     above: float = math.inf
+    limit: float = math.inf
+    """Depth of full contact over `scale`, where no load reaches further."""
     scale: float = field(init=False)
     found: Equilibrium = field(init=False)
     solution: Solution = field(init=False)
@@ -106,7 +108,11 @@ class _Trials:
         guess = self.search.guess
         if self.search.control is Depth:
             self.scale = reach
-            return (guess if guess is not None else reach - float(profile.max())) / reach
+            touch = -float(profile.max()) / reach
+            if not self.setting.operator.has_mean_compliance:
+                self.limit = -self.setting.mean_height / reach
+            place = touch + 1.0 if guess is None else guess / reach
+            return place if place < self.limit else 0.5 * (touch + self.limit)
         if guess is None and state is not None:
             guess = float(state.pressure.sum()) * self.setting.grid.cell_area
         if guess is None or guess <= 0:
