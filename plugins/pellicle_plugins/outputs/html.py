@@ -57,7 +57,6 @@ FIELDS = {
     "gap": Shown("gap", "m", "Blues", power=0.5),
 }
 """What is mapped, by the name of its variable."""
-_EFFORT = names_of("effort", "residual")
 _CURVES = {
     "profile": "Pressure and gap of the last step along x through the centre.",
     "force_depth": "Force against depth over the load steps.",
@@ -246,9 +245,14 @@ def _numbers(data: xr.Dataset) -> list[str]:
     ]
 
 
+def _is_effort(name: str) -> bool:
+    # Prescriptions add residuals of their own.
+    return name in names_of("effort") or name.startswith("residual_")
+
+
 def _steps(data: xr.Dataset) -> list[Table]:
     """Return the numbers of each load step: what was found, of what shape, and at what effort."""
-    effort = [n for n in _numbers(data) if n in _EFFORT]
+    effort = [n for n in _numbers(data) if _is_effort(n)]
     shape = [n for n in _numbers(data) if n in names_of("contact")]
     found = [n for n in _numbers(data) if n not in (*effort, *shape)]
     tables = {
@@ -289,7 +293,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], shown: dict[int, int]) -> T
     """Return a row for each run: what is varied, and the numbers of its last step."""
     axes = [str(name) for name in table.coords if name != "step"]
     varied = [_column(name, table[name]) for name in axes]
-    found = [n for n in _numbers(table) if n not in _EFFORT]
+    found = [n for n in _numbers(table) if not _is_effort(n)]
     numbers = [_column(name, table[name]) for name in found]
     rows: list[list[str | Cell]] = []
     for index, row in enumerate(runs):
