@@ -25,12 +25,12 @@ from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid, grid_of_run
-from pellicle.loading import Loading
 from pellicle.model.from_file import FromFile
 from pellicle.model.paths import get, replaced, walk
 from pellicle.plugins import registry
 
 from .component_field import FromRegistry
+from .loading import Loading
 
 DEFAULT_SOLVER = "active_set"
 # To be raised when an equal configuration gives other numbers, not with the layout of files.
@@ -66,12 +66,12 @@ class Run(FromFile):
             return make(value)
 
     @model_validator(mode="after")
-    def _pressure_needs_period(self) -> Self:
-        if self.loading.prescribed == "mean_pressure" and self.grid.boundary == "free":
+    def _prescription_has_a_period(self) -> Self:
+        if self.loading.prescription.needs_period and self.grid.boundary == "free":
             raise ConfigError(
                 'is not defined on an infinite surface (grid.boundary = "free"); prescribe force '
                 'or depth, or set grid.boundary = "periodic"',
-                "loading.mean_pressure",
+                f"loading.{self.loading.prescribed}",
             )
         return self
 

@@ -16,7 +16,6 @@ from pellicle import memory
 from pellicle.components import Executor
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, shown
-from pellicle.loading import ON_DEMAND
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate
 from pellicle.model.from_file import FromFile, read
 from pellicle.model.input_path import paths_relative_to
@@ -24,7 +23,7 @@ from pellicle.model.paths import get
 from pellicle.model.ranges import Axes, expand
 from pellicle.plugins import registry
 from pellicle.results.derived import constants
-from pellicle.results.variables import FIELDS, VARIABLES, corrected_area
+from pellicle.results.variables import FIELDS, VARIABLES, corrected_area, names_of
 
 from .component_field import FromRegistry
 from .coordinates import Coordinate, as_json, coordinate
@@ -237,7 +236,8 @@ class Study(FromFile):
         run = self.points[0].run
         texts = {name for name, variable in VARIABLES.items() if variable.type == "text"}
         known = {*VARIABLES, *constants(json.loads(run.to_json()))}
-        known -= texts | (ON_DEMAND - run.loading.brings)
+        known -= texts | {*names_of("requested")}
+        known |= run.loading.variables
         known |= {corrected_area(correction.type_name).name for correction in run.corrections}
         known |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         reserved = {*FUNCTIONS, *CONSTANTS, *texts, "run", "step", "x", "y"}

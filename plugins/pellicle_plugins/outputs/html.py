@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid, Loading, hookimpl
+from pellicle import Grid, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.config.describe import Input, inputs
 from pellicle.errors import StorageError
@@ -57,7 +57,6 @@ FIELDS = {
     "gap": MapField("gap", "m", "Blues", power=0.5),
 }
 """The variables that are mapped."""
-_EFFORT = names_of("effort", "residual")
 _CURVES = {
     "profile": "Pressure and gap of the last step along x through the centre.",
     "force_depth": "Force against depth over the load steps.",
@@ -194,7 +193,7 @@ def _some(shown: int, count: int, what: str) -> str:
 
 
 def _status(result: Result) -> Notice:
-    wanted = len(Loading(**result.configuration["loading"]).values)
+    wanted = result.planned_steps
     done, failed = result.dataset.sizes["step"], result.failures()
     sentences = []
     if done < wanted:
@@ -236,9 +235,14 @@ def _numbers(data: xr.Dataset) -> list[str]:
     ]
 
 
+def _is_effort(name: str) -> bool:
+    # Prescriptions add residuals of their own.
+    return name in names_of("effort") or name.startswith("residual_")
+
+
 def _steps(data: xr.Dataset) -> list[Table]:
     """Return the numbers of each load step: the result, the shape of the contact, the effort."""
-    effort = [n for n in _numbers(data) if n in _EFFORT]
+    effort = [n for n in _numbers(data) if _is_effort(n)]
     shape = [n for n in _numbers(data) if n in names_of("contact")]
     tables = {
         "What was found in each load step.": [
@@ -282,7 +286,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
     ``mapped`` has the indices of the runs that are mapped, in the order of their maps.
     """
     axes = [str(name) for name in table.coords if name != "step"]
-    names = [n for n in _numbers(table) if n not in _EFFORT]
+    names = [n for n in _numbers(table) if not _is_effort(n)]
     varied = [_column(name, table[name]) for name in axes]
     numbers = [_column(name, table[name]) for name in names]
     rows: list[list[str | Cell]] = []
