@@ -74,9 +74,13 @@ def test_coarse_steps_are_told_once(tmp_path: Path) -> None:
 def test_arguments_that_are_something_else(tmp_path: Path) -> None:
     """A type, a table, a study and a folder are answered with what is wanted."""
     kernel, grid = pl.kernel("half_space", reduced_modulus=1e4), pl.Grid(points=2, size=1.0)
-    with pytest.raises(pl.ConfigError, match=r"kernel: 'half_space' is no kernel; .*pellicle\.ker"):
+    with pytest.raises(
+        pl.ConfigError, match=r"kernel: 'half_space' is not a kernel; .*pellicle\.ker"
+    ):
         pl.displacement([[1, 0], [0, 0]], kernel="half_space", grid=grid)  # type: ignore[arg-type]
-    with pytest.raises(pl.ConfigError, match=r"grid: \{'points': 2\} is no grid; .*pellicle\.Grid"):
+    with pytest.raises(
+        pl.ConfigError, match=r"grid: \{'points': 2\} is not a grid; .*pellicle\.Grid"
+    ):
         pl.displacement([[1, 0], [0, 0]], kernel=kernel, grid={"points": 2})  # type: ignore[arg-type]
     with pytest.raises(pl.ConfigError, match="study: makes this a study: use run_study"):
         pl.run(RUN | {"study": {"vary": {"indenter.radius": [1, 2]}}}, progress=False)

@@ -218,8 +218,8 @@ def test_what_runs_warn_of_is_said_once(tmp_path: Path) -> None:
         pl.run_study(made, tmp_path, progress=False)
     coarse, along_x, along_y = sorted(str(each.message) for each in told)
     assert coarse == "of 2 runs, in 2 the cells are too coarse for this contact; see status"
-    assert along_x.startswith("the surface is no period along x")
-    assert along_y.startswith("the surface is no period along y")
+    assert along_x.startswith("the surface is not periodic along x")
+    assert along_y.startswith("the surface is not periodic along y")
 
 
 def test_corrections_that_vary() -> None:

@@ -8,6 +8,8 @@ pickles to workers. A concrete component declares ``type: Literal["name"] = "nam
 from typing import TYPE_CHECKING
 
 from pellicle.errors import PluginError
+from pellicle.numerics.problem import Depth as Depth
+from pellicle.numerics.problem import Force as Force
 
 from .base import Component as Component
 from .correction import AreaCorrection as AreaCorrection
@@ -29,6 +31,9 @@ from .indenter import IsShallowLimit as IsShallowLimit
 from .kernel import Kernel as Kernel
 from .output import Output as Output
 from .output import Runs as Runs
+from .prescription import Prescription as Prescription
+from .prescription import Search as Search
+from .prescription import Setting as Setting
 from .solver import HasMemory as HasMemory
 from .solver import IterativeSolver as IterativeSolver
 from .solver import Monitor as Monitor
@@ -37,7 +42,8 @@ from .validation import Case as Case
 from .validation import Suite as Suite
 
 FAMILIES: dict[str, type[Component]] = {
-    family.family: family for family in (Kernel, Indenter, Solver, AreaCorrection, Output, Executor)
+    family.family: family
+    for family in (Kernel, Indenter, Solver, AreaCorrection, Output, Executor, Prescription)
 }
 """The base class of each family, by name."""
 

@@ -26,13 +26,14 @@ from pellicle.checks import (
 )
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import LARGEST, Grid
-from pellicle.numerics.problem import Problem
+from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
 from pellicle.numerics.solution import Solution, State, Stop
 
 from .correction import AreaCorrection
 from .executor import AnyTask, Executor, Outcome, Report, Say
 from .indenter import Footprint, ForceCurve, HasForceCurve, Indenter
 from .output import Output, Runs, stem_of
+from .prescription import Prescription, Search, Setting
 from .solver import Monitor, Solver
 
 # Rounding of heights over the size of the domain, and of areas over their own size.
@@ -156,6 +157,8 @@ def solution_of(
         It is not a `Solution` of the grid's shape, the solver changed the problem, or it takes
         ``start`` for an array, which it was in earlier versions.
     """
+    if not problem.touches:
+        return Solution(np.zeros(problem.grid.shape), 0)
     name = component_name(solver)
     view = _read_only_problem(problem)
     fields, parts = dict(vars(view)), problem.operator.parts()
@@ -225,6 +228,86 @@ def _require_unchanged(
             f"{component_name(solver)}: {call} changes {what}.{differences[0]}; a solver has to "
             "leave its problem as it is"
         )
+
+
+def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
+    """Refuse a prescribed value that its prescription refuses, as an error of ``field``.
+
+    An error of the prescription that names a field of its own keeps it.
+
+    Raises
+    ------
+    ConfigError
+        The value is not allowed in this setting.
+    """
+    try:
+        with blamed(prescription):
+            prescription.check(setting, value)
+    except ConfigError as error:
+        named = any(problem.field for problem in error.problems)
+        raise (error if named else error.within(field)) from None
+
+
+def target_of(prescription: Prescription, setting: Setting, value: float) -> Depth | Force | Search:
+    """Return the depth, the force or the search for a prescribed value.
+
+    Raises
+    ------
+    PluginError
+        It is none of these, or not of finite numbers.
+    """
+    with blamed(prescription):
+        target = prescription.target(setting, value)
+    call, name = f"target(setting, {value:g})", component_name(prescription)
+    if not isinstance(target, (Depth, Force, Search)):
+        raise PluginError(
+            f"{name}: {call} returned {shown(target)}; it has to return a pellicle.Depth, Force "
+            "or Search"
+        )
+    for field in ("value", "compliance", "goal", "resolution", "width", "guess"):
+        number = getattr(target, field, None)
+        if number is None:
+            continue
+        number = real_number(prescription, f"{call}.{field}", number)
+        signed = field in ("goal", "guess") or (field == "value" and isinstance(target, Depth))
+        if not np.isfinite(number) or (number < 0 and not signed):
+            allowed = "finite" if signed else "finite and ≥ 0"
+            raise PluginError(f"{name}: {call}.{field} is {number:g}; it has to be {allowed}")
+    if not isinstance(target, Search):
+        return target
+    quantity = target.measure
+    if target.control not in (Depth, Force) or not callable(quantity):
+        raise PluginError(
+            f"{name}: {call} has to search by control = Depth or Force, with a function as measure"
+        )
+
+    def measure(step: Equilibrium) -> float:
+        with blamed(prescription):
+            return real_number(prescription, f"{call}.measure(step)", quantity(step))
+
+    return replace(target, measure=measure)
+
+
+def report_of(prescription: Prescription, setting: Setting, step: Equilibrium) -> dict[str, float]:
+    """Return the variables that a prescription adds to a step.
+
+    Raises
+    ------
+    PluginError
+        They are not numbers, or not those that it declares.
+    """
+    with blamed(prescription):
+        report = prescription.report(setting, step)
+    declared = {v.name for v in prescription.variables if v.kind != "residual"}
+    if not isinstance(report, dict) or report.keys() != declared:
+        raise PluginError(
+            f"{component_name(prescription)}: report() returned {shown(report)}; it has to return "
+            f"a dict of {', '.join(sorted(declared)) or 'nothing'}, as its variables declare"
+        )
+    return {
+        name: real_number(prescription, f"report()[{name!r}]", value)
+        for name, value in report.items()
+    }
 
 
 def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> float:

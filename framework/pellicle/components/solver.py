@@ -71,21 +71,23 @@ class Solver(Component):
         """
         from scipy.sparse.linalg import LinearOperator, cg
 
+        # A spring that holds the indenter has no part in it.
+        operator = problem.operator.held(0.0)
         cells = np.flatnonzero(state.contact)
         pressure = np.zeros(problem.grid.shape)
         iteration = 0
 
         def displacement(on_contact: Array) -> Array:
             pressure.ravel()[cells] = on_contact
-            return problem.operator(pressure).ravel()[cells]
+            return operator(pressure).ravel()[cells]
 
         def count(_: Array) -> None:
             nonlocal iteration
             iteration += 1
             monitor(iteration, 1.0)
 
-        operator = LinearOperator((cells.size, cells.size), matvec=displacement, dtype=np.float64)
-        on_contact, _ = cg(operator, np.ones(cells.size), rtol=self.tolerance / 2, callback=count)
+        matrix = LinearOperator((cells.size, cells.size), matvec=displacement, dtype=np.float64)
+        on_contact, _ = cg(matrix, np.ones(cells.size), rtol=self.tolerance / 2, callback=count)
         pressure.ravel()[cells] = on_contact
         return pressure
 

@@ -24,7 +24,7 @@ from pellicle.plugins import registry
 from pellicle.results.result import Result, said_of_steps
 from pellicle.results.step import Steps
 
-from .compose import problems_of
+from .compose import compose
 from .journal import Journal
 from .lock import locked
 from .progress import Bar, Progress
@@ -128,15 +128,15 @@ def execute(
     files: tuple[Path, ...] = ()
     with scipy.fft.set_workers(threads or default_threads(run.grid)), bar, ExitStack() as stack:
         try:
-            problems = problems_of(run)
+            solved = solve_steps(run, compose(run), steps, bar)
             if journal:
                 if lock:
                     stack.enter_context(locked(journal.stem.parent, journal.stem.name))
                 for step in journal.resume():
                     _hand_over(steps.append(step), outputs, journal)
             resumed = len(steps)
-            # closing: the generator's arrays go before the outputs draw.
-            with closing(solve_steps(run, problems, steps, bar)) as solved:
+            # closing frees the operator before the outputs draw.
+            with closing(solved):
                 for step in solved:
                     if journal:
                         _hand_over(step, outputs, journal, is_new=True)
@@ -146,8 +146,6 @@ def execute(
             ) from None
         finally:
             if steps:
-                # Free the operator before outputs draw.
-                problems.clear()
                 result = Result(steps.joined())
                 if journal:
                     files = _written(run, result, outputs, journal)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid, Loading, hookimpl
+from pellicle import Grid, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.config.describe import Input, inputs
 from pellicle.errors import StorageError
@@ -45,7 +45,7 @@ from pellicle.results.result import Result
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import names_of
-from pellicle.studies.summary import coarse, each_run, failures, reasons, standing
+from pellicle.studies.summary import coarse, failures, progress_of, reasons, runs_of
 from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
@@ -57,7 +57,6 @@ FIELDS = {
     "gap": MapField("gap", "m", "Blues", power=0.5),
 }
 """The variables that are mapped."""
-_EFFORT = names_of("effort", "residual")
 _CURVES = {
     "profile": "Pressure and gap of the last step along x through the centre.",
     "force_depth": "Force against depth over the load steps.",
@@ -113,7 +112,7 @@ class Html(Output):
             ]
         else:
             run = json.loads(table.attrs[FIRST_RUN])
-            rows = list(each_run(table))
+            rows = list(runs_of(table))
             frames = dict(self._frames_of_runs(rows, stem.parent / "runs"))
             sections = [
                 Section("Status", [_status_of_study(table, len(rows))]),
@@ -151,12 +150,12 @@ class Html(Output):
         """Yield the maps of the last step of runs, by their index among all."""
         import xarray as xr
 
-        solved = [index for index, row in enumerate(rows) if standing(row)[0]]
+        solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
         chosen = self._chosen(len(solved))
         points = side(self.points, len(chosen) * len(FIELDS))
         for index in (solved[number] for number in chosen):
             row = rows[index]
-            last = standing(row)[0] - 1
+            last = progress_of(row)[0] - 1
             try:
                 # Only what is drawn is read, not all steps.
                 attributes, fields = storage.fields(
@@ -194,7 +193,7 @@ def _some(shown: int, count: int, what: str) -> str:
 
 
 def _status(result: Result) -> Notice:
-    wanted = len(Loading(**result.configuration["loading"]).values)
+    wanted = result.planned_steps
     done, failed = result.dataset.sizes["step"], result.failures()
     sentences = []
     if done < wanted:
@@ -236,9 +235,14 @@ def _numbers(data: xr.Dataset) -> list[str]:
     ]
 
 
+def _is_effort(name: str) -> bool:
+    # Prescriptions add residuals of their own.
+    return name in names_of("effort") or name.startswith("residual_")
+
+
 def _steps(data: xr.Dataset) -> list[Table]:
     """Return the numbers of each load step: the result, the shape of the contact, the effort."""
-    effort = [n for n in _numbers(data) if n in _EFFORT]
+    effort = [n for n in _numbers(data) if _is_effort(n)]
     shape = [n for n in _numbers(data) if n in names_of("contact")]
     tables = {
         "What was found in each load step.": [
@@ -282,12 +286,12 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
     ``mapped`` has the indices of the runs that are mapped, in the order of their maps.
     """
     axes = [str(name) for name in table.coords if name != "step"]
-    names = [n for n in _numbers(table) if n not in _EFFORT]
+    names = [n for n in _numbers(table) if not _is_effort(n)]
     varied = [_column(name, table[name]) for name in axes]
     numbers = [_column(name, table[name]) for name in names]
     rows: list[list[str | Cell]] = []
     for index, row in enumerate(runs):
-        done, wanted, word = standing(row)
+        done, wanted, word = progress_of(row)
         point = [
             _text(row[name].item(), factor) for name, (_, factor) in zip(axes, varied, strict=True)
         ]
