@@ -52,28 +52,28 @@ def test_whole_cells_are_met(power: float, start: float | None) -> None:
         return min(max(round(40 * float(force**power)), 1), 100)
 
     for area in (0.5, 3.0, 40.4, 99.6):
-        found = search(cells, area, start)
-        assert found.how == "met"
-        count = cells(found.problem.value)
+        reached = search(cells, area, start)
+        assert reached.how == "met"
+        count = cells(reached.problem.value)
         assert abs(count - area) <= 0.5
-        assert found.missed == pytest.approx(abs(count - area) / area)
-        assert found.solution.iterations % 2 == 0
+        assert reached.missed == pytest.approx(abs(count - area) / area)
+        assert reached.solution.iterations % 2 == 0
 
 
 @pytest.mark.parametrize(("area", "side"), [(32.0, 30), (37.0, 40)])
 def test_jump_is_found(area: float, side: int) -> None:
     """Where the area jumps across what is wanted, the force is the jump's, on the nearer side."""
     jump = 7.3
-    found = search(lambda force: 30 if force < jump else 40, area)
-    assert found.how == "nearest"
-    assert found.problem.value == pytest.approx(jump, rel=2e-4)
-    assert np.count_nonzero(found.solution.pressure) == side
-    assert found.missed == pytest.approx(abs(side - area) / area)
+    reached = search(lambda force: 30 if force < jump else 40, area)
+    assert reached.how == "nearest"
+    assert reached.problem.value == pytest.approx(jump, rel=2e-4)
+    assert np.count_nonzero(reached.solution.pressure) == side
+    assert reached.missed == pytest.approx(abs(side - area) / area)
 
 
 @pytest.mark.parametrize("area", [20.0, 60.0])
 def test_area_that_no_force_brings(area: float) -> None:
     """The search ends, and says that it found nothing."""
-    found = search(lambda force: 30, area)
-    assert found.how == "not found"
-    assert found.missed == pytest.approx(abs(30 - area) / area)
+    reached = search(lambda force: 30, area)
+    assert reached.how == "not found"
+    assert reached.missed == pytest.approx(abs(30 - area) / area)

@@ -55,7 +55,7 @@ class Fields(Silent):
         return (".h5",)
 
 
-def made(type_: str, **fields: Any) -> Output:
+def make_output(type_: str, **fields: Any) -> Output:
     """Return a built-in output."""
     return registry().make(Output, {"type": type_, **fields})
 
@@ -64,21 +64,21 @@ def made(type_: str, **fields: Any) -> Output:
     ("outputs", "message"),
     [
         (
-            [made("maps", name="pressure"), made("figures")],
+            [make_output("maps", name="pressure"), make_output("figures")],
             r"^outputs\.0\.name: 'maps' would write NAME-pressure\.png, as outputs\.1 \('figures'\)"
             r" does; give it another name$",
         ),
         (
-            [made("figures"), made("curves", name="force")],
+            [make_output("figures"), make_output("curves", name="force")],
             r"^outputs\.1\.name: 'curves' would write NAME-force\.png, as outputs\.0 \('figures'\)",
         ),
         (
-            [made("csv"), made("hdf5"), Plain()],
+            [make_output("csv"), make_output("hdf5"), Plain()],
             r"^outputs\.2\.type: 'silent' would write NAME\.csv, as outputs\.0 \('csv'\) does; "
             "leave one out$",
         ),
         (
-            [made("curves", name="a", formats=["svg"]), made("profiles", name="A")],
+            [make_output("curves", name="a", formats=["svg"]), make_output("profiles", name="A")],
             r"^outputs\.1\.name: 'profiles' would write NAME-A\.csv, as outputs\.0",
         ),
         ([Silent(), Silent()], r"^outputs\.1\.type: 'silent' would write NAME-silent\*, as"),
@@ -87,7 +87,7 @@ def made(type_: str, **fields: Any) -> Output:
             r"^outputs\.2\.name: .* NAME-a\*, as outputs\.0",
         ),
         (
-            [Silent(), made("spectrum", name="silent")],
+            [Silent(), make_output("spectrum", name="silent")],
             r"^outputs\.1\.name: 'spectrum' would write NAME-silent\.png, as outputs\.0",
         ),
     ],
@@ -100,8 +100,10 @@ def test_outputs_of_one_file_are_refused(outputs: list[Output], message: str) ->
 
 def test_outputs_that_share_no_file() -> None:
     """Every built-in output stands beside all others, and one type twice by name or by format."""
-    every = [made(type_) for type_ in registry().components["output"]]
-    refuse_clashes([*every, made("maps", name="gap"), made("maps", formats=["pdf"]), Silent()])
+    every = [make_output(type_) for type_ in registry().components["output"]]
+    refuse_clashes(
+        [*every, make_output("maps", name="gap"), make_output("maps", formats=["pdf"]), Silent()]
+    )
 
 
 @pytest.mark.parametrize(
@@ -113,7 +115,7 @@ def test_outputs_that_share_no_file() -> None:
 )
 def test_what_a_study_writes_itself_is_not_replaced(output: Output, message: str) -> None:
     """An output alone in a run is refused in a study whose own files it would replace."""
-    run = RUN | {"outputs": [made("figures"), output]}
+    run = RUN | {"outputs": [make_output("figures"), output]}
     pl.Run(**run)
     with pytest.raises(pl.ConfigError, match=message):
         pl.Study(run=run, vary={"indenter.radius": [1e-3, 2e-3]})
@@ -121,7 +123,9 @@ def test_what_a_study_writes_itself_is_not_replaced(output: Output, message: str
 
 def test_standard_outputs_in_a_study() -> None:
     """Its own table does not clash with the results and tables of its runs."""
-    run = RUN | {"outputs": [made(type_) for type_ in ("hdf5", "csv", "figures", "html", "vtk")]}
+    run = RUN | {
+        "outputs": [make_output(type_) for type_ in ("hdf5", "csv", "figures", "html", "vtk")]
+    }
     pl.Study(run=run, vary={"indenter.radius": [1e-3, 2e-3]})
 
 
@@ -135,6 +139,6 @@ def test_standard_outputs_in_a_study() -> None:
         ("-0003.vtk", "-*.vts", False),
     ],
 )
-def test_endings_are_compared(ending: str, told: str, same: bool) -> None:
+def test_endings_are_compared(ending: str, pattern: str, same: bool) -> None:
     """By the whole ending, with * for anything and whatever the case."""
-    assert matches(ending, told) is same
+    assert matches(ending, pattern) is same

@@ -19,24 +19,24 @@ class Output(pl.Output):
 
     def close(self, place: Any, result: Any) -> Any:
         path = place.file(".json")
-        path.write_text(json.dumps(self.told(result.dataset["depth"].values.tolist())))
+        path.write_text(json.dumps(self.listed(result.dataset["depth"].values.tolist())))
         return (path,)
 
-    def told(self, depths: list[float]) -> list[Any]:
+    def listed(self, depths: list[float]) -> list[Any]:
         return depths
 
 
 class LosesFirst(Output):
     """Forgets the first step."""
 
-    def told(self, depths: list[float]) -> list[Any]:
+    def listed(self, depths: list[float]) -> list[Any]:
         return depths[1:] or ["none"]
 
 
 class LosesLast(Output):
     """Forgets the last step."""
 
-    def told(self, depths: list[float]) -> list[Any]:
+    def listed(self, depths: list[float]) -> list[Any]:
         return depths[:-1] or ["none"]
 
 
