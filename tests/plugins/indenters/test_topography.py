@@ -160,9 +160,9 @@ def test_interpolation_is_of_fourth_order(tmp_path: Path) -> None:
 def test_rough_run_under_tension_converges() -> None:
     """A run from a file, with a tension, converges and touches with the peaks.
 
-    That a scan is no period is lines.
+    A warning says that a scan is not periodic.
     """
-    with pytest.warns(UserWarning, match="no period along [xy]"):
+    with pytest.warns(UserWarning, match="not periodic along [xy]"):
         result = pl.run(
             {
                 "grid": {"points": [39, 33], "size": ["1.3 mm", "1.1 mm"], "boundary": "periodic"},
@@ -276,7 +276,7 @@ def _bad_zip(content: bytes) -> bytes:
     [(GWY, _truncated), (X3P, _truncated), (X3P, _bad_zip), (GWY, lambda content: content[:60])],
 )
 def test_damaged_files(tmp_path: Path, path: Path, damage: Callable[[bytes], bytes]) -> None:
-    """A file that ends too early is lines to be damaged, in one line."""
+    """A file that ends too early is called damaged, in one line."""
     file = tmp_path / path.name
     file.write_bytes(damage(path.read_bytes()))
     with pytest.raises(pl.ConfigError, match=r"^path: .*damaged") as caught:
