@@ -1,4 +1,4 @@
-"""The hooks a plugin may implement. Signatures only; mark yours with `pellicle.hookimpl`."""
+"""The hooks that a plugin may implement, marked with `pellicle.hookimpl`."""
 
 from __future__ import annotations
 
@@ -58,4 +58,4 @@ def register_prescriptions(register: Callable[[type[Prescription]], None]) -> No
 
 @hookspec
 def register_validations(register: Callable[[Suite], None]) -> None:
-    """Call ``register`` with a function that yields cases of known truth for `validate`."""
+    """Call ``register`` with a function that yields cases with known results for `validate`."""

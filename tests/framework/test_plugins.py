@@ -55,9 +55,9 @@ BROKEN = {
     "no hook": ("@hookimpl", "", "implements no hook; decorate with @pellicle.hookimpl"),
     "wrong argument": ("(register):", "(add):", "'add'"),
     "fails half-way": (REGISTER, REGISTER + "    1 / 0\n", "ZeroDivisionError"),
-    "wrong hook": ("register_kernels", "register_indenters", "no subclass of pellicle.Indenter"),
+    "wrong hook": ("register_kernels", "register_indenters", "not a subclass of pellicle.Indenter"),
     "no suite": (REGISTER, REGISTER + _NO_SUITE, "() is not a function that yields cases"),
-    "no class": ("register(Soft)", "register(Soft())", "no subclass of pellicle.Kernel"),
+    "no class": ("register(Soft)", "register(Soft())", "not a subclass of pellicle.Kernel"),
     "no type": (TYPE, "", "Soft needs a field: type: Literal"),
     "any text as type": (TYPE, 'type: str = "soft"', "Soft needs a field: type: Literal"),
     "two types": (TYPE, 'type: Literal["a", "b"] = "a"', "Soft needs a field: type: Literal"),
@@ -362,7 +362,7 @@ def test_an_unknown_type_gets_the_nearest_known() -> None:
     with pytest.raises(ConfigError) as raised:
         load(BUILT_INS).make(Kernel, {"type": "halfspace"})
     assert str(raised.value) == (
-        "type: 'halfspace' is no kernel; did you mean 'half_space'? Known: half_space"
+        "type: 'halfspace' is not a kernel; did you mean 'half_space'? Known: half_space"
     )
 
 

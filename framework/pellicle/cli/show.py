@@ -26,7 +26,7 @@ def show(
         Path, typer.Argument(help="Result file (.h5), or the folder or study.h5 of a study.")
     ],
 ) -> None:
-    """Print the steps of a result, or the runs of a study, and where it comes from."""
+    """Print the steps of a result, or the runs of a study, and its origin."""
     from pellicle.results.result import load
     from pellicle.studies.runner import is_table, read
 

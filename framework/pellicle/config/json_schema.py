@@ -1,4 +1,4 @@
-"""The JSON schema of models whose fields hold components."""
+"""The JSON schema of run and study files, and of models whose fields hold components."""
 
 from __future__ import annotations
 
@@ -47,12 +47,12 @@ def json_schema(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
-    """Return ``schema`` with the choices of a family wherever a field holds one of them."""
+    """Return ``schema`` with the choices of a family where a field holds one of them."""
     if isinstance(schema, list):
-        return [_filled(each, choices) for each in schema]
+        return [_filled(inner, choices) for inner in schema]
     if not isinstance(schema, dict):
         return schema
-    filled = {name: _filled(each, choices) for name, each in schema.items() if name != _FAMILY}
+    filled = {name: _filled(inner, choices) for name, inner in schema.items() if name != _FAMILY}
     return filled | {"oneOf": choices[schema[_FAMILY]]} if _FAMILY in schema else filled
 
 
@@ -63,7 +63,7 @@ def _required(model: type[BaseModel]) -> list[str]:
 def schema() -> dict[str, Any]:
     """Return the JSON schema of a run or study file, with every component that is installed.
 
-    In a study what varies may be left out, so that nothing but the type of a component is required.
+    In a study file varied fields may be left out, so only the type of a component is required.
     """
     run, study = json_schema(Run), json_schema(Study)
     definitions = run.pop("$defs") | study.pop("$defs")
@@ -77,28 +77,28 @@ def schema() -> dict[str, Any]:
         "if": {"required": ["study"]},
         "else": run,
         "$defs": definitions
-        | {f"{name}{_IN_PART}": _in_part(each) for name, each in definitions.items()},
+        | {f"{name}{_IN_PART}": _in_part(inner) for name, inner in definitions.items()},
     }
 
 
 def _in_part(schema: Any) -> Any:
-    """Return a schema that also accepts what lacks fields."""
+    """Return a schema that accepts objects with missing fields too."""
     if isinstance(schema, list):
-        return [_in_part(each) for each in schema]
+        return [_in_part(inner) for inner in schema]
     if not isinstance(schema, dict):
         return schema
-    made = {name: _in_part(each) for name, each in schema.items() if not _of_presence(each)}
+    part = {n: _in_part(inner) for n, inner in schema.items() if not _requires_any(inner)}
     if isinstance(required := schema.get("required"), list):
-        made["required"] = [name for name in required if name == "type"]
+        part["required"] = [name for name in required if name == "type"]
     if isinstance(ref := schema.get("$ref"), str):
-        made["$ref"] = f"{ref}{_IN_PART}"
-    return made
+        part["$ref"] = f"{ref}{_IN_PART}"
+    return part
 
 
-def _of_presence(choices: Any) -> bool:
-    """Whether these are the choices of fields of which one must be there, as of moduli."""
+def _requires_any(choices: Any) -> bool:
+    """Whether these are choices of which fields are required, as for elastic moduli."""
     return (
         isinstance(choices, list)
         and bool(choices)
-        and all(isinstance(each, dict) and each.keys() == {"required"} for each in choices)
+        and all(isinstance(c, dict) and c.keys() == {"required"} for c in choices)
     )

@@ -1,4 +1,4 @@
-"""The configuration of a study: a run, the parameters that vary, and how it is carried out."""
+"""The configuration of a study: a run, the parameters that vary, and the executor."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _BYTES_PER_RUN = 40_000
 
 
 def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
-    """Return the study that a TOML file describes, or the run where it has no table ``study``.
+    """Return the study that a TOML file describes, or the run if it has no table ``study``.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def _same_length(table: Axes) -> None:
 class Study(FromFile):
     """A run whose parameters vary: one run for each combination of values.
 
-    The runs are made, and so checked, at once; `points` has them.
+    All runs are made, and so checked, with the study; they are in `points`.
     """
 
     run: Annotated[
@@ -102,16 +102,14 @@ class Study(FromFile):
         Field(description="further numbers of the table: name → arithmetic expression"),
     ] = Field(default_factory=dict)
     executor: Annotated[
-        Executor,
-        FromRegistry(),
-        Field(description="what carries out the runs"),
+        Executor, FromRegistry(), Field(description="what carries out the runs")
     ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
     _points: tuple[Point, ...] = PrivateAttr()
 
     @model_validator(mode="after")
     def _expand(self) -> Self:
         self._check_axes()
-        # Workers may have another current folder.
+        # Workers may run in another current folder.
         with paths_relative_to(None):
             self._points = tuple(points_of(self.run, self.dimensions))
         self._check_derived()
@@ -123,15 +121,14 @@ class Study(FromFile):
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """The runs, those that differ in the last dimension next to each other."""
+        """The runs, with the last dimension varying fastest."""
         return self._points
 
     @property
     def dimensions(self) -> dict[str, Axes]:
         """The axes along each dimension of the table, by the dimension's name.
 
-        Each varied parameter is a dimension; parameters that are zipped share one, which has the
-        name of the first of them.
+        Each varied parameter is a dimension; zipped parameters share one, named after the first.
         """
         return {key: {key: values} for key, values in self.vary.items()} | {
             next(iter(table)): table for table in self.zip
@@ -143,7 +140,7 @@ class Study(FromFile):
         return tuple(len(next(iter(axes.values()))) for axes in self.dimensions.values())
 
     def coordinates(self) -> dict[str, tuple[str, Coordinate]]:
-        """Return the dimension and the values of each varied parameter, SI."""
+        """Return dimension and values [SI] of each varied parameter."""
         return {
             key: (dimension, coordinate(key, values, self._runs_along(number)))
             for number, (dimension, axes) in enumerate(self.dimensions.items())
@@ -188,7 +185,7 @@ class Study(FromFile):
     def to_json(self, *, as_given: bool = False) -> str:
         """Return the study as JSON of the form of a study file; ranges are lists.
 
-        Values are as they were given; paths of files to read are absolute, or as they were given.
+        Values are as they were given; paths of input files are absolute unless ``as_given``.
         """
         tables = []
         for number, axes in enumerate(self.dimensions.values()):
@@ -223,7 +220,7 @@ class Study(FromFile):
             if one == other or one.startswith(f"{other}.") or other.startswith(f"{one}."):
                 short, long = sorted((one, other), key=len)
                 raise ConfigError(
-                    f"would override the axis {short}, which sets the same; leave one out",
+                    f"would override the axis {short}, which sets the same value; leave one out",
                     f"vary.{long}",
                 )
         count, available = math.prod(self.shape), memory.available()
@@ -235,7 +232,7 @@ class Study(FromFile):
             )
 
     def _check_derived(self) -> None:
-        """Refuse expressions that name what a table will not have, before anything is run."""
+        """Refuse expressions with names that the table will not have, before anything runs."""
         run = self.points[0].run
         texts = {name for name, variable in VARIABLES.items() if variable.type == "text"}
         known = {*VARIABLES, *constants(json.loads(run.to_json()))}

@@ -45,7 +45,7 @@ from pellicle.results.result import Result
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import names_of
-from pellicle.studies.summary import coarse, each_run, failures, reasons, standing
+from pellicle.studies.summary import coarse, failures, progress_of, reasons, runs_of
 from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ class Html(Output):
             ]
         else:
             run = json.loads(table.attrs[FIRST_RUN])
-            rows = list(each_run(table))
+            rows = list(runs_of(table))
             frames = dict(self._frames_of_runs(rows, stem.parent / "runs"))
             sections = [
                 Section("Status", [_status_of_study(table, len(rows))]),
@@ -150,12 +150,12 @@ class Html(Output):
         """Yield the maps of the last step of runs, by their index among all."""
         import xarray as xr
 
-        solved = [index for index, row in enumerate(rows) if standing(row)[0]]
+        solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
         chosen = self._chosen(len(solved))
         points = side(self.points, len(chosen) * len(FIELDS))
         for index in (solved[number] for number in chosen):
             row = rows[index]
-            last = standing(row)[0] - 1
+            last = progress_of(row)[0] - 1
             try:
                 # Only what is drawn is read, not all steps.
                 attributes, fields = storage.fields(
@@ -291,7 +291,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
     numbers = [_column(name, table[name]) for name in names]
     rows: list[list[str | Cell]] = []
     for index, row in enumerate(runs):
-        done, wanted, word = standing(row)
+        done, wanted, word = progress_of(row)
         point = [
             _text(row[name].item(), factor) for name, (_, factor) in zip(axes, varied, strict=True)
         ]

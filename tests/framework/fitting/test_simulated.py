@@ -165,7 +165,7 @@ def test_simulated_curve_is_an_indenter(exact_nodes: SimulatedCurve) -> None:
         ("bonded_layer", "put it under a skin"),
         ({"type": "tensed_membrane", "tension": 1}, "kernel.tension: is what the fit finds"),
         ({"type": "coated", "substrate": LAYER}, "kernel.substrate.poissons_ratio: is missing"),
-        ({"type": "bendy"}, "'bendy' is no kernel"),
+        ({"type": "bendy"}, "'bendy' is not a kernel"),
         (
             {"type": "coated", "substrate": LAYER | {"youngs_modulus": 1e3}},
             "kernel.substrate.youngs_modulus: is what the fit finds",
