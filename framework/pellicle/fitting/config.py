@@ -133,9 +133,9 @@ class FitConfig(FromFile, Calibration):
         PlainSerializer(_as_json),
         Field(description="what was pressed in: its type and fields"),
     ]
-    poissons_ratio: Annotated[
-        PoissonsRatio | None, Field(description="of the solid, to get Young's modulus as well")
-    ] = None
+    poissons_ratio: PoissonsRatio | None = Field(
+        None, description="of the solid, to get Young's modulus as well"
+    )
     kernel: Annotated[
         dict[str, Any] | None,
         BeforeValidator(_component),
@@ -148,10 +148,8 @@ class FitConfig(FromFile, Calibration):
             description="parameters that are not fitted, with their values", default_factory=dict
         ),
     ]
-    baseline: Annotated[
-        Baseline, Field(description="what is fitted of the force before contact")
-    ] = "none"
-    segment: Annotated[Segment, Field(description="the pass that is fitted")] = "approach"
+    baseline: Baseline = Field("none", description="what is fitted of the force before contact")
+    segment: Segment = Field("approach", description="the pass that is fitted")
     per_file: Annotated[
         dict[str, tuple[Any, ...]],
         Field(
@@ -160,12 +158,10 @@ class FitConfig(FromFile, Calibration):
             default_factory=dict,
         ),
     ]
-    pool: Annotated[
-        bool, Field(description="whether all curves share one modulus and one tension")
-    ] = False
-    contact_points: Annotated[
-        bool, Field(description="whether a pool gives the interval of each contact point too")
-    ] = False
+    pool: bool = Field(False, description="whether all curves share one modulus and one tension")
+    contact_points: bool = Field(
+        False, description="whether a pool gives the interval of each contact point too"
+    )
     executor: Annotated[
         Executor,
         FromRegistry(),
@@ -237,24 +233,18 @@ class FitConfig(FromFile, Calibration):
                 return cls.merged(_from_folder(read_toml(Path(base)), folder), overrides, **options)
         if isinstance(base, FitConfig):
             base = {name: getattr(base, name) for name in base.model_fields_set}
-        data: dict[str, Any] = {
-            name: _component(value) if name in _COMPONENTS else value
-            for name, value in (base or {}).items()
-        }
-        for name, value in options.items():
-            if value is None:
+        options = {name: value for name, value in options.items() if value is not None}
+        shared = cls.model_fields.keys() - Calibration.model_fields.keys()
+        data = {**(base or {}), **{name: options[name] for name in shared & options.keys()}}
+        data |= {name: _component(data[name]) for name in _COMPONENTS if name in data}
+        for name in [name for name in options if name not in shared]:
+            if isinstance(options[name], (list, tuple)):
+                data = replaced(data, f"per_file.{name}", options[name])
                 continue
-            of_curve = name in Calibration.model_fields or name not in cls.model_fields
-            if of_curve and isinstance(value, (list, tuple)):
-                data = replaced(data, f"per_file.{name}", value)
-                continue
-            if of_curve and isinstance(data.get("per_file"), Mapping):
+            if isinstance(data.get("per_file"), Mapping):
                 data["per_file"] = {k: v for k, v in data["per_file"].items() if k != name}
-            if name in cls.model_fields:
-                data[name] = _component(value) if name in _COMPONENTS else value
-            else:
-                data["indenter"] = _component(data.get("indenter", {}))
-                data = replaced(data, f"indenter.{name}", value)
+            key = name if name in cls.model_fields else f"indenter.{name}"
+            data = replaced(data, key, options[name])
         return cls(**overridden(data, overrides))
 
     def to_dict(self) -> dict[str, Any]:
