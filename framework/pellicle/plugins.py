@@ -20,8 +20,8 @@ import pluggy
 
 from . import hookspecs
 from .components import FAMILIES, Component, Suite
+from .components.foreign_code import diverted_output, noted_interrupts
 from .errors import ConfigError, PellicleError, PluginError
-from .foreign_code import diverted_output, noted_interrupts
 from .model.messages import nearest
 from .units import quantity_of
 

@@ -37,7 +37,9 @@ def sample() -> xr.Dataset:
 def test_read_as_it_was(tmp_path: Path) -> None:
     """Values, kinds, names, units, coordinates and their order come back."""
     path = tmp_path / "sample.h5"
-    path.write_bytes(netcdf.image(sample(), grows=["step"], packed=["field", "inside"]).getvalue())
+    path.write_bytes(
+        netcdf.serialised(sample(), grows=["step"], packed=["field", "inside"]).getvalue()
+    )
     found = xr.load_dataset(path, engine="h5netcdf")
     xr.testing.assert_identical(found, sample())
     assert list(found.data_vars) == list(sample().data_vars)
@@ -49,7 +51,7 @@ def test_read_as_it_was(tmp_path: Path) -> None:
 def test_layout(tmp_path: Path) -> None:
     """Steps can grow, what is to be packed is, and a missing number is one for every reader."""
     path = tmp_path / "sample.h5"
-    path.write_bytes(netcdf.image(sample(), grows=["step"], packed=["field"]).getvalue())
+    path.write_bytes(netcdf.serialised(sample(), grows=["step"], packed=["field"]).getvalue())
     with h5py.File(path) as file:
         assert file["field"].maxshape == (None, 3, 4)
         assert file["missing"].maxshape == (None,)
@@ -62,7 +64,7 @@ def test_layout(tmp_path: Path) -> None:
 def test_reads_what_it_wrote(tmp_path: Path) -> None:
     """All of it, or what does not lie along a dimension."""
     path = tmp_path / "sample.h5"
-    path.write_bytes(netcdf.image(sample(), grows=["step"]).getvalue())
+    path.write_bytes(netcdf.serialised(sample(), grows=["step"]).getvalue())
     with h5py.File(path) as file:
         xr.testing.assert_identical(netcdf.dataset(file), sample())
         xr.testing.assert_identical(netcdf.dataset(file, without=["x"]), sample().drop_dims("x"))

@@ -149,7 +149,7 @@ def test_other_schema_version(path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         storage.read(path)
 
 
-def test_tails(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_segments(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a large result each step is written about twice, and every one is there after each."""
     monkeypatch.setattr(storage, "_SMALL", 0)
     joins: list[int] = []
@@ -168,7 +168,7 @@ def test_tails(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     said, (pressure,) = storage.fields(path, ["pressure"], 18)
     assert (pressure == steps(18)["pressure"].values[0]).all()
     assert ATTRIBUTES.items() <= said.items()
-    with pytest.raises(StorageError, match="not hold that many steps"):
+    with pytest.raises(StorageError, match="not have that many steps"):
         storage.fields(path, ["pressure"], 99)
     with pytest.raises(StorageError, match="not a readable result"):
         storage.fields(path, ["nonsense"], 0)
@@ -179,15 +179,15 @@ def test_tails(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     xr.testing.assert_identical(storage.read(path), whole)
 
 
-def test_tails_that_were_joined_already(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_segments_that_were_joined_already(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A process that dies before it removes what it joined leaves no step twice."""
     monkeypatch.setattr(storage, "_SMALL", 0)
     storage.write(steps(0, 1, 2), path)
     storage.append(steps(3), path)
-    (tail,) = (other for other in path.parent.iterdir() if other != path)
-    content = tail.read_bytes()
+    (segment,) = (other for other in path.parent.iterdir() if other != path)
+    content = segment.read_bytes()
     storage.close(path)
-    tail.write_bytes(content)
+    segment.write_bytes(content)
     assert storage.read(path)["step"].values.tolist() == [0, 1, 2, 3]
     storage.append(steps(4), path)
     assert storage.read(path)["step"].values.tolist() == [0, 1, 2, 3, 4]
@@ -239,7 +239,7 @@ def test_lack_of_memory_is_reported(path: Path, monkeypatch: pytest.MonkeyPatch)
         storage.read(path)
 
 
-def test_tails_that_are_joined_while_they_are_read(
+def test_segments_that_are_joined_while_they_are_read(
     path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A result is read whole while the run that writes it goes on."""
@@ -251,10 +251,12 @@ def test_tails_that_are_joined_while_they_are_read(
 
     def join_first(part: Path, *arguments: object) -> object:
         calls.append(part)
-        if len(calls) == 2:
+        # The first two calls count the steps of both files, the third reads the first file.
+        if len(calls) == 4:
+            assert part != path
             storage.close(path)
         return plain(part, *arguments)  # type: ignore[arg-type]
 
     monkeypatch.setattr(storage, "opened", join_first)
     assert storage.read(path)["step"].values.tolist() == [1, 2, 3, 4]
-    assert len(calls) == 3
+    assert list(path.parent.iterdir()) == [path]

@@ -1,1 +1,1 @@
-"""The configuration of runs and studies."""
+"""The configuration of runs and studies: their models, schema, description and origin."""

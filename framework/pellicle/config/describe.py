@@ -1,4 +1,4 @@
-"""What a run was told: each value of its configuration with its unit, its meaning, its origin."""
+"""The configuration of a run as rows: value with unit, meaning, and origin of components."""
 
 from __future__ import annotations
 
@@ -20,47 +20,47 @@ class Input(NamedTuple):
     name: str
     """Dotted path, as after ``--set``."""
     value: str
-    """With its unit, brought near 1 … 1000."""
+    """With a unit that brings it near 1 … 1000."""
     meaning: str
     origin: Origin | None = None
-    """Where a component comes from."""
+    """Distribution and entry point of a component."""
 
 
 def inputs(configuration: Mapping[str, Any]) -> Iterator[Input]:
-    """Yield the inputs of a run, given as `Run.to_json` says it.
+    """Yield the values of a configuration in the form of `Run.to_json`.
 
-    What no installed component explains is there too, without a unit.
+    Fields of components that are not installed have no unit.
     """
     yield from _table(configuration, Run, "")
 
 
-def _table(said: Mapping[str, Any], model: type[BaseModel] | None, path: str) -> Iterator[Input]:
+def _table(table: Mapping[str, Any], model: type[BaseModel] | None, path: str) -> Iterator[Input]:
     fields = model.model_fields if model else {}
-    for key, value in said.items():
+    for key, value in table.items():
         info = fields.get(key)
         name = f"{path}{key}"
         if isinstance(value, Mapping):
             yield from _one(value, info.annotation if info else None, name)
         elif isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
-            for index, each in enumerate(value):
-                yield from _one(each, info.annotation if info else None, f"{name}.{index}")
+            for index, entry in enumerate(value):
+                yield from _one(entry, info.annotation if info else None, f"{name}.{index}")
         elif value not in ([], ""):
             quantity = quantity_of(info) if info else None
             words = readable(value, quantity.unit if quantity else "1")
             yield Input(name, words, (info.description if info else None) or "")
 
 
-def _one(said: Mapping[str, Any], annotation: Any, name: str) -> Iterator[Input]:
-    """Yield the inputs in a table: a component, or a part of the run."""
+def _one(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[Input]:
+    """Yield the values in the table of a component or of another part of the run."""
     model = _model(annotation)
-    if "type" not in said:
-        yield from _table(said, model, f"{name}.")
+    if "type" not in table:
+        yield from _table(table, model, f"{name}.")
         return
-    found = _registered(model, said["type"])
-    summary, origin = (found.summary, found.origin) if found else ("", None)
-    yield Input(name, str(said["type"]), summary, origin)
-    inner = {key: value for key, value in said.items() if key != "type"}
-    yield from _table(inner, found.component if found else None, f"{name}.")
+    known = _registered(model, table["type"])
+    summary, origin = (known.summary, known.origin) if known else ("", None)
+    yield Input(name, str(table["type"]), summary, origin)
+    inner = {key: value for key, value in table.items() if key != "type"}
+    yield from _table(inner, known.component if known else None, f"{name}.")
 
 
 def _registered(model: type[BaseModel] | None, type_: object) -> Registered | None:
@@ -73,4 +73,4 @@ def _model(annotation: Any) -> type[BaseModel] | None:
     """Return the model that a field holds, alone or in a list."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
-    return next((found for inner in get_args(annotation) if (found := _model(inner))), None)
+    return next(filter(None, map(_model, get_args(annotation))), None)

@@ -1,4 +1,4 @@
-"""The frozen model that every part of a configuration is, and its fields."""
+"""Frozen models of a configuration: errors in our words, dotted paths, ranges, TOML."""
 
 from .base import Model as Model
 from .input_path import AS_GIVEN as AS_GIVEN

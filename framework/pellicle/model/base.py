@@ -1,14 +1,10 @@
-"""The frozen pydantic model that every part of a configuration is, with errors in our words."""
+"""The base class of all configuration: a frozen pydantic model with errors in our words."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    ValidationError,
-)
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from pellicle.errors import ConfigError
 
@@ -16,11 +12,11 @@ from .messages import problems
 
 
 class Model(BaseModel):
-    """Frozen, no unknown fields; raises `ConfigError` that names field, value and remedy."""
+    """A frozen model without unknown fields; raises `ConfigError`, which names field and remedy."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, validate_default=False)
 
-    # Positional only: "self" in a file is an unknown field like any other.
+    # Positional only, so that a key "self" in a file is refused as an unknown field.
     def __init__(self, /, **data: Any) -> None:
         try:
             super().__init__(**data)

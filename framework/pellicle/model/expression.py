@@ -1,7 +1,7 @@
-"""Arithmetic over dotted names, as study files and figures state it.
+"""Arithmetic over dotted names, as in study files and figures.
 
-``kernel.tension / kernel.reduced_modulus`` is a number, a numpy array or an xarray variable,
-whatever the names stand for. Python's parser reads it, and nothing but arithmetic is evaluated.
+The value of ``kernel.tension / kernel.reduced_modulus`` is a number, a numpy array or an xarray
+variable, as those of its names are. Python's parser reads it; only arithmetic is evaluated.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ FUNCTIONS: dict[str, Callable[[Any], Any]] = {
     "exp": np.exp,
     "abs": np.abs,
 }
-"""What may be called, each with one argument."""
+"""Functions of one argument."""
 CONSTANTS = {"pi": np.pi}
-"""Names that are there without being given."""
+"""Names with a fixed value."""
 
 _OPERATORS: dict[type[ast.AST], Callable[..., Any]] = {
     ast.Add: operator.add,
@@ -43,7 +43,7 @@ _ALLOWED = f"+ - * / ** ( ), {', '.join(FUNCTIONS)} and {', '.join(CONSTANTS)}"
 
 
 def names_in(text: str) -> set[str]:
-    """Return the dotted names that ``text`` needs: all but functions and constants."""
+    """Return the dotted names in ``text`` that are neither functions nor constants."""
     return set(_NAME.findall(text)) - FUNCTIONS.keys() - CONSTANTS.keys()
 
 
@@ -65,15 +65,15 @@ def evaluate(
 
     Returns
     -------
-    What the operations make of the values. Where they are not defined it is NaN or infinite.
+    The value, of the type that the operations return; NaN or infinite where they are not defined.
 
     Raises
     ------
     ConfigError
-        Anything else than arithmetic, or a name that is not there.
+        The text is not arithmetic, or a name is unknown.
     """
-    known = {**CONSTANTS, **names}
-    callable_ = {**FUNCTIONS, **(functions or {})}
+    values = {**CONSTANTS, **names}
+    callables = {**FUNCTIONS, **(functions or {})}
     # A dotted name may have parts that Python does not allow, such as the 0 of grid.size.0.
     dotted: list[str] = _NAME.findall(text)
     count = iter(range(len(dotted)))
@@ -94,19 +94,19 @@ def evaluate(
             case ast.Constant(value=int() | float() as number):
                 return np.float64(number)
             case ast.Name():
-                if (name := name_of(node)) not in known:
-                    raise ConfigError(f"{shown(name)} in {shown(text)}: {nearest(name, known)}")
-                return known[name]
+                if (name := name_of(node)) not in values:
+                    raise ConfigError(f"{shown(name)} in {shown(text)}: {nearest(name, values)}")
+                return values[name]
             case ast.UnaryOp(op=op, operand=operand) if type(op) in _OPERATORS:
                 return _OPERATORS[type(op)](value(operand))
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
                 return _OPERATORS[type(op)](value(left), value(right))
-            case ast.Call(func=ast.Name() as called, args=[argument], keywords=[]):
-                if (name := name_of(called)) not in callable_:
-                    hint = nearest(name, callable_)
-                    raise ConfigError(f"{shown(name)} in {shown(text)} is no function; {hint}")
-                return callable_[name](value(argument))
-        piece = re.sub(r"\b_(\d+)\b", lambda found: dotted[int(found[1])], ast.unparse(node))
+            case ast.Call(func=ast.Name() as function, args=[argument], keywords=[]):
+                if (name := name_of(function)) not in callables:
+                    hint = nearest(name, callables)
+                    raise ConfigError(f"{shown(name)} in {shown(text)} is not a function; {hint}")
+                return callables[name](value(argument))
+        piece = re.sub(r"\b_(\d+)\b", lambda match: dotted[int(match[1])], ast.unparse(node))
         raise ConfigError(f"{shown(piece)} in {shown(text)} is not allowed; write {_ALLOWED}")
 
     try:
@@ -117,4 +117,4 @@ def evaluate(
     except RecursionError:
         raise ConfigError(f"{shown(text)} is nested too deeply; make it shorter") from None
     except (TypeError, ValueError, OverflowError) as error:
-        raise ConfigError(f"{shown(text)} cannot be worked out: {error}") from None
+        raise ConfigError(f"{shown(text)} cannot be evaluated: {error}") from None

@@ -1,4 +1,4 @@
-"""Paths of files to read, as their run file gives them."""
+"""Paths of input files, relative to the file that names them."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _folder: ContextVar[Path | None] = ContextVar("folder", default=None)
 
 @contextmanager
 def paths_relative_to(folder: Path | None) -> Iterator[None]:
-    """Read relative paths in a configuration as seen from ``folder``, where its file lies.
+    """Let relative paths in a configuration start from ``folder``, that of its file.
 
-    With None, as seen from the current folder if no file is being read, and made absolute.
+    With None they start from the current folder unless a file is being read, and become absolute.
     """
     token = _folder.set(folder or _folder.get() or Path.cwd())
     try:
@@ -32,12 +32,12 @@ def paths_relative_to(folder: Path | None) -> Iterator[None]:
 
 
 AS_GIVEN: Final = "as_given"
-"""Context of ``model_dump`` in which paths are written as their file has them, not absolute."""
+"""Context of ``model_dump`` that writes paths as their file has them instead of absolute."""
 
 
-# Before Python 3.12 only the class of this system's paths can be derived from.
+# Before Python 3.12, pathlib.Path itself cannot be subclassed.
 class _GivenPath(type(Path())):  # type: ignore[misc]
-    """A path that knows how the user wrote it."""
+    """A path that keeps the text that the user wrote."""
 
     given = ""
 
@@ -46,13 +46,13 @@ class _GivenPath(type(Path())):  # type: ignore[misc]
 
 
 def _given_path(path: str | Path, given: str) -> Path:
-    remembering = _GivenPath(path)
-    remembering.given = given
-    return remembering
+    result = _GivenPath(path)
+    result.given = given
+    return result
 
 
 def as_given(path: Path) -> str:
-    """Return a path as the user wrote it, who may have moved its folder since."""
+    """Return a path as the user wrote it; its folder may have moved since."""
     return getattr(path, "given", "") or str(path)
 
 
@@ -70,4 +70,4 @@ def _written(path: Path, info: SerializationInfo) -> Path | str:
 
 
 InputPath = Annotated[Path, WrapValidator(_from_folder), PlainSerializer(_written)]
-"""A file to read; in a TOML file, relative to that file."""
+"""An input file; in a TOML file, relative to that file."""

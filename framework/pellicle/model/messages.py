@@ -1,4 +1,4 @@
-"""What is wrong with a configuration, in the words of pellicle instead of pydantic's."""
+"""Problems of a configuration in the words of pellicle instead of pydantic's."""
 
 from __future__ import annotations
 
@@ -7,16 +7,14 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from pydantic import (
-    BaseModel,
-)
+from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
 from pellicle.errors import ConfigError, Problem, shown
 
 
 def nearest(word: object, known: Iterable[str]) -> str:
-    """Return ``"did you mean 'x'? "`` for a near miss, and what is known in any case."""
+    """Return the known words, after ``"did you mean 'x'? "`` if one of them is similar."""
     names = sorted(known)
     close = difflib.get_close_matches(str(word), names, n=1)
     hint = f"did you mean {close[0]!r}? " if close else ""
@@ -26,21 +24,21 @@ def nearest(word: object, known: Iterable[str]) -> str:
 def problems(
     model: type[BaseModel], details: Iterable[ErrorDetails], data: Mapping[str, Any]
 ) -> Iterable[Problem]:
-    """Return what is wrong with ``data``, each problem once."""
+    """Return the problems of ``data``, each once."""
     details = list(details)
-    # A list with a bad entry is also called too short: the entry's own problem says it better.
+    # pydantic also calls a list with a bad entry too short.
     outer = {detail["loc"][:-1] for detail in details}
-    found = (
+    every = (
         problem
         for detail in details
         if not (detail["type"] == "too_short" and detail["loc"] in outer)
-        for problem in _explain(model, detail, _path(detail["loc"], data))
+        for problem in _translated(model, detail, _path(detail["loc"], data))
     )
-    return dict.fromkeys(found)
+    return dict.fromkeys(every)
 
 
 def _path(location: Iterable[int | str], data: object) -> str:
-    """Return a dotted path as far as the user wrote it: one value may stand for a pair."""
+    """Return a dotted path as far as it exists in ``data``: one value may stand for a pair."""
     names = []
     for name in location:
         if isinstance(data, Mapping):
@@ -53,8 +51,8 @@ def _path(location: Iterable[int | str], data: object) -> str:
     return ".".join(names)
 
 
-def _explain(model: type[BaseModel], detail: ErrorDetails, field: str) -> Iterator[Problem]:
-    """Yield the problems behind one pydantic error, in our words."""
+def _translated(model: type[BaseModel], detail: ErrorDetails, field: str) -> Iterator[Problem]:
+    """Yield the problems that one pydantic error stands for."""
     cause = detail.get("ctx", {}).get("error")
     if isinstance(cause, ConfigError):
         yield from (cause.within(field) if field else cause).problems
@@ -68,8 +66,8 @@ def _explain(model: type[BaseModel], detail: ErrorDetails, field: str) -> Iterat
         case "value_error":
             message = str(cause)
         case "literal_error":
-            found = re.findall(r"'[^']*'|\d+", detail["ctx"]["expected"])
-            allowed = [each.strip("'") for each in found]
+            literals = re.findall(r"'[^']*'|\d+", detail["ctx"]["expected"])
+            allowed = [literal.strip("'") for literal in literals]
             message = (
                 f"{shown(detail['input'])} is not allowed; {nearest(detail['input'], allowed)}"
             )
@@ -106,7 +104,7 @@ _WANTED = {
     "too_short": "a list of {min_length} or more",
     "too_long": "a list of {max_length} or fewer",
 }
-"""What is allowed, by pydantic's kind of error."""
+"""Allowed values, by the type of pydantic's error."""
 
 
 def _description(model: type[BaseModel], field: str) -> str:

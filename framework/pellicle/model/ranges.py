@@ -1,4 +1,4 @@
-"""The axes of a study: dotted parameters, each with the values that it takes in turn."""
+"""Values of parameters: lists, and ranges ``{start, stop, num}``."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ Values = tuple[Any, ...]
 Axes = Mapping[str, Values]
 """Values of several axes by their dotted key."""
 RANGE = {"start", "stop", "num"}
-_MOST = 1_000_000
 SPACINGS = ("linear", "log")
+_MOST = 1_000_000
 
 
 def expand(given: object) -> dict[str, Values]:
-    """Return the values of each axis of a table: lists as they are, ranges expanded.
+    """Return the values of each axis of a study's table, ranges written out.
 
     Raises
     ------
     ConfigError
-        An axis is empty or no axis at all; all such are named.
+        Values are missing or not allowed; all such axes are named.
     """
     if not isinstance(given, Mapping):
         raise ConfigError(f'{shown(given)} is not a table; give one: "kernel.tension" = […]')
@@ -32,7 +32,7 @@ def expand(given: object) -> dict[str, Values]:
     for key, values in _flat(given, ""):
         try:
             if key in axes:
-                raise ConfigError("is there twice; leave one out")
+                raise ConfigError("is given twice; leave one out")
             axes[key] = _values(values)
         except ConfigError as error:
             problems.extend(error.within(key).problems)
@@ -61,20 +61,21 @@ def _values(given: object) -> Values:
         )
     if not given:
         raise ConfigError("is empty; give at least one value, or leave the axis out")
-    return tuple(each.item() if hasattr(each, "item") else each for each in given)
+    return tuple(value.item() if hasattr(value, "item") else value for value in given)
 
 
 def ranged(
     given: Mapping[str, Any], what: str = "range", options: str = 'spacing = "log"'
 ) -> Values:
-    """Return the values of ``{start, stop, num}``, with ``spacing`` if need be.
+    """Return the values of ``{start, stop, num}``, which may also have a ``spacing``.
 
-    Messages call it ``what``, and say that it may have the ``options`` besides.
+    Texts with units remain such. ``what`` and ``options`` are words for messages: the name of the
+    range and its optional keys.
 
     Raises
     ------
     ConfigError
-        It is none.
+        The mapping is not a range.
     """
     if not given.keys() >= RANGE or not given.keys() <= RANGE | {"spacing"}:
         has = ", ".join(map(str, given)) or "nothing"
@@ -114,11 +115,11 @@ def _end(given: Mapping[str, Any], end: str) -> tuple[float, str]:
     value = given[end]
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         value = f"{float(value.magnitude)!r} {value.units}"
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        value = f"{value:.17g}" if abs(value) < 1e300 else "inf"
-    found = split(value) if isinstance(value, str) else None
-    if found is None or not math.isfinite(found[0]):
+    parts = split(value) if isinstance(value, str) else None
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 1e300:
+        parts = float(value), ""
+    if parts is None or not math.isfinite(parts[0]):
         raise ConfigError(
             f"{shown(given[end])} is not allowed; give a finite number, with a unit or without", end
         )
-    return found
+    return parts

@@ -1,4 +1,4 @@
-"""Run files: read, and changed by ``--set``."""
+"""TOML files, and the overrides of ``--set``."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ def read_toml(path: Path) -> dict[str, Any]:
     Raises
     ------
     ConfigError
-        It cannot be read, or is not TOML; the message names line and column.
+        The file cannot be read, or is not TOML; the message names line and column.
     """
     text = ""
     try:
-        # Some editors put a byte order mark in front of UTF-8.
+        # Some editors write a byte order mark before UTF-8.
         text = path.read_text(encoding="utf-8-sig")
         return tomllib.loads(text)
     except OSError as error:
@@ -38,7 +38,7 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 
 def parse_override(text: str) -> tuple[str, Any]:
-    """Return key and value of ``a.b=value``; the value is TOML, or a plain text where it is not.
+    """Return key and value of ``a.b=value``; a value that is not TOML is a text.
 
     Raises
     ------

@@ -1,9 +1,9 @@
-"""A checksum behind the content of an HDF5 file, compared before HDF5 parses the file.
+"""A checksum after the content of an HDF5 file, verified before HDF5 parses the file.
 
-HDF5 takes a changed byte for another number, for a size that no memory has, or ends the process.
-Other readers ignore what follows the end of the HDF5 content. The checksum is that of all bytes
-but the compressed chunks, which zlib checks as they are read (Adler-32), so that the numbers of a
-large file are verified without reading its fields.
+HDF5 reads a changed byte as another number or as a size that no memory has, or ends the process.
+Other readers ignore bytes after the end of the HDF5 content. The checksum is that of all bytes but
+the compressed chunks, which zlib checks as they are read (Adler-32), so that the numbers of a large
+file are verified without reading its fields.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ Ranges = Sequence[tuple[int, int]]
 """Offset and size [bytes] of parts of a file, in order."""
 
 
-def seal(image: io.BytesIO) -> None:
-    """Append the checksum to a whole HDF5 file in memory."""
+def seal(file: io.BytesIO) -> None:
+    """Append the checksum to a complete HDF5 file in memory."""
     import h5py
 
-    with h5py.File(image, "r") as file:
-        skipped = _compressed(file)
-    end = image.seek(0, io.SEEK_END)
-    record = {"sha256": _digest(image, end, skipped), "end": end, "skipped": skipped}
+    with h5py.File(file, "r") as content:
+        skipped = _compressed(content)
+    end = file.seek(0, io.SEEK_END)
+    record = {"sha256": _digest(file, end, skipped), "end": end, "skipped": skipped}
     text = json.dumps(record).encode("ascii")
-    image.seek(end)
-    image.write(text + b"%0*x" % (_LENGTH, len(text)) + _MARK)
+    file.seek(end)
+    file.write(text + b"%0*x" % (_LENGTH, len(text)) + _MARK)
 
 
 def verify(path: Path) -> bool:
-    """Return whether a file has a checksum, which is then that of its content.
+    """Return whether a file has a checksum, and verify it.
 
     Raises
     ------
@@ -75,11 +75,11 @@ def verify(path: Path) -> bool:
 
 
 def _compressed(file: h5py.File) -> list[tuple[int, int]]:
-    """Return the chunks that zlib compressed, in the order of the file."""
+    """Return offset and size [bytes] of the chunks that zlib compressed, in order."""
     chunks: list[tuple[int, int]] = []
 
     def collect(chunk: h5py.h5d.StoreInfo) -> None:
-        # Where compression did not pay, a chunk is stored as it is and carries no check.
+        # A chunk that compression would not shrink is stored as it is, without Adler-32.
         if chunk.filter_mask == 0:
             chunks.append((chunk.byte_offset, chunk.size))
 
@@ -90,17 +90,17 @@ def _compressed(file: h5py.File) -> list[tuple[int, int]]:
 
 
 def _digest(file: BinaryIO, end: int, skipped: Ranges) -> str:
-    """Return the SHA-256 of the bytes up to ``end``, of which ``skipped`` are left out."""
+    """Return the SHA-256 of the bytes up to ``end``, without those in ``skipped``."""
     digest = hashlib.sha256(json.dumps(skipped).encode("ascii"))
     begin = 0
     for offset, size in (*skipped, (end, 0)):
         if not begin <= offset <= end or size < 0:
-            raise ValueError("ranges that are not in order")
+            raise ValueError("the ranges are not in order")
         file.seek(begin)
         while begin < offset:
             block = file.read(min(_BLOCK, offset - begin))
             if not block:
-                raise ValueError("a range beyond the end")
+                raise ValueError("a range is beyond the end")
             digest.update(block)
             begin += len(block)
         begin = offset + size

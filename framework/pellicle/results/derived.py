@@ -1,4 +1,4 @@
-"""Columns worked out of a table of runs, of the fields of its runs, and of their configuration."""
+"""Numbers derived from a table of runs, from the fields of the runs and their configuration."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ REDUCTIONS: dict[str, Callable[[Any], Any]] = {
     "min": lambda field: field.min(_CELLS),
     "max": lambda field: field.max(_CELLS),
 }
-"""Functions that make one number for each step of a field over the cells."""
+"""Functions that reduce a field to one number for each step."""
 
 
 FIRST_RUN = "first_run"
@@ -37,16 +37,18 @@ FIRST_RUN = "first_run"
 
 
 def names(data: xr.Dataset) -> dict[str, Any]:
-    """Return what expressions over ``data``, a result or the table of a study, may name.
+    """Return the values that expressions over a result or the table of a study may name.
 
     These are its numeric variables and coordinates, and the numbers of its configuration by their
-    dotted path, such as ``kernel.tension`` or ``grid.size.0``, where no coordinate varies them.
+    dotted path, such as ``kernel.tension`` or ``grid.size.0``, unless a coordinate varies them.
     """
-    said = json.loads(data.attrs.get(FIRST_RUN, data.attrs["configuration"]))
+    configuration = json.loads(data.attrs.get(FIRST_RUN, data.attrs["configuration"]))
     varied = tuple(f"{name}." for name in data.coords)
-    fixed = {key: value for key, value in constants(said).items() if not key.startswith(varied)}
+    fixed = {
+        key: value for key, value in constants(configuration).items() if not key.startswith(varied)
+    }
     numeric = {str(name): data[name] for name in data.variables if data[name].dtype.kind in "iuf"}
-    # Truth values are numbers here, which numpy would not subtract.
+    # numpy does not subtract truth values.
     truths = {
         str(name): data[name].astype(float)
         for name in data.variables
@@ -56,12 +58,12 @@ def names(data: xr.Dataset) -> dict[str, Any]:
 
 
 def derive(table: xr.Dataset, expressions: Mapping[str, str]) -> xr.Dataset:
-    """Return the table of a study with further columns, each of which may name those before.
+    """Return the table of a study with further columns, which may name earlier ones.
 
     Raises
     ------
     ConfigError
-        An expression is not arithmetic, or names what is not there.
+        An expression is not arithmetic, or a name in it is unknown.
     """
     for name, text in expressions.items():
         table = table.assign({name: 0.0 * table["converged"] + evaluate(text, names(table))})
@@ -79,12 +81,12 @@ def constants(configuration: object) -> dict[str, float]:
 
 
 def as_array(text: str, data: xr.Dataset) -> xr.DataArray:
-    """Return an expression over a result or a table as an array, a bare number too.
+    """Return the value of an expression over a result or a table as an array.
 
     Raises
     ------
     ConfigError
-        It is not arithmetic, or names what is not there.
+        The text is not arithmetic, or a name in it is unknown.
     """
     import xarray as xr
 
@@ -93,7 +95,7 @@ def as_array(text: str, data: xr.Dataset) -> xr.DataArray:
 
 
 def _by_step(text: str, run: xr.Dataset) -> Any:
-    """Return an expression over a run whose fields are reduced to a number for each step."""
+    """Return the value for each step of an expression over a run with reduced fields."""
     value = evaluate(text, names(run), REDUCTIONS)
     if set(getattr(value, "dims", ())) & set(_CELLS):
         raise ConfigError(
@@ -105,12 +107,12 @@ def _by_step(text: str, run: xr.Dataset) -> Any:
 
 @dataclass(frozen=True)
 class Runs:
-    """A table of runs and a way to the fields of each."""
+    """A table of runs, and access to the fields of each."""
 
     table: xr.Dataset
-    """Scalars of each run and step; ``run`` names the runs."""
+    """Numbers of each run and step; ``run`` names the runs."""
     open: Callable[[str], xr.Dataset]
-    """Returns the dataset of a run by its name; raises StorageError if there is none."""
+    """Returns the dataset of a run by its name, or raises StorageError."""
 
     @classmethod
     def of_result(cls, result: Result) -> Runs:
@@ -124,7 +126,7 @@ class Runs:
         return cls(table, lambda name: storage.read(directory / "runs" / f"{name}.h5"))
 
     def each(self) -> Iterator[tuple[tuple[int, ...], xr.Dataset | None]]:
-        """Yield the place in the table and the dataset of each run, None for one that has none."""
+        """Yield the index in the table and the dataset of each run; None for one without a file."""
         for index, name in np.ndenumerate(self.table["run"].values):
             try:
                 yield index, self.open(str(name))
@@ -132,25 +134,25 @@ class Runs:
                 yield index, None
 
     def column(self, text: str) -> xr.DataArray:
-        """Return an expression over the table, with fields reduced to a number a step.
+        """Return the value of an expression over the table, with fields reduced to numbers.
 
         Raises
         ------
         ConfigError
-            It is not arithmetic, or names what is not there.
+            The text is not arithmetic, or a name in it is unknown.
         """
         if names_in(text) & {*FIELDS, *_CELLS}:
             return self.from_each(lambda run: _by_step(text, run))
         return as_array(text, self.table)
 
-    def from_each(self, what: Callable[[xr.Dataset], Any]) -> xr.DataArray:
-        """Return ``what`` makes of each run: a number for each step; NaN where there is no run."""
+    def from_each(self, measure: Callable[[xr.Dataset], Any]) -> xr.DataArray:
+        """Return ``measure`` of each run, a number for each step; NaN where there is no run."""
         import xarray as xr
 
         runs, steps = self.table["run"], self.table.sizes["step"]
         values = np.full((*runs.shape, steps), np.nan)
         for index, data in self.each():
             if data is not None:
-                values[index][: data.sizes["step"]] = what(data)
+                values[index][: data.sizes["step"]] = measure(data)
         coords = {dim: self.table[dim] for dim in (*runs.dims, "step")}
         return xr.DataArray(values, coords, (*runs.dims, "step"))

@@ -16,18 +16,18 @@ if TYPE_CHECKING:
     import h5py
     import xarray as xr
 
-# How NetCDF-4 marks a dimension of which there is no variable.
+# NetCDF-4 marks a dimension without a variable by this name.
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
-_OF_SCALES = {
+_DIMENSION_ATTRIBUTES = {
     *("CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST"),
     *("_Netcdf4Dimid", "_Netcdf4Coordinates", "_NCProperties", "_nc3_strict"),
 }
 
 
-def image(
+def serialised(
     dataset: xr.Dataset, *, grows: Collection[str] = (), packed: Collection[str] = ()
 ) -> io.BytesIO:
-    """Return a NetCDF-4 file in memory that holds ``dataset``.
+    """Return ``dataset`` as a NetCDF-4 file in memory.
 
     Parameters
     ----------
@@ -36,15 +36,15 @@ def image(
     grows
         Dimensions along which the file can be made longer.
     packed
-        Variables to be compressed, one chunk for each step.
+        Variables that are compressed.
     """
     import h5py
     from xarray import conventions
 
     variables, attributes = conventions.encode_dataset_coordinates(dataset)
     variables, attributes = conventions.cf_encoder(variables, attributes)
-    whole = io.BytesIO()
-    with h5py.File(whole, "w", track_order=True) as file:
+    content = io.BytesIO()
+    with h5py.File(content, "w", track_order=True) as file:
         file.attrs.update(attributes)
         for number, (dim, size) in enumerate(dataset.sizes.items()):
             if dim in variables:
@@ -59,11 +59,11 @@ def image(
                 stored = _create(file, str(name), variable, grows, packed)
                 for axis, dim in enumerate(variable.dims):
                     stored.dims[axis].attach_scale(file[str(dim)])
-    return whole
+    return content
 
 
 def dataset(file: h5py.File, *, without: Collection[str] = ()) -> xr.Dataset:
-    """Return the content of a NetCDF-4 file, but for variables along the dimensions ``without``."""
+    """Return a NetCDF-4 file without the variables along the dimensions ``without``."""
     import xarray as xr
 
     variables = {}
@@ -73,23 +73,22 @@ def dataset(file: h5py.File, *, without: Collection[str] = ()) -> xr.Dataset:
             text = stored.dtype.kind in "SO"
             values = np.asarray(stored.asstr()[()], dtype=str) if text else stored[()]
             variables[name] = xr.Variable(dims, values, attributes(stored))
-    made = xr.decode_cf(xr.Dataset(variables, attrs=attributes(file)))
-    return made.drop_encoding()
+    return xr.decode_cf(xr.Dataset(variables, attrs=attributes(file))).drop_encoding()
 
 
 def attributes(stored: h5py.Dataset | h5py.File) -> dict[str, Any]:
-    """Return the attributes of a variable or of a file, without what keeps dimensions."""
-    found = {name: value for name, value in stored.attrs.items() if name not in _OF_SCALES}
+    """Return the attributes of a variable or of a file, without those that store dimensions."""
     return {
         name: value.item()
         if isinstance(value, np.ndarray | np.generic) and value.size == 1
         else value
-        for name, value in found.items()
+        for name, value in stored.attrs.items()
+        if name not in _DIMENSION_ATTRIBUTES
     }
 
 
 def _dims(name: str, stored: h5py.Dataset) -> tuple[str, ...] | None:
-    """Return the dimensions of a variable; None for one that only stands for a dimension."""
+    """Return the dimensions of a variable; None for a bare dimension."""
     if stored.attrs.get("CLASS") == b"DIMENSION_SCALE":
         return None if stored.attrs["NAME"].startswith(_NO_VARIABLE.encode()) else (name,)
     return tuple(dim[0].name.lstrip("/") for dim in stored.dims)
@@ -113,7 +112,7 @@ def _create(
             None if dim in grows else size for dim, size in variable.sizes.items()
         ]
     if name in packed:
-        # Fields compress two- to tenfold at the lowest level; higher ones only cost time.
+        # Fields compress two- to tenfold at the lowest level; higher levels only cost time.
         options |= {"compression": "gzip", "compression_opts": 1, "shuffle": True}
     stored = file.create_dataset(name, data=values, **options)
     stored.attrs.update(variable.attrs)

@@ -1,4 +1,4 @@
-"""What comes out: what a solver returns, and the result of a run."""
+"""The result of a run."""
 
 from __future__ import annotations
 
@@ -21,19 +21,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Result:
-    """The result of a run: all steps, their fields, and where they came from."""
+    """The result of a run: all steps with their fields, and its configuration."""
 
     dataset: xr.Dataset
-    """Dimensions (step, x, y); units in the attributes of each variable."""
+    """Dimensions (step, x, y), with units in the attributes of each variable."""
 
     @property
     def configuration(self) -> dict[str, Any]:
-        """The full configuration that was run, SI floats."""
-        return json.loads(self.dataset.attrs["configuration"])  # type: ignore[no-any-return]
+        """The full configuration of the run, in SI floats."""
+        configuration: dict[str, Any] = json.loads(self.dataset.attrs["configuration"])
+        return configuration
 
     @property
     def grid(self) -> Grid:
-        """The cells that the fields lie on."""
+        """The grid of the fields."""
         return Grid(**self.configuration["grid"])
 
     @property
@@ -47,12 +48,12 @@ class Result:
         return _statuses(failed)
 
     def coarse(self) -> list[tuple[int, str]]:
-        """Return the number of each step that is too coarse for its contact, with its status."""
+        """Return the number of each step whose cells are too coarse, with its status."""
         coarse = self.dataset["status_code"].values == Status.COARSE.name
         return _statuses(self.dataset.isel(step=coarse))
 
     def _repr_html_(self) -> str:
-        """Return what a notebook shows."""
+        """Return HTML for a notebook."""
         return self.dataset._repr_html_()
 
     def save(self, path: str | Path) -> None:
@@ -82,7 +83,7 @@ def load(path: str | Path) -> Result:
     Raises
     ------
     StorageError
-        No such file, not a result, damaged, or of another schema version.
+        There is no such file, or it is damaged, of another schema version, or not a result.
     """
     dataset = storage.read(Path(path))
     if problem := _damage(dataset):
@@ -91,7 +92,7 @@ def load(path: str | Path) -> Result:
 
 
 def _damage(dataset: xr.Dataset) -> str:
-    """Return what keeps a dataset from being a result, whatever the version that wrote it."""
+    """Return why a dataset is not a result of any version; empty if it is one."""
     coordinates = "step", "x", "y"
     variables = {name: dataset[name] for name in dataset.variables}
     if problem := damage(variables, (*coordinates, *REQUIRED)):

@@ -1,4 +1,4 @@
-"""How a step and a solver can end."""
+"""The statuses of load steps."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Status(Enum):
 
     @property
     def converged(self) -> bool:
-        """Whether the numbers of the step may be used, if not without a remark."""
+        """Whether the numbers of the step may be used, possibly with a remark."""
         return self in (Status.CONVERGED, Status.NEAREST_AREA, Status.COARSE)
 
     @property

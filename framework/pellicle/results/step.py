@@ -1,4 +1,4 @@
-"""Measured load steps as xarray datasets: the form in which results are kept everywhere."""
+"""Measured load steps as xarray datasets, the form of results everywhere."""
 
 from __future__ import annotations
 
@@ -89,10 +89,10 @@ def step_dataset(
 
 
 class Steps:
-    """The finished load steps of a run, whose fields lie in arrays with room for all steps.
+    """The finished load steps of a run, with fields in arrays that have room for all steps.
 
-    The arrays become the result as they are, so that no field is in memory twice. The system
-    provides their pages as steps are added.
+    The arrays become those of the result, so that no field is in memory twice. The operating system
+    provides their pages only as steps are added.
     """
 
     def __init__(self, number: int) -> None:
@@ -115,7 +115,7 @@ class Steps:
         """Copy a step of `step_dataset` into the arrays, and return it as a view of them."""
         import xarray as xr
 
-        here = slice(len(self), len(self) + 1)
+        index = slice(len(self), len(self) + 1)
         fields = {}
         for name, variable in step.variables.items():
             if variable.ndim > 1:
@@ -123,7 +123,7 @@ class Steps:
                     shape = (self._number, *variable.shape[1:])
                     room = np.empty(shape, variable.dtype)
                     self._fields[str(name)] = xr.Variable(variable.dims, room, variable.attrs)
-                fields[str(name)] = self._fields[str(name)].isel(step=here)
+                fields[str(name)] = self._fields[str(name)].isel(step=index)
                 fields[str(name)].values[:] = variable.values
         self._scalars.append(step.drop_vars(fields))
         return step.assign(fields)
@@ -134,7 +134,7 @@ class Steps:
             self.append(step)
 
     def joined(self) -> xr.Dataset:
-        """Return all steps as one dataset; no step can be appended any more."""
+        """Return all steps as one dataset; no step can be appended afterwards."""
         import xarray as xr
 
         done = slice(len(self))

@@ -1,4 +1,4 @@
-"""What result files of version 1 lack: steps that count from 1, and codes of statuses."""
+"""Result files of version 1, which count steps from 0 and have no status codes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .status import Status
 if TYPE_CHECKING:
     import xarray as xr
 
-_HEADS = {
+_BEGINNINGS = {
     "converged; the contact area": Status.NEAREST_AREA,
     "converged, but the cells": Status.COARSE,
     "converged": Status.CONVERGED,
@@ -27,16 +27,16 @@ _HEADS = {
     "not run": Status.NOT_RUN,
     "failed": Status.FAILED,
 }
-"""How its messages begin."""
+"""Status codes by the beginning of the message."""
 
 
 def completed(content: xr.Dataset) -> xr.Dataset:
-    """Return the content of a result or of a table of version 1 as the present version has it.
+    """Return a result or a table of version 1 as the present version has it.
 
     Raises
     ------
     KeyError
-        A message is not one of version 1.
+        A message is unknown.
     """
     if "step" in content.coords:
         attributes = content["step"].attrs
@@ -53,5 +53,5 @@ def completed(content: xr.Dataset) -> xr.Dataset:
 def _code(message: str) -> str:
     if not message:
         return ""
-    heads = (head for head in _HEADS if message.startswith(head))
-    return _HEADS[next(heads, message)].name
+    beginnings = (text for text in _BEGINNINGS if message.startswith(text))
+    return _BEGINNINGS[next(beginnings, message)].name

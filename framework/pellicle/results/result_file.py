@@ -1,0 +1,109 @@
+"""One HDF5 file of a result or of a table: opened only if it is whole and of a known version."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from pellicle.errors import StorageError
+
+from . import checksum, netcdf, version_1
+
+if TYPE_CHECKING:
+    import h5py
+    import xarray as xr
+
+SCHEMA_VERSION = 2
+"""Version of the layout, in the attribute ``schema_version`` of every file.
+
+Files of version 1 are read: they have no checksum and no status codes, and count steps from 0.
+"""
+
+
+@contextmanager
+def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[h5py.File]:
+    """Yield the HDF5 file of a result or of the table of a study, for reading.
+
+    Raises
+    ------
+    StorageError
+        There is no such file, or it is damaged, of another schema version, or not of this kind.
+    """
+    if not path.is_file():
+        reason = "is a folder" if path.is_dir() else "no such file"
+        raise StorageError(f"{path}: {reason}; give a result file (.h5) that pellicle wrote")
+    with _readable(path), _parsed(path) as file:
+        attributes = netcdf.attributes(file)
+        version = version_of(file)
+        if version is None or not {"configuration", "versions"} <= attributes.keys():
+            raise StorageError(
+                f"{path}: not a result of pellicle; give an .h5 file that pellicle wrote"
+            )
+        if version not in (1, SCHEMA_VERSION):
+            raise StorageError(
+                f"{path}: schema version {version}, and this pellicle reads 1 to {SCHEMA_VERSION}; "
+                f"read it with what wrote it ({attributes['versions']}), or run it again"
+            )
+        if not isinstance(json.loads(attributes["configuration"]), dict):
+            raise ValueError("its configuration is not a table")
+        if kind == "result" and "axes" in attributes:
+            raise StorageError(
+                f"{path}: the table of a study, not a result; open it with xarray, or give one "
+                "of the results in runs/"
+            )
+        if kind == "table" and "axes" not in attributes:
+            raise StorageError(f"{path}: a result, not the table of a study")
+        yield file
+
+
+@contextmanager
+def _parsed(path: Path) -> Iterator[h5py.File]:
+    """Yield the HDF5 file at a path once its checksum has been verified."""
+    import h5py
+
+    is_sealed = checksum.verify(path)
+    with h5py.File(path) as file:
+        if not is_sealed and version_of(file) == SCHEMA_VERSION:
+            raise StorageError(
+                f"{path}: was changed after pellicle wrote it, its checksum is missing; restore it "
+                "from a copy, or run it again"
+            )
+        yield file
+
+
+def version_of(file: h5py.File) -> Any:
+    """Return the schema version of a file, None if it has none."""
+    return netcdf.attributes(file).get("schema_version")
+
+
+def content(file: h5py.File, without: Collection[str] = ()) -> xr.Dataset:
+    """Return a file as the present version has it, without variables along some dimensions."""
+    dataset = netcdf.dataset(file, without=without)
+    if version_of(file) == 1:
+        dataset = version_1.completed(dataset)
+    dataset.attrs = attributes_of(file)
+    return dataset
+
+
+def attributes_of(file: h5py.File) -> dict[str, Any]:
+    """Return the attributes of a file, without its schema version."""
+    return {n: value for n, value in netcdf.attributes(file).items() if n != "schema_version"}
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    """Turn the exceptions that a damaged file causes into a StorageError that says what to do."""
+    try:
+        yield
+    # h5py, numpy, xarray and json raise any of these for a file that is damaged or not HDF5.
+    except (
+        *(OSError, ValueError, LookupError, RuntimeError, AttributeError, TypeError),
+        MemoryError,
+    ) as error:
+        reason = str(error).partition("\n")[0] or "it does not fit in memory"
+        raise StorageError(
+            f"{path}: not a readable result file ({reason}); give an .h5 file that pellicle wrote"
+        ) from None
