@@ -53,13 +53,7 @@ def _component(value: object) -> object:
 
 
 def _indenter(value: object) -> Any:
-    """Return an indenter, or its table where fields are missing that each file may have.
-
-    Raises
-    ------
-    ConfigError, PluginError
-        A field of the table is not allowed.
-    """
+    """Return an indenter, or its table where fields are missing that each file may have."""
     table = _component(value)
     if isinstance(table, HasForceCurve):
         return table
@@ -94,13 +88,7 @@ def _fixed(value: object) -> dict[str, float]:
 
 
 def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the content of a file with its paths as seen from the current folder.
-
-    Raises
-    ------
-    ConfigError
-        No file matches a pattern.
-    """
+    """Return the content of a file with its paths as seen from the current folder."""
     curves, cache = data.get("curves"), data.get("cache")
     curves = [curves] if isinstance(curves, str) else curves
     if isinstance(curves, list) and all(isinstance(curve, str) for curve in curves):
@@ -257,25 +245,13 @@ class FitConfig(FromFile, Calibration):
         return Calibration(spring_constant=self.spring_constant, sensitivity=self.sensitivity)
 
     def sources(self, curves: Curves | None = None) -> list[Source]:
-        """Return the curves, or other ones that are given, as they are read.
-
-        Raises
-        ------
-        ConfigError, StorageError
-            As for `gather`.
-        """
+        """Return the curves, or other ones that are given, as they are read."""
         return gather(
             self.curves if curves is None else curves, self.segment, self.calibration, self.per_file
         )
 
     def indenter_with(self, fields: Mapping[str, Any]) -> Indenter | HasForceCurve:
-        """Return the indenter with the fields of one curve in place of its own.
-
-        Raises
-        ------
-        ConfigError, PluginError
-            A field is missing or not allowed.
-        """
+        """Return the indenter with the fields of one curve in place of its own."""
         indenter: Any = self.indenter
         if fields and not isinstance(indenter, (Indenter, Mapping)):
             raise ConfigError(f"{', '.join(fields)} given beside an indenter that is complete")
@@ -289,13 +265,7 @@ class FitConfig(FromFile, Calibration):
             raise error.within("indenter") from None
 
     def solid_under(self, indenter: Indenter | HasForceCurve) -> Solid | None:
-        """Return the solid to simulate; None if there is no kernel and none is needed.
-
-        Raises
-        ------
-        ConfigError
-            A kernel is given beside a force curve that is not that of an indenter.
-        """
+        """Return the solid to simulate; None if there is no kernel and none is needed."""
         if self._solid is None:
             closed = isinstance(indenter, HasForceCurve)
             return None if closed else solid(DEFAULT_KERNEL, self.poissons_ratio)

@@ -101,13 +101,7 @@ def gather(
 
 
 def fields_of_files(per_file: Mapping[str, Sequence[Any]], count: int) -> list[dict[str, Any]]:
-    """Return the fields of each file.
-
-    Raises
-    ------
-    ConfigError
-        A list does not have one value for each file.
-    """
+    """Return the fields of each file."""
     for name, values in per_file.items():
         if len(values) != count:
             raise ConfigError(
@@ -118,13 +112,7 @@ def fields_of_files(per_file: Mapping[str, Sequence[Any]], count: int) -> list[d
 
 
 def expanded(given: str | Path, folder: str | Path = "") -> list[Path]:
-    """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is.
-
-    Raises
-    ------
-    ConfigError
-        No file matches.
-    """
+    """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is."""
     path = Path(folder, given)
     if path.exists() or not _PATTERN.search(str(given)):
         return [path]
@@ -204,11 +192,6 @@ def manifest(path: Path) -> list[dict[str, str]] | None:
     """Return the rows of a table that lists files, values with their units; None if it is not one.
 
     Its header is such as ``file,radius [um]``; empty cells are left out.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be read.
     """
     if path.suffix.lower() not in _TEXT or (cells := _cells(path)) is None:
         return None
