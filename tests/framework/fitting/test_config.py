@@ -165,6 +165,7 @@ def test_schema() -> None:
         ('[indenter]\ntype = "sphere"\nradius = "5 N"', "indenter.radius: '5 N' measures"),
         ('[indenter]\ntype = "sphere"\nradios = 1', "indenter.radios: is not a field here"),
         ('curves = ["*.csv"]\nindenter = "sphere"', "*.csv: matches no file"),
+        ('curves = ["**.csv"]\nindenter = "sphere"', "**.csv: matches no file"),
         ('curves = ["a.csv"]\nindenter = "sphere"', "indenter.radius: is missing"),
         ('curves = [1]\nindenter = "sphere"', "curves.0: 1 is not allowed"),
         ('indenter = "sphere"\nfix = 1', "fix: 1 is not a table"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -116,8 +117,10 @@ def expanded(given: str | Path, folder: str | Path = "") -> list[Path]:
     path = Path(folder, given)
     if path.exists() or not _PATTERN.search(str(given)):
         return [path]
-    anchor = Path(given).anchor
-    files = sorted(Path(anchor or folder).glob(str(Path(given).relative_to(anchor))))
+    anchor, files = Path(given).anchor, []
+    # A pattern such as "**.csv" is not one, before Python 3.13.
+    with suppress(ValueError):
+        files = sorted(Path(anchor or folder).glob(str(Path(given).relative_to(anchor))))
     if not files:
         raise ConfigError(f"{given}: matches no file; give files, or a folder of them", "curves")
     return files
