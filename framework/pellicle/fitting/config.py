@@ -132,20 +132,17 @@ class FitConfig(FromFile, Calibration):
     fix: Annotated[
         dict[str, float],
         BeforeValidator(_fixed),
-        Field(
-            description="parameters that are not fitted, with their values", default_factory=dict
-        ),
-    ]
+        Field(description="parameters that are not fitted, with their values"),
+    ] = Field(default_factory=dict)
     baseline: Baseline = Field("none", description="what is fitted of the force before contact")
     segment: Segment = Field("approach", description="the pass that is fitted")
     per_file: Annotated[
         dict[str, tuple[Any, ...]],
         Field(
             description="fields of the indenter, spring_constant or sensitivity, each with a list "
-            "of one value for each file",
-            default_factory=dict,
+            "of one value for each file"
         ),
-    ]
+    ] = Field(default_factory=dict)
     pool: bool = Field(False, description="whether all curves share one modulus and one tension")
     contact_points: bool = Field(
         False, description="whether a pool gives the interval of each contact point too"
@@ -154,11 +151,8 @@ class FitConfig(FromFile, Calibration):
         Executor,
         FromRegistry(),
         BeforeValidator(_component),
-        Field(
-            description="what carries out many fits and simulations",
-            default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}),
-        ),
-    ]
+        Field(description="what carries out many fits and simulations"),
+    ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
     cache: Annotated[Path | None, Field(description="folder that keeps simulated force curves")] = (
         None
     )
