@@ -42,8 +42,6 @@ ExecutorLike = str | Mapping[str, Any] | Executor
 
 FIXABLE = {parameter.name: parameter for parameter in (CONTACT_POINT, MODULUS, TENSION)}
 """Parameters that can be fixed, by their names."""
-
-
 _COMPONENTS = ("indenter", "kernel", "executor")
 
 
@@ -210,9 +208,11 @@ class FitConfig(FromFile, Calibration):
             A value is not allowed, or the file cannot be read.
         """
         if isinstance(base, (str, Path)):
-            folder = Path(base).parent
+            folder, data = Path(base).parent, read_toml(Path(base))
+            if options.get("curves") is not None:
+                data.pop("curves", None)
             with paths_relative_to(folder):
-                return cls.merged(_from_folder(read_toml(Path(base)), folder), overrides, **options)
+                return cls.merged(_from_folder(data, folder), overrides, **options)
         if isinstance(base, FitConfig):
             base = {name: getattr(base, name) for name in base.model_fields_set}
         options = {name: value for name, value in options.items() if value is not None}

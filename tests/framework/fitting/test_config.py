@@ -113,11 +113,12 @@ def test_paths_start_from_the_folder_of_the_file(tmp_path: Path) -> None:
 def test_options_replace_values_of_the_file(cli: Cli) -> None:
     """The command line wins over the file, and --set over the other options."""
     measure(Path("a.csv"))
-    Path("bead.toml").write_text(f'curves = "b.csv"{FILE}', encoding="utf-8")
+    Path("bead.toml").write_text(f'curves = "nothing/*.csv"{FILE}', encoding="utf-8")
     arguments = ("bead.toml", "a.csv", "--radius", "6 um", "--baseline", "none", "--json")
     said = json.loads(cli(*arguments, "--set", "indenter.radius=7 um").stdout)["configuration"]
     assert said["indenter"] == {"type": "sphere", "radius": 7e-6}
     assert (said["baseline"], said["curves"]) == ("none", ["a.csv"])
+    Path("bead.toml").write_text(FILE, encoding="utf-8")
     config = pl.FitConfig.from_toml("bead.toml", ['indenter.type="paraboloid"'])
     changed = pl.FitConfig.merged(config, radius=["1 um", "2 um"], baseline="slope")
     assert changed.indenter == pl.indenter("paraboloid", radius="5 um")
