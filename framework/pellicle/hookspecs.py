@@ -6,7 +6,16 @@ from collections.abc import Callable
 
 import pluggy
 
-from .components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver, Suite
+from .components import (
+    AreaCorrection,
+    Executor,
+    Indenter,
+    Kernel,
+    Output,
+    Prescription,
+    Solver,
+    Suite,
+)
 
 hookspec = pluggy.HookspecMarker("pellicle")
 hookimpl = pluggy.HookimplMarker("pellicle")
@@ -40,6 +49,11 @@ def register_outputs(register: Callable[[type[Output]], None]) -> None:
 @hookspec
 def register_executors(register: Callable[[type[Executor]], None]) -> None:
     """Call ``register`` with each executor class of the plugin."""
+
+
+@hookspec
+def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
+    """Call ``register`` with each prescription class of the plugin."""
 
 
 @hookspec

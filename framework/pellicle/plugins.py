@@ -19,9 +19,10 @@ from typing import Any, Literal, TypeVar, cast, get_args, get_origin
 import pluggy
 
 from . import hookspecs
-from .components import FAMILIES, Component, Suite
+from .components import FAMILIES, Component, Prescription, Suite
 from .components.foreign_code import diverted_output, noted_interrupts
 from .errors import ConfigError, PellicleError, PluginError
+from .loading import OPTIONS
 from .model.messages import nearest
 from .units import quantity_of
 
@@ -34,6 +35,7 @@ _HOOK_OF_FAMILY = {
     "correction": "register_corrections",
     "output": "register_outputs",
     "executor": "register_executors",
+    "prescription": "register_prescriptions",
 }
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 
@@ -282,6 +284,21 @@ def checked_type(component: Any, family: str) -> str:
             raise PluginError(f"{name}.{field_} lacks Field(description=…) with its unit")
         if (quantity := quantity_of(its)) and not quantity.has_known_unit:
             raise PluginError(f"{name}.{field_}: Quantity({quantity.unit!r}) is of no known unit")
+    if issubclass(component, Prescription):
+        _check_prescription(component, str(names[0]))
     # Raises on a field whose type is unknown or has no JSON: it would spoil the schema of all.
     component.model_json_schema()
     return str(names[0])
+
+
+def _check_prescription(component: type[Prescription], type_: str) -> None:
+    """Raise PluginError on a prescription that ``[loading]`` cannot hold."""
+    name = component.__name__
+    if not isinstance(getattr(component, "unit", None), str):
+        raise PluginError(f"{name} lacks the class variable unit: the SI unit of its values")
+    if not component.quantity().has_known_unit:
+        raise PluginError(f"{name}.unit is {component.unit!r}, which is not a known unit")
+    if taken := {type_, *component.model_fields} & OPTIONS:
+        raise PluginError(f"{name}: {min(taken)!r} is an option of [loading]; choose another name")
+    if type_ in component.model_fields:
+        raise PluginError(f"{name} has a field of the name of its type; choose another name")

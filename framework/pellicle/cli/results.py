@@ -29,9 +29,10 @@ def print_steps(result: Result) -> None:
 
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    requested = [name for name in names_of("requested") if name in data]
-    if "contact_radius" in result.configuration["loading"]:
-        requested.insert(0, "contact_radius")
+    shown = {"depth", "force", *areas, *names_of("other")}
+    loading = [name for name in result.configuration["loading"] if name in data]
+    requested = [name for name in (*loading, "stiffness") if name in {*data} - shown]
+    requested = [*dict.fromkeys(reversed(requested))][::-1]
     names = ["depth", "force", *areas, *requested, "iterations"]
     coarse = dict(result.coarse())
     rows = []

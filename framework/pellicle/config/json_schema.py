@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from typing import Any
 
 from pydantic import BaseModel
@@ -10,6 +11,7 @@ from pydantic.json_schema import models_json_schema
 from pellicle.plugins import registry
 
 from .component_field import _FAMILY
+from .loading import Loading, loading_model
 from .run import Run
 from .study import Study
 
@@ -20,14 +22,19 @@ def json_schema(model: type[BaseModel]) -> dict[str, Any]:
     """Return the JSON schema of a model whose fields take any component that is installed.
 
     Where such a field is the model's own the components are written out; within components, which
-    may hold others of their own family without end, they are referred to.
+    may hold others of their own family without end, they are referred to. The loading is one table
+    for each prescription.
     """
     families = registry().components
     installed = [each for found in families.values() for each in found.values()]
-    models = [model, *(registered.component for registered in installed)]
+    loadings = [loading_model(type_) for type_ in families["prescription"]]
+    models = [model, *(registered.component for registered in installed), *loadings]
     refs, made = models_json_schema([(each, "validation") for each in models])
     names = {each: refs[each, "validation"]["$ref"].rpartition("/")[2] for each in models}
     definitions: dict[str, Any] = made["$defs"]
+    if Loading.__name__ in definitions:
+        choices = [definitions.pop(names[loading]) for loading in loadings]
+        definitions[Loading.__name__] = {"description": inspect.getdoc(Loading), "oneOf": choices}
     referred: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
     written: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
     for registered in installed:

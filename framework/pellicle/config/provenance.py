@@ -28,7 +28,10 @@ def provenance(run: Run) -> dict[str, str]:
 def now_with(runs: Iterable[Run]) -> dict[str, str]:
     """Return the date, and the versions of what solves ``runs``, as attributes of a result."""
     used = {
-        type(value) for run in runs for _, value, _ in walk(run) if isinstance(value, Component)
+        type(value)
+        for run in runs
+        for value in (run.loading.prescription, *(value for _, value, _ in walk(run)))
+        if isinstance(value, Component)
     }
     owners = {
         registered.origin.distribution: registered.origin.version

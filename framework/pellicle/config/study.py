@@ -14,8 +14,8 @@ from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from pellicle import memory
 from pellicle.components import Executor
+from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, shown
-from pellicle.loading import ON_DEMAND
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate
 from pellicle.model.from_file import FromFile, read
 from pellicle.model.input_path import paths_relative_to
@@ -23,11 +23,10 @@ from pellicle.model.paths import get
 from pellicle.model.ranges import Axes, expand
 from pellicle.plugins import registry
 from pellicle.results.derived import constants
-from pellicle.results.variables import FIELDS, VARIABLES, corrected_area
+from pellicle.results.variables import FIELDS, VARIABLES, corrected_area, names_of
 
 from .component_field import FromRegistry
 from .coordinates import Coordinate, as_json, coordinate
-from .output_conflicts import refuse_clashes_with_study
 from .points import Point, points_of
 from .run import Run
 
@@ -117,7 +116,7 @@ class Study(FromFile):
             self._points = tuple(points_of(self.run, self.dimensions))
         self._check_derived()
         try:
-            refuse_clashes_with_study(self.points[0].run.outputs or ())
+            refuse_shared_files(self.points[0].run.outputs or (), of_study=True)
         except ConfigError as error:
             raise error.within("run") from None
         return self
@@ -240,7 +239,8 @@ class Study(FromFile):
         run = self.points[0].run
         texts = {name for name, variable in VARIABLES.items() if variable.type == "text"}
         known = {*VARIABLES, *constants(json.loads(run.to_json()))}
-        known -= texts | (ON_DEMAND - run.loading.brings)
+        known -= texts | {*names_of("requested")}
+        known |= run.loading.variables
         known |= {corrected_area(correction.type_name).name for correction in run.corrections}
         known |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         reserved = {*FUNCTIONS, *CONSTANTS, *texts, "run", "step", "x", "y"}
