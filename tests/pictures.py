@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import IO
+from typing import BinaryIO
 
 import matplotlib.image
 import numpy as np
@@ -11,18 +11,20 @@ import numpy as np
 from pellicle.arrays import Array
 
 
-def pixels(picture: Path | IO[bytes]) -> Array:
+def pixels(picture: Path | BinaryIO) -> Array:
     """Return red, green and blue of each pixel of a PNG, from 0 to 1."""
-    return np.asarray(matplotlib.image.imread(picture), dtype=float)[..., :3]
+    image: Array = matplotlib.image.imread(picture)[..., :3].astype(np.float64)
+    return image
 
 
-def colourfulness(picture: Path | IO[bytes]) -> Array:
+def colourfulness(picture: Path | BinaryIO) -> Array:
     """Return how far each pixel is from grey: axes, their grid and text are 0."""
-    return np.ptp(pixels(picture), axis=-1)
+    chroma: Array = np.ptp(pixels(picture), axis=-1)
+    return chroma
 
 
 def drawn_width(
-    picture: Path | IO[bytes],
+    picture: Path | BinaryIO,
     columns: tuple[float, float] = (0.0, 1.0),
     rows: tuple[float, float] = (0.0, 1.0),
 ) -> float:

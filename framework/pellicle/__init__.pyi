@@ -1,3 +1,5 @@
+__all__: list[str]
+
 from . import analysis as analysis
 from .components import AreaCorrection as AreaCorrection
 from .components import Case as Case

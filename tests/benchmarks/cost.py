@@ -115,13 +115,11 @@ def measure(
     }
 
 
-def _plane_of_operator(operator: object) -> tuple[int, ...]:
-    return tuple(getattr(operator, "_padded", None) or operator.grid.shape)  # type: ignore[attr-defined]
+def _plane_of_operator(operator: Any) -> tuple[int, ...]:
+    return tuple(getattr(operator, "_padded", None) or operator.grid.shape)
 
 
-def _count(
-    owner: type, method: str, counts: Counter[object], shape: Callable[[object], object]
-) -> None:
+def _count(owner: type, method: str, counts: Counter[Any], shape: Callable[[Any], object]) -> None:
     """Count the calls of a method by the shape and type of their transforms."""
     original = getattr(owner, method)
 

@@ -96,7 +96,7 @@ def _shape(type_: str) -> HasForceCurve:
 
 def _ball(depth: Array, _: np.random.Generator) -> Array:
     largest = _shape("paraboloid").force_curve(np.array([_DEEP * RADIUS]), 0.0).force[0]
-    return _shape("sphere").force_curve(depth * _DEEP * RADIUS, 0.0).force / largest
+    return np.asarray(_shape("sphere").force_curve(depth * _DEEP * RADIUS, 0.0).force / largest)
 
 
 def _deflection(depth: Array, _: np.random.Generator) -> Array:
@@ -107,7 +107,7 @@ def _deflection(depth: Array, _: np.random.Generator) -> Array:
 
 def _drift(depth: Array, random: np.random.Generator) -> Array:
     across = random.choice([-1, 1]) * random.uniform(0.01, 0.05)
-    return _hertz(depth) + across * (depth - depth[0]) / np.ptp(depth)
+    return np.asarray(_hertz(depth) + across * (depth - depth[0]) / np.ptp(depth))
 
 
 def _clean(depth: Array, _: np.random.Generator) -> Array:
@@ -127,7 +127,7 @@ def _pink(random: np.random.Generator) -> Array:
     frequencies[0] = np.inf
     parts = random.standard_normal((2, frequencies.size)) / np.sqrt(frequencies)
     noise: Array = np.fft.irfft(parts[0] + 1j * parts[1])[:POINTS]
-    return (noise - noise.mean()) / noise.std()
+    return np.asarray((noise - noise.mean()) / noise.std())
 
 
 RIVALS = {

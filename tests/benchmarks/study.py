@@ -62,7 +62,11 @@ def study_of(run: dict[str, Any], runs: int, executor: str, workers: int, addres
     import pellicle as pl
 
     tension = run["kernel"]["tension"]
-    more = {"serial": {}, "processes": {"workers": workers}, "dask": {"address": address}}
+    more: dict[str, dict[str, Any]] = {
+        "serial": {},
+        "processes": {"workers": workers},
+        "dask": {"address": address},
+    }
     how = {"type": executor, **more[executor]}
     values = [tension * (1 + 1e-9 * number) for number in range(runs)]
     return pl.Study(run=run, vary={"kernel.tension": values}, executor=how)
@@ -178,7 +182,8 @@ def _measured(what: str, options: argparse.Namespace, **changes: Any) -> dict[st
         check=True,
         cwd=Path(__file__).parent,
     )
-    return json.loads(done.stdout.splitlines()[-1])  # type: ignore[no-any-return]
+    times: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+    return times
 
 
 TABLES = {"efficiency": print_efficiency, "overhead": print_overhead, "cost": print_cost}

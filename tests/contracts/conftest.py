@@ -7,10 +7,10 @@ A test that takes ``kernel``, ``indenter``, … runs on each example of that fam
 from typing import Any
 
 import pytest
-from tests.contracts.examples import EXAMPLES
 
 from pellicle.components import FAMILIES, Component
 from pellicle.plugins import registry
+from tests.contracts.examples import EXAMPLES
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

@@ -16,10 +16,13 @@ from pellicle.plugins import registry
 @pytest.fixture(scope="module")
 def schemas() -> dict[str, jsonschema.Draft202012Validator]:
     """Return a validator of each family's tables, as a run or a study has them."""
+
+    def validator(family: str, base: Any) -> jsonschema.Draft202012Validator:
+        table = create_model(family, it=(Annotated[base, FromRegistry()], ...))
+        return jsonschema.Draft202012Validator(json_schema(table))
+
     return {
-        family: jsonschema.Draft202012Validator(
-            json_schema(create_model(family, it=(Annotated[base, FromRegistry()], ...)))
-        )
+        family: validator(family, base)
         for family, base in FAMILIES.items()
         if registry().components[family]
     }

@@ -16,13 +16,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.docs.blocks import PAGES, ROOT, Block, blocks
 from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli import app
 from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
 from pellicle.model import ranges as axes
+from tests.docs.blocks import PAGES, ROOT, Block, blocks
 
 LANGUAGES = {"python", "pycon", "toml", "console", "sh"}
 DIRECTIVES = {"{eval-rst}", "{toctree}"}
@@ -173,7 +173,7 @@ class Reader:
             for file in cached.iterdir():
                 file.unlink()
         importlib.invalidate_caches()
-        pl.registry.cache_clear()  # type: ignore[attr-defined]
+        pl.registry.cache_clear()
 
 
 def check_part(data: dict[str, Any]) -> None:

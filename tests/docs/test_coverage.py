@@ -10,14 +10,14 @@ from typing import Any
 import generated
 import pytest
 import typer.main
-from tests.docs.blocks import DOCS, PAGES, ROOT
 
 import pellicle as pl
 from pellicle import hookspecs
 from pellicle.cli import app
+from tests.docs.blocks import DOCS, PAGES, ROOT
 
 HOOKS = [name for name in vars(hookspecs) if name.startswith("register_")]
-COMMANDS: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+COMMANDS: dict[str, Any] = vars(typer.main.get_command(app))["commands"]
 COMPONENTS = [
     registered for family in pl.registry().components.values() for registered in family.values()
 ]

@@ -9,8 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from tests.docs.blocks import ROOT
-from tests.pictures import pixels
 from typer.testing import CliRunner
 
 from pellicle.cli import app
@@ -18,6 +16,8 @@ from pellicle.config.study import Study, from_toml
 from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.outputs.compliance import of_cells_along_x
+from tests.docs.blocks import ROOT
+from tests.pictures import pixels
 
 STUDIES = ROOT / "docs/studies"
 RADIUS, MODULUS, DEPTH = 1e-3, 10e3, 50e-6

@@ -21,7 +21,7 @@ from pellicle.analysis import (
 from pellicle_plugins.analytic import hertz
 
 HALF_SPACE = {"type": "half_space", "reduced_modulus": "10 kPa"}
-ROUGH = {
+ROUGH: dict[str, Any] = {
     "grid": {"points": 48, "size": "1 mm"},
     "kernel": {**HALF_SPACE, "type": "tensed_membrane", "tension": "10 mN/m"},
     "indenter": {

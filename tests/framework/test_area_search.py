@@ -49,7 +49,7 @@ def test_whole_cells_are_met(power: float, start: float | None) -> None:
     """Where each number of cells can be had, the number is met from wherever it starts."""
 
     def cells(force: float) -> int:
-        return min(max(round(40 * force**power), 1), 100)
+        return min(max(round(40 * float(force**power)), 1), 100)
 
     for area in (0.5, 3.0, 40.4, 99.6):
         found = search(cells, area, start)

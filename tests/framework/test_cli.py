@@ -11,12 +11,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from click.testing import Result
-from tests.pictures import drawn_width
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 import pellicle as pl
 from pellicle.cli import app
+from tests.pictures import drawn_width
 
 SMALL = ["--set", "grid.points=32", "--set", "loading.depth=['10 um', '20 um']"]
 Cli = Callable[..., Result]

@@ -67,7 +67,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.fixture(params=VARIANTS.values(), ids=VARIANTS)
+@pytest.fixture(params=list(VARIANTS.values()), ids=list(VARIANTS))
 def run(request: pytest.FixtureRequest) -> pl.Run:
     """Return runs with every kind of component."""
     return pl.Run(**(BASE | request.param))
@@ -332,7 +332,7 @@ def _fields(described: dict[str, Any], definitions: dict[str, Any]) -> dict[str,
         lambda: pl.kernel("half_space"),
         lambda: pl.indenter("sphere", radius=-1),
         lambda: pl.solver("conjugate_gradient", tolerance=2),
-        lambda: pl.Run(),
+        lambda: pl.Run(),  # type: ignore[call-arg]
         lambda: pl.Loading(),
     ],
 )

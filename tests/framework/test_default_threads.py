@@ -28,5 +28,5 @@ def test_threads_are_taken_where_transforms_are_large(
 ) -> None:
     """All cores from 2048² transformed points on, of which a free grid has four for each cell."""
     monkeypatch.setattr(os, "sched_getaffinity", lambda pid: set(range(6)), raising=False)
-    grid = pl.Grid(points=points, size=1.0, boundary=boundary)  # type: ignore[arg-type]
+    grid = pl.Grid(points=points, size=1.0, boundary=boundary)
     assert default_threads(grid) == threads

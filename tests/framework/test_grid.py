@@ -62,4 +62,4 @@ def test_bad_points(points: object) -> None:
 def test_size_beyond_numbers(size: object) -> None:
     """A domain whose area over- or underflows is refused in words."""
     with pytest.raises(pl.ConfigError, match=r"^size: .*check the unit"):
-        pl.Grid(points=8, size=size)  # type: ignore[arg-type]
+        pl.Grid(points=8, size=size)

@@ -47,7 +47,7 @@ def layer(h: float, nu: float) -> Symbol:
         direct = -np.expm1(-2 * t) - 2 * t * decay
         top = np.where(t < 0.5, 2 * decay * series, direct) - (a - 1) * np.expm1(-2 * t)
         bottom = a * (1 + decay**2) + (t**2 + 8 * nu * (2 * nu - 3) + 10) * decay
-        return 2 / q * top / bottom
+        return np.asarray(2 / q * top / bottom)
 
     return symbol
 
@@ -184,11 +184,11 @@ def test_gaussian_pressure_in_both_spaces(symbol: Symbol) -> None:
     kernel = Tabulated(symbol, 1e-4, 40.0)
 
     def in_fourier(q: float) -> float:
-        return float(symbol(np.array([q]))[0]) * q * np.exp(-(q**2) / 2)
+        return float(symbol(np.array([q]))[0] * q * np.exp(-(q**2) / 2))
 
     def in_real(log_r: float) -> float:
         r = np.exp(log_r)
-        return float(kernel.radial_primitive(np.array([r]))[0]) * r**2 * np.exp(-(r**2) / 2)
+        return float(kernel.radial_primitive(np.array([r]))[0] * r**2 * np.exp(-(r**2) / 2))
 
     expected = sum(
         quad(in_fourier, a, b, epsabs=0, epsrel=1e-11)[0] for a, b in [(0, 0.1), (0.1, 2), (2, 12)]

@@ -19,7 +19,7 @@ from pellicle_plugins.kernels.half_space import HalfSpace
 class Iterate(NamedTuple):
     """An index into what is played, and the progress up to there."""
 
-    index: int
+    place: int
     progress: Progress
 
 
@@ -37,7 +37,7 @@ class Played(IterativeSolver):
 
     def step(self, problem: Problem, state: Iterate) -> Iterate:
         """Return the next iterate."""
-        index = state.index + 1
+        index = state.place + 1
         return Iterate(index, state.progress.after(*self.measures(index)))
 
     def measures(self, index: int) -> Sequence[float]:
@@ -46,7 +46,7 @@ class Played(IterativeSolver):
 
     def residual(self, problem: Problem, state: Iterate) -> float:
         """Return the residual of an iterate."""
-        return self.residuals[state.index]
+        return self.residuals[state.place]
 
     def pressure(self, state: Iterate) -> Array:
         """Return no pressure."""

@@ -51,7 +51,7 @@ def _rough(points: int, cells: float) -> dict[str, Any]:
 
 
 FULL = {"indenter": _rough(1024, 16), "loading": {"mean_pressure": 5e3}}
-ALL_OUTPUTS = {"outputs": [{"type": name} for name in OUTPUTS]}
+ALL_OUTPUTS: dict[str, Any] = {"outputs": [{"type": name} for name in OUTPUTS]}
 KINDS = {
     "free": _kind(1024, kernel=SKIN),
     "free, contact over most of the domain": _kind(1024, loading={"depth": 2e-4}),
@@ -94,7 +94,8 @@ def _growths(threads: int, names: Iterable[str]) -> dict[str, int]:
         text=True,
         check=True,
     )
-    return json.loads(done.stdout)
+    growths: dict[str, int] = json.loads(done.stdout)
+    return growths
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,7 @@ import pytest
 
 from pellicle import Grid
 from pellicle.report.page import (
+    Block,
     Cell,
     Code,
     Column,
@@ -63,7 +64,7 @@ def maps(label: str = "first") -> Maps:
 
 def full(text: str) -> Parsed:
     """Return a page with ``text`` wherever text goes."""
-    blocks = [
+    blocks: list[Block] = [
         Text(text),
         Notice(text, False, [text]),
         Table(text, [Column(text, text, text), Column("n")], [[Cell(text, frame=0), text]]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -11,7 +12,7 @@ import xarray as xr
 
 from pellicle.errors import StorageError
 from pellicle.files import check_writable
-from pellicle.results import storage
+from pellicle.results import netcdf, storage
 
 ATTRIBUTES = {"configuration": '{"a": "τ₀"}', "versions": "pellicle 0", "title": "τ₀"}
 
@@ -154,9 +155,12 @@ def test_segments(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(storage, "_SMALL", 0)
     joins: list[int] = []
     plain = storage._join
-    monkeypatch.setattr(
-        storage, "_join", lambda path, *more: (joins.append(len(more[0])), plain(path, *more))
-    )
+
+    def join(path: Path, *more: Any) -> Any:
+        joins.append(len(more[0]))
+        return plain(path, *more)
+
+    monkeypatch.setattr(storage, "_join", join)
     storage.write(steps(0), path)
     for index in range(1, 20):
         storage.append(steps(index), path)
@@ -234,7 +238,7 @@ def test_lack_of_memory_is_reported(path: Path, monkeypatch: pytest.MonkeyPatch)
     def exhaust(*arguments: object, **options: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(storage.netcdf, "dataset", exhaust)
+    monkeypatch.setattr(netcdf, "dataset", exhaust)
     with pytest.raises(StorageError, match="does not fit in memory"):
         storage.read(path)
 

@@ -84,4 +84,4 @@ def test_public_name_resolves(name: str) -> None:
 def test_unknown_name_is_an_attribute_error() -> None:
     """A name that does not exist fails as in any module."""
     with pytest.raises(AttributeError, match="nonsense"):
-        _ = pellicle.nonsense
+        _ = pellicle.nonsense  # type: ignore[attr-defined]

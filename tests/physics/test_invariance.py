@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+import xarray as xr
 
 import pellicle as pl
 
 TOLERANCE = 1e-9
 
 
-def _step(run: dict[str, object], solver: str):
+def _step(run: dict[str, Any], solver: str) -> xr.Dataset:
     chosen = {"type": solver, "tolerance": TOLERANCE}
     return pl.run(pl.Run(**run, solver=chosen), progress=False).dataset.isel(step=0)
 
 
-def _quadric(radius_x: float, radius_y: float, boundary: str = "free") -> dict[str, object]:
+def _quadric(radius_x: float, radius_y: float, boundary: str = "free") -> dict[str, Any]:
     return {
         "grid": {"points": 48, "size": 0.4, "boundary": boundary},
         "kernel": {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.02},

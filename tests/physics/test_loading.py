@@ -44,7 +44,9 @@ CASES: dict[str, tuple[dict[str, Any], float]] = {
 THERE_AND_BACK = [0.3, 0.6, 1.0, 0.6, 0.3]
 
 
-def _solved(base: dict[str, Any], solver: str, tolerance: float = 1e-8, **loading: Any):
+def _solved(
+    base: dict[str, Any], solver: str, tolerance: float = 1e-8, **loading: Any
+) -> xr.Dataset:
     made = {**base, "loading": loading, "solver": {"type": solver, "tolerance": tolerance}}
     return pl.run(made, progress=False).dataset
 

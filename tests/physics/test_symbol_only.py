@@ -66,7 +66,8 @@ def test_a_thin_layer_is_a_winkler_foundation(solver: str) -> None:
             t = np.minimum(2 * q * h, 700)
             decay = np.exp(-t)
             # (cosh t − 1)/(sinh t + t), over eᵗ/2.
-            return 2 / (modulus * q) * np.expm1(-t) ** 2 / (2 * t * decay - np.expm1(-2 * t))
+            shape = np.expm1(-t) ** 2 / (2 * t * decay - np.expm1(-2 * t))
+            return np.asarray(2 / (modulus * q) * shape)
 
     run = pl.Run(
         grid={"points": 96, "size": 2.4 * a},

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.optimize import brentq
 
 import pellicle as pl
@@ -13,7 +16,9 @@ from pellicle_plugins.analytic.hertz import ellipse, sphere
 from pellicle_plugins.analytic.westergaard import wavy
 
 
-def _step(solver: str, points: object, size: object, indenter: dict[str, object], **loading: float):
+def _step(
+    solver: str, points: Any, size: Any, indenter: dict[str, Any], **loading: Any
+) -> xr.Dataset:
     run = pl.Run(
         grid={"points": points, "size": size},
         kernel={"type": "half_space", "reduced_modulus": 1.0},

@@ -10,10 +10,12 @@ from .correction import AreaCorrection as AreaCorrection
 from .executor import AnyTask as AnyTask
 from .executor import Executor as Executor
 from .executor import Outcome as Outcome
+from .executor import Outcomes as Outcomes
 from .executor import Report as Report
 from .executor import Say as Say
 from .executor import Task as Task
 from .executor import Threads as Threads
+from .executor import Work as Work
 from .executor import Workers as Workers
 from .indenter import Footprint as Footprint
 from .indenter import ForceCurve as ForceCurve

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import (
-    ClassVar,
-)
+from typing import ClassVar
 
 from pellicle.arrays import Mask
 
@@ -13,7 +11,7 @@ from .base import Component
 
 
 class AreaCorrection(Component):
-    """Corrects the area of contact for the discretisation."""
+    """A correction of the contact area for the discretisation."""
 
     family: ClassVar[str] = "correction"
 
@@ -21,12 +19,13 @@ class AreaCorrection(Component):
     def area(self, contact: Mask, spacing: tuple[float, float]) -> float:
         """Return the area of contact [m²].
 
-        ``contact`` of shape (nx, ny) tells the cells in contact; ``spacing`` [m] their edges.
+        ``contact``, of shape (nx, ny), is true for cells in contact; ``spacing`` is the size of a
+        cell along x and y [m].
         """
 
     def periodic_area(self, contact: Mask, spacing: tuple[float, float]) -> float:
         """Return the area of contact [m²] on a periodic domain, whose opposite edges touch.
 
-        That of `area` here; a correction that looks at neighbouring cells overrides this.
+        The default is `area`; a correction that compares neighbouring cells overrides this.
         """
         return self.area(contact, spacing)

@@ -5,13 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import (
-    Annotated,
-    Any,
-    ClassVar,
-    Protocol,
-    TypeVar,
-)
+from typing import Annotated, Any, ClassVar, Protocol, TypeVar
 
 from pydantic import BeforeValidator, Field
 
@@ -21,20 +15,17 @@ from .base import Component
 
 _Count = Annotated[int, Field(ge=1)]
 
-
 Threads = Annotated[
     int,
     BeforeValidator(partial(whole_number, unit="threads"), json_schema_input_type=_Count),
 ]
 """A number of threads ≥ 1; text, fractions and true are refused."""
 
-
 Workers = Annotated[
     int,
     BeforeValidator(partial(whole_number, unit="workers"), json_schema_input_type=_Count),
 ]
 """A number of workers ≥ 1, likewise."""
-
 
 Outcome = TypeVar("Outcome")
 
@@ -44,24 +35,25 @@ class Task(Protocol):
 
     @property
     def name(self) -> str:
-        """A line for people."""
+        """One line for people."""
         ...
 
     @property
     def memory(self) -> int:
-        """Memory that the task takes while it runs [bytes], estimated."""
+        """Estimated memory of the running task [bytes]."""
         ...
 
 
 AnyTask = TypeVar("AnyTask", bound=Task)
 
-
 Report = Callable[[AnyTask, Any], None]
-"""Called in the calling process with a task and what its work said."""
-
-
+"""Called in the calling process with a task and a message of its work."""
 Say = Callable[[Any], None]
-"""Called by work, wherever it runs, with something small that pickles, for `Report`."""
+"""Called by work, wherever it runs, with a small message that pickles, for `Report`."""
+Work = Callable[[AnyTask, Say], Outcome]
+"""A picklable function that executes a task."""
+Outcomes = Iterator[tuple[AnyTask, Outcome | Exception]]
+"""Tasks with what their work returned or raised."""
 
 
 class Executor(Component):
@@ -76,14 +68,11 @@ class Executor(Component):
 
     @abstractmethod
     def map(
-        self,
-        work: Callable[[AnyTask, Say], Outcome],
-        tasks: Sequence[AnyTask],
-        report: Report[AnyTask],
-    ) -> Iterator[tuple[AnyTask, Outcome | Exception]]:
+        self, work: Work[AnyTask, Outcome], tasks: Sequence[AnyTask], report: Report[AnyTask]
+    ) -> Outcomes[AnyTask, Outcome]:
         """Yield each task once, as they finish, with what ``work(task, say)`` returned or raised.
 
-        ``work`` is a picklable function. A task whose worker died comes with an exception that says
-        so; it does not stop the others. What ``work`` says reaches ``report`` in this process, as
-        soon as may be, or not at all. Where the iterator is closed early, no task goes on.
+        A task whose worker died comes with an exception that says so; it does not stop the others.
+        Messages that ``work`` passes to ``say`` are passed to ``report`` in this process, soon or
+        not at all. If the iterator is closed early, no task goes on.
         """

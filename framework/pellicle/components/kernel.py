@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import (
-    ClassVar,
-)
+from typing import ClassVar
 
 from pellicle.arrays import Array
 
@@ -13,12 +11,12 @@ from .base import Component
 
 
 class Kernel(Component):
-    """How the surface yields to pressure: û(q) = G(q) p̂(q).
+    """The displacement of the surface under pressure: û(q) = G(q) p̂(q).
 
-    That is all it needs to give. On free boundaries its closed form, ``greens_function(r)`` [m/N]
-    and ``radial_primitive(r)`` [m³/N] as in `pellicle.operators.HasClosedForm`, is used if it has
-    one, and is otherwise tabulated from G(q). On periodic ones a uniform
-    pressure has no displacement unless it also has `pellicle.operators.HasMeanCompliance`.
+    Only G(q) is required. On free boundaries the closed form of `pellicle.operators.HasClosedForm`,
+    ``greens_function(r)`` [m/N] and ``radial_primitive(r)`` [m³/N], is used if the kernel has one,
+    and is otherwise tabulated from G(q). On periodic boundaries a uniform pressure causes no
+    displacement unless the kernel also has `pellicle.operators.HasMeanCompliance`.
     """
 
     family: ClassVar[str] = "kernel"

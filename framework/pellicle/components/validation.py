@@ -1,4 +1,4 @@
-"""Cases of known truth that plugins register."""
+"""Validation cases with known results, which plugins register."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from pellicle.results.result import Result
 
 @dataclass(frozen=True)
 class Case:
-    """A case of known truth: one row of ``pellicle validate``."""
+    """A run with one known quantity: one row of ``pellicle validate``."""
 
     name: str
-    """What is solved, e.g. ``"Hertz sphere: force"``."""
+    """Name of the case, e.g. ``"Hertz sphere: force"``."""
     configuration: dict[str, Any]
-    """The run, as a TOML file would say it."""
+    """The run as a TOML file would have it."""
     computed: Callable[[Result], float]
-    """Takes the quantity out of the result, SI."""
+    """Returns the computed quantity of the result, SI."""
     expected: float
     """Its true value, SI."""
     unit: str
-    """Of both, for the table."""
+    """Unit of both values, for the table."""
     tolerance: float
-    """Relative error that is allowed."""
+    """Allowed relative error."""
     source: str
-    """Where the true value comes from: author, year."""
+    """Source of the true value: author, year."""
 
 
 Suite = Callable[[], Iterable[Case]]
-"""Makes cases, when somebody wants to see them solved."""
+"""Returns the cases of a plugin; called only when they are to be solved."""

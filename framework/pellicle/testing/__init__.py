@@ -1,8 +1,8 @@
-"""The contracts as tests: one call says whether a component keeps that of its family.
+"""The contracts as tests: one call checks a component against the contract of its family.
 
 Each function takes a component, made as a user would make it, and raises an AssertionError that
-says what the contract asks and what was found instead. The same calls test pellicle's own
-components. Nothing here needs a test framework; under pytest a plain function is enough::
+says which rule is broken and how. The same calls test pellicle's own components. Nothing here needs
+a test framework; under pytest a plain function is enough::
 
     def test_contract():
         check_kernel(Graded(reduced_modulus="10 kPa", length="0.1 mm", exponent=0.5))

@@ -1,4 +1,4 @@
-"""What the components of all families keep: configuration, code, schema and provenance in one."""
+"""Contract rules that components of all families keep."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ _LONGEST_SUMMARY = 100
 
 
 def check(component: object, family: str, rules: list[Rule], *arguments: Any) -> None:
-    """Check what all components keep, then the family's own rules with ``arguments``.
+    """Check the rules of all components, then the family's own rules with ``arguments``.
 
-    What needs an installed plugin comes last: the rest can be tried before there is one.
+    Rules that need an installed plugin come last, so that the others can be tried before that.
     """
     keep([is_an_instance], component, family)
     keep(RULES, component)
@@ -35,18 +35,18 @@ def check(component: object, family: str, rules: list[Rule], *arguments: Any) ->
 
 
 def is_an_instance(component: object, family: str) -> None:
-    """A check takes an instance of a component of its own family."""
+    """The check of a family takes an instance of a component of that family."""
     base = FAMILIES[family]
     if isinstance(component, type):
         raise AssertionError(f"the class {component.__name__}; make one: {component.__name__}(…)")
     require(
         isinstance(component, base),
-        f"{component!r}, which is no pellicle.{base.__name__}",
+        f"{component!r}, which is not a pellicle.{base.__name__}",
     )
 
 
 def class_can_be_registered(component: Component) -> None:
-    """The class has one type, a docstring, descriptions and a JSON schema, and lacks no method."""
+    """The class has one type, a docstring, descriptions, a JSON schema and all methods."""
     try:
         checked_type(type(component), component.family)
     except PellicleError as error:
@@ -54,7 +54,7 @@ def class_can_be_registered(component: Component) -> None:
 
 
 def docstring_starts_with_a_sentence(component: Component) -> None:
-    """The first line, shown in tables, has at most 100 characters and ends with a period."""
+    """The first line of the docstring has at most 100 characters and ends with a period."""
     line = (inspect.getdoc(type(component)) or "").partition("\n")[0]
     require(
         len(line) <= _LONGEST_SUMMARY and line.endswith("."), f"{line!r} of {len(line)} characters"
@@ -62,7 +62,7 @@ def docstring_starts_with_a_sentence(component: Component) -> None:
 
 
 def numbers_have_units(component: Component) -> None:
-    """A float field is a Quantity, "1" for a pure number; one with a unit has it in its text."""
+    """A float field is a Quantity, of unit "1" for a pure number; its description has the unit."""
     for name, info in type(component).model_fields.items():
         quantities = [*_among(info.metadata), *_quantities(info.annotation)]
         require(
@@ -92,7 +92,7 @@ def _quantities(annotation: Any) -> Iterator[Quantity]:
 
 
 def _among(metadata: Iterable[Any]) -> Iterator[Quantity]:
-    return (found for found in metadata if isinstance(found, Quantity))
+    return (item for item in metadata if isinstance(item, Quantity))
 
 
 def is_frozen(component: Component) -> None:
@@ -106,29 +106,29 @@ def is_frozen(component: Component) -> None:
 
 
 def pickles(component: Component) -> None:
-    """A copy by pickle, as a worker gets it, is equal and of equal hash."""
+    """A pickled copy, as workers get it, is equal and has an equal hash."""
     copy = pickle.loads(pickle.dumps(component))
     require(type(copy) is type(component) and copy == component, f"{copy!r} of {component!r}")
     require(hash(copy) == hash(component), "the hash of the copy differs")
 
 
 def goes_through_json(component: Component) -> None:
-    """What is written into a result as JSON makes the same component again."""
+    """The JSON in a result file reproduces the component."""
     _goes_through(component, lambda table: json.loads(json.dumps(table, allow_nan=False)))
 
 
 def goes_through_toml(component: Component) -> None:
-    """What is written as TOML makes the same component again."""
+    """The component written as TOML reproduces the component."""
     _goes_through(component, _by_toml)
 
 
 def _goes_through(component: Component, copy: Callable[[dict[str, Any]], dict[str, Any]]) -> None:
-    made = type(component)(**copy(_table(component)))
-    require(made == component, f"{made!r} of {component!r}")
+    again = type(component)(**copy(_table(component)))
+    require(again == component, f"{again!r} of {component!r}")
 
 
 def _table(component: Component) -> dict[str, Any]:
-    """Return the component as a file would hold it."""
+    """Return the component as a table of a file."""
     table: dict[str, Any] = json.loads(component.model_dump_json(exclude_none=True))
     return table
 
@@ -139,7 +139,7 @@ def _by_toml(table: dict[str, Any]) -> dict[str, Any]:
 
 
 def unknown_field_is_refused(component: Component) -> None:
-    """A field that does not exist is an error that names it, not a silent default."""
+    """An unknown field is an error that names it."""
     try:
         type(component)(**_table(component) | {"nonsense": 1})
     except ConfigError as error:
@@ -149,7 +149,7 @@ def unknown_field_is_refused(component: Component) -> None:
 
 
 def schema_tells_the_fields(component: Component) -> None:
-    """The JSON schema has every field, its one type, and no room for others."""
+    """The JSON schema has every field and the type, and allows no other fields."""
     schema = type(component).model_json_schema()
     fields = type(component).model_fields.keys()
     require(schema["properties"].keys() == fields, f"properties {sorted(schema['properties'])}")
@@ -160,7 +160,7 @@ def schema_tells_the_fields(component: Component) -> None:
 
 
 def libraries_are_installed(component: Component) -> None:
-    """Each of the class's `libraries`, whose version a result says, is a distribution here."""
+    """Each of the class's `libraries`, whose versions results record, is installed."""
     for name in component.libraries:
         try:
             version(name)
@@ -171,11 +171,11 @@ def libraries_are_installed(component: Component) -> None:
 
 
 def is_registered(component: Component) -> None:
-    """A plugin that is installed here registers the class under its type."""
+    """An installed plugin registers the class under its type."""
     family, type_ = component.family, _table(component)["type"]
     module = type(component).__module__
     try:
-        found = registry().find(family, type_)
+        registered = registry().find(family, type_)
     except PellicleError as error:
         raise AssertionError(
             f"{error}\nIf the plugin is yours, its pyproject.toml needs\n"
@@ -184,18 +184,18 @@ def is_registered(component: Component) -> None:
             "pip install -e ."
         ) from None
     require(
-        found is type(component),
-        f"{type_!r} is {found.__module__}.{found.__qualname__}, not this class of {module}; give "
-        "yours another type, or import it by the name that the entry point has",
+        registered is type(component),
+        f"{type_!r} is {registered.__module__}.{registered.__qualname__}, not this class of "
+        f"{module}; give yours another type, or import it by the name that the entry point has",
     )
 
 
 def goes_through_the_registry(component: Component) -> None:
-    """The registry makes the same component of its table, and takes it as it is."""
+    """The registry reproduces a component from its table, and returns a component unchanged."""
     base = FAMILIES[component.family]
     for table in (_table(component), _by_toml(_table(component)), component.model_dump()):
-        made = registry().make(base, table)
-        require(made == component, f"{made!r} of {component!r}")
+        again = registry().make(base, table)
+        require(again == component, f"{again!r} of {component!r}")
     require(registry().make(base, component) is component, "a component is made anew")
 
 

@@ -1,4 +1,4 @@
-"""What every area correction keeps: an area [m²] of the cells in contact, however they lie."""
+"""Contract rules of area corrections: an area [m²] that does not depend on the view."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _CELL = _SPACING[0] * _SPACING[1]
 def check_correction(correction: AreaCorrection) -> None:
     """Check that an area correction keeps its contract.
 
-    Beside what all components keep: ``area`` is pure, 0 without contact, that of the domain in full
-    contact, between the contact without its boundary cells and with a further row of them, scales
-    with the cells, and is the same seen in a mirror, moved or with x and y exchanged; a
-    ``periodic_area`` of its own does not depend on where the edge of the domain lies; and the area
-    goes into the result of a run.
+    Beside the rules of all components: ``area`` is pure, 0 without contact, that of the domain in
+    full contact, between the contact eroded and dilated by one cell, scales with the cells, and is
+    the same if the contact is mirrored, shifted or has x and y exchanged; an overridden
+    ``periodic_area`` does not depend on where the edge of the domain lies; and the area goes into
+    the result of a run.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def check_correction(correction: AreaCorrection) -> None:
 
 
 def _islands() -> Mask:
-    """Return contact in half of the cells, in patches, none at the edge of the domain."""
+    """Return patches of contact in half of the cells, none at the edge of the domain."""
     x, y = np.mgrid[0:40, 0:30]
     contact: Mask = np.sin(x / 3) * np.cos(y / 4) + 0.3 * np.sin(x / 5 + y) > 0
     contact[[0, 1, -2, -1]] = contact[:, [0, 1, -2, -1]] = False
@@ -42,7 +42,7 @@ def _islands() -> Mask:
 
 
 def area_is_pure(correction: AreaCorrection) -> None:
-    """area(contact, spacing) is a number, the same if asked twice, and contact is as it was."""
+    """area(contact, spacing) is a number, the same in a second call, and contact is unchanged."""
     contact = _islands()
     area = correction.area(contact, _SPACING)
     real_number(correction, "area(contact, spacing)", area)
@@ -57,14 +57,14 @@ def no_contact_has_no_area(correction: AreaCorrection) -> None:
 
 
 def full_contact_is_the_domain(correction: AreaCorrection) -> None:
-    """Where all cells touch there is no boundary, and the area is that of the domain."""
+    """In full contact the area is that of the domain."""
     area = correction.area(np.ones((8, 6), dtype=bool), _SPACING)
     require_close(area, 48 * _CELL, "the area [m²] of full contact", relative=1e-12)
 
 
 def area_is_near_the_count(correction: AreaCorrection) -> None:
-    """A correction moves the area by less than the cells on either side of the boundary."""
-    # Here, not above: the workers of `check_executor` import this package too.
+    """A correction changes the area by less than the cells on either side of the boundary."""
+    # Imported here because the workers of `check_executor` import this package too.
     from scipy.ndimage import binary_dilation, binary_erosion
 
     contact = _islands()
@@ -75,7 +75,7 @@ def area_is_near_the_count(correction: AreaCorrection) -> None:
 
 
 def area_scales_with_the_cells(correction: AreaCorrection) -> None:
-    """Cells larger by a factor make an area larger by its square."""
+    """The area grows with the square of the size of the cells."""
     area = correction.area(_islands(), _SPACING)
     for factor in (1e-3, 7.0):
         larger = correction.area(_islands(), (factor * _SPACING[0], factor * _SPACING[1]))
@@ -85,20 +85,20 @@ def area_scales_with_the_cells(correction: AreaCorrection) -> None:
 
 
 def area_does_not_depend_on_the_view(correction: AreaCorrection) -> None:
-    """Mirrored, moved, or with x and y exchanged, the contact has the same area."""
+    """A contact that is mirrored, shifted or has x and y exchanged has the same area."""
     contact = _islands()
     area = correction.area(contact, _SPACING)
-    for what, seen, spacing in (
+    for view, seen, spacing in (
         ("mirrored across x", contact[::-1], _SPACING),
         ("mirrored across y", contact[:, ::-1], _SPACING),
         ("moved", np.roll(contact, (1, -1), axis=(0, 1)), _SPACING),
         ("with x and y exchanged", contact.T, _SPACING[::-1]),
     ):
-        require_close(correction.area(seen, spacing), area, f"the area [m²] {what}", relative=1e-12)
+        require_close(correction.area(seen, spacing), area, f"the area [m²] {view}", relative=1e-12)
 
 
 def periodic_area_has_no_seam(correction: AreaCorrection) -> None:
-    """A ``periodic_area`` of its own does not depend on which cells lie at the edge."""
+    """An overridden ``periodic_area`` does not depend on which cells lie at the edge."""
     if type(correction).periodic_area is AreaCorrection.periodic_area:
         return
     contact = _islands()
@@ -107,15 +107,15 @@ def periodic_area_has_no_seam(correction: AreaCorrection) -> None:
         area, correction.area(contact, _SPACING), "the area [m²] inside the domain", relative=1e-12
     )
     for shift in ((7, 0), (0, 11), (20, 15)):
-        moved = correction.periodic_area(np.roll(contact, shift, axis=(0, 1)), _SPACING)
+        shifted = correction.periodic_area(np.roll(contact, shift, axis=(0, 1)), _SPACING)
         require_close(
-            moved, area, f"the area [m²] moved by {shift} cells across the edge", relative=1e-12
+            shifted, area, f"the area [m²] moved by {shift} cells across the edge", relative=1e-12
         )
 
 
 def goes_into_the_result(correction: AreaCorrection) -> None:
-    """A run has the area under contact_area_<type>."""
-    found = solved(
+    """The result of a run has the area as contact_area_<type>."""
+    dataset = solved(
         {
             "grid": {"points": 24, "size": "1 mm"},
             "kernel": {"type": "half_space", "reduced_modulus": 1e4},
@@ -124,8 +124,8 @@ def goes_into_the_result(correction: AreaCorrection) -> None:
             "corrections": [correction],
         }
     )
-    area = found[f"contact_area_{correction.type_name}"].item()
-    require(area > 0, f"{area:g} m² for {found['contact_area'].item():g} m² of cells")
+    area = dataset[f"contact_area_{correction.type_name}"].item()
+    require(area > 0, f"{area:g} m² for {dataset['contact_area'].item():g} m² of cells")
 
 
 RULES: list[Rule] = [

@@ -1,4 +1,4 @@
-"""What every executor keeps: each task once, its own outcome, and nothing after the end."""
+"""Contract rules of executors: each task once, with its outcome, and nothing after the end."""
 
 from __future__ import annotations
 
@@ -21,71 +21,56 @@ from .component import check
 from .rules import Rule, require
 
 _TASKS, _FAILS, _EXITS = 7, 3, 5
-# Of a task that takes a while [s]; long beside what it takes to close an executor's iterator.
-_WHILE = 0.1
+_DURATION = 0.1
+"""Time that a slow task takes [s], long compared with closing an executor's iterator."""
 
 
 def check_executor(executor: Executor) -> None:
     """Check that an executor keeps its contract.
 
-    Beside what all components keep: ``map`` carries out each task once and yields it with what its
+    Beside the rules of all components: ``map`` executes each task once and yields it with what its
     work returned or raised; a failure, ``sys.exit()`` or the death of a worker process stops no
-    other task; what work says comes to ``report``, in the calling thread, with its task; and where
-    the iterator is closed early, no task goes on.
+    other task; messages of the work come to ``report``, in the calling thread, with their task; and
+    if the iterator is closed early, no task goes on.
 
     Raises
     ------
     AssertionError
         It does not; says what was asked and what was found.
     """
-    check(executor, "executor", RULES, Seen(executor))
+    check(executor, "executor", RULES, Observations(executor))
 
 
 @dataclass(frozen=True)
 class Chore:
-    """A task that does next to nothing."""
+    """A task that does almost nothing."""
 
     number: int
     folder: str = ""
     home: int = 0
-    """Number of the process that must not die."""
+    """Id of the process that must not die."""
     memory: int = 1_000_000
 
     @property
     def name(self) -> str:
-        """A line for people."""
+        """One line for people."""
         return f"chore {self.number}"
 
 
-def square(task: Chore, say: Say) -> int:
-    """Return the square of the task's number."""
-    return task.number**2
-
-
-def talk(task: Chore, say: Say) -> int:
-    """Say two things, and do as `square`."""
+def work(task: Chore, say: Say) -> int:
+    """Send two messages, leave two files if the task has a folder; return its number squared."""
     say(("begun", task.number))
     say(("nearly done", task.number))
+    if task.folder:
+        unique = uuid4().hex
+        Path(task.folder, f"{task.number} began {unique}").touch()
+        time.sleep(_DURATION)
+        Path(task.folder, f"{task.number} ended {unique}").touch()
     return task.number**2
-
-
-def mark(task: Chore, say: Say) -> int:
-    """Leave a file when the task begins, and one when it ends."""
-    each = uuid4().hex
-    Path(task.folder, f"{task.number} began {each}").touch()
-    time.sleep(_WHILE)
-    Path(task.folder, f"{task.number} ended {each}").touch()
-    return task.number**2
-
-
-def mark_and_talk(task: Chore, say: Say) -> int:
-    """Do as `talk`, and as `mark` where there is a folder."""
-    talk(task, say)
-    return mark(task, say) if task.folder else task.number**2
 
 
 def fail_or_exit(task: Chore, say: Say) -> int:
-    """Raise for the third task, leave the interpreter in the fifth, as a bad plugin might."""
+    """Raise in the third task and exit the interpreter in the fifth, as a bad plugin might."""
     if task.number == _FAILS:
         raise ValueError("the third task is bad")
     if task.number == _EXITS:
@@ -106,21 +91,21 @@ def _chores(**fields: Any) -> list[Chore]:
     return [Chore(number, **fields) for number in range(1, _TASKS + 1)]
 
 
-def _silence(task: Chore, said: Any) -> None:
+def _ignore(task: Chore, message: Any) -> None:
     pass
 
 
 def _by_number(tasks: list[Chore], pairs: list[tuple[Chore, Any]]) -> dict[int, Any]:
-    """Return the outcome of each task by its number; each must come once, as it was given."""
-    came = Counter(task.number for task, _ in pairs)
+    """Return the outcomes by number of the task; each task must be yielded once, itself."""
+    counts = Counter(task.number for task, _ in pairs)
     for task in tasks:
         require(
-            came[task.number] == 1,
-            f"task {task.number} of {len(tasks)} is yielded {came[task.number]} times",
+            counts[task.number] == 1,
+            f"task {task.number} of {len(tasks)} is yielded {counts[task.number]} times",
         )
     require(
         {id(task) for task, _ in pairs} == {id(task) for task in tasks},
-        "a task is yielded that is not the object that was given",
+        "a yielded task is not the object that was given",
     )
     return {task.number: outcome for task, outcome in pairs}
 
@@ -131,91 +116,83 @@ def _require_squares(outcomes: dict[int, Any]) -> None:
 
 
 class Healthy(NamedTuple):
-    """What is seen of tasks that do their work."""
+    """Observations of tasks that succeed."""
 
     tasks: list[Chore]
     equal: list[Chore]
-    """Two more, which hold the same."""
+    """Two more tasks, equal to each other."""
     pairs: list[tuple[Chore, Any]]
-    said: list[tuple[Chore, Any]]
+    messages: list[tuple[Chore, Any]]
     callers: set[tuple[int, int]]
-    """Threads and processes in which report was called."""
+    """Threads and processes in which `report` was called."""
     traces: list[str]
 
 
-class Troubled(NamedTuple):
-    """What is seen of tasks of which one fails and one exits."""
-
-    outcomes: dict[int, Any]
-    exited: bool
-    """Whether map() was left by the one that exits."""
-
-
-class Seen:
-    """What is seen of an executor at work: starting one may take long, so many rules look at it."""
+class Observations:
+    """What many rules check; observed once, because starting an executor may take long."""
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor
 
     @cached_property
     def healthy(self) -> Healthy:
-        """Of nine tasks, carried out on first use."""
-        said: list[tuple[Chore, Any]] = []
+        """Observations of nine tasks, executed on first use."""
+        messages: list[tuple[Chore, Any]] = []
         callers = set()
 
-        def report(task: Chore, what: Any) -> None:
+        def report(task: Chore, message: Any) -> None:
             callers.add((threading.get_ident(), os.getpid()))
-            said.append((task, what))
+            messages.append((task, message))
 
         with TemporaryDirectory() as folder:
             tasks, equal = _chores(folder=folder), [Chore(8), Chore(8)]
-            pairs = list(self._executor.map(mark_and_talk, [*tasks, *equal], report))
-            return Healthy(tasks, equal, pairs, said, callers, os.listdir(folder))
+            pairs = list(self._executor.map(work, [*tasks, *equal], report))
+            return Healthy(tasks, equal, pairs, messages, callers, os.listdir(folder))
 
     @cached_property
-    def troubled(self) -> Troubled:
-        """Of seven tasks, carried out on first use."""
+    def troubled(self) -> tuple[dict[int, Any], bool]:
+        """Outcomes of seven tasks, of which one fails and one exits, and whether that ended map."""
         outcomes = {}
         try:
-            for task, outcome in self._executor.map(fail_or_exit, _chores(), _silence):
+            for task, outcome in self._executor.map(fail_or_exit, _chores(), _ignore):
                 outcomes[task.number] = outcome
         except SystemExit:
-            return Troubled(outcomes, True)
-        return Troubled(outcomes, False)
+            return outcomes, True
+        return outcomes, False
 
 
-def each_task_comes_once_with_its_outcome(executor: Executor, seen: Seen) -> None:
-    """map() yields each task once, the very object, with what work(task, say) returned."""
+def each_task_comes_once_with_its_outcome(executor: Executor, seen: Observations) -> None:
+    """map() yields each task once, the same object, with what work(task, say) returned."""
     healthy = seen.healthy
     pairs = [(task, outcome) for task, outcome in healthy.pairs if task not in healthy.equal]
     _require_squares(_by_number(healthy.tasks, pairs))
 
 
-def each_task_is_carried_out_once(executor: Executor, seen: Seen) -> None:
-    """No task is begun twice or left out, and all have ended when map() has."""
-    found = Counter(trace.rpartition(" ")[0] for trace in seen.healthy.traces)
+def each_task_is_carried_out_once(executor: Executor, seen: Observations) -> None:
+    """Each task is executed exactly once, and all have ended when map() has."""
+    counts = Counter(trace.rpartition(" ")[0] for trace in seen.healthy.traces)
     for number in range(1, _TASKS + 1):
-        for what in ("began", "ended"):
-            times = found[f"{number} {what}"]
-            require(times == 1, f"when map() has ended, task {number} {what} {times} times")
+        for event in ("began", "ended"):
+            times = counts[f"{number} {event}"]
+            require(times == 1, f"when map() has ended, task {number} {event} {times} times")
 
 
-def equal_tasks_are_two_tasks(executor: Executor, seen: Seen) -> None:
-    """Tasks are told apart by their places, not by what they hold."""
+def equal_tasks_are_two_tasks(executor: Executor, seen: Observations) -> None:
+    """Equal tasks are two tasks: they are distinguished by identity, not by content."""
     equal = seen.healthy.equal
     pairs = [(task, outcome) for task, outcome in seen.healthy.pairs if task in equal]
     require([outcome for _, outcome in pairs] == [64, 64], f"two tasks of 8 give {pairs}")
 
 
-def no_tasks_are_no_trouble(executor: Executor, seen: Seen) -> None:
+def no_tasks_are_no_trouble(executor: Executor, seen: Observations) -> None:
     """Without tasks map() yields nothing."""
     none: list[Chore] = []
-    pairs = list(executor.map(square, none, _silence))
+    pairs = list(executor.map(work, none, _ignore))
     require(not pairs, f"{pairs}")
 
 
-def failure_is_an_outcome(executor: Executor, seen: Seen) -> None:
-    """What work raises is yielded as its task's outcome, unchanged, and stops no other task."""
+def failure_is_an_outcome(executor: Executor, seen: Observations) -> None:
+    """An exception of work is yielded unchanged as its task's outcome, and stops no other task."""
     outcomes, exited = seen.troubled
     bad = outcomes.get(_FAILS)
     require(
@@ -223,68 +200,69 @@ def failure_is_an_outcome(executor: Executor, seen: Seen) -> None:
         or (exited and _FAILS not in outcomes),
         f"for ValueError('the third task is bad') task {_FAILS} comes with {bad!r}",
     )
-    _require_squares({n: it for n, it in outcomes.items() if n not in (_FAILS, _EXITS)})
+    _require_squares({n: outcome for n, outcome in outcomes.items() if n not in (_FAILS, _EXITS)})
 
 
-def exit_is_an_outcome(executor: Executor, seen: Seen) -> None:
-    """Work that calls sys.exit() ends neither the others nor this process: it has failed."""
+def exit_is_an_outcome(executor: Executor, seen: Observations) -> None:
+    """Work that calls sys.exit() has failed; it ends neither other tasks nor this process."""
     outcomes, exited = seen.troubled
     require(not exited, "sys.exit() in a task leaves map()")
     bad = outcomes.get(_EXITS)
-    require(isinstance(bad, Exception), f"task {_EXITS} comes with {bad!r}, no Exception")
+    require(isinstance(bad, Exception), f"task {_EXITS} comes with {bad!r}, not an Exception")
     missing = sorted(set(range(1, _TASKS + 1)) - outcomes.keys())
     require(not missing, f"beside one that fails and one that exits, these do not come: {missing}")
 
 
-def death_of_a_worker_is_an_outcome(executor: Executor, seen: Seen) -> None:
+def death_of_a_worker_is_an_outcome(executor: Executor, seen: Observations) -> None:
     """A task that ends its worker process comes with an exception, and stops no other task."""
     tasks = _chores(home=os.getpid())
-    outcomes = _by_number(tasks, list(executor.map(die_third, tasks, _silence)))
+    outcomes = _by_number(tasks, list(executor.map(die_third, tasks, _ignore)))
     bad = outcomes.pop(3)
     require(isinstance(bad, Exception), f"task 3 comes with {bad!r}")
     _require_squares(outcomes)
 
 
-def what_is_said_is_reported(executor: Executor, seen: Seen) -> None:
-    """report(task, said) is called in this thread, with what that task's work said, in order."""
+def what_is_said_is_reported(executor: Executor, seen: Observations) -> None:
+    """report(task, message) is called in this thread, with the messages of the task in order."""
     healthy = seen.healthy
     here = threading.get_ident(), os.getpid()
     require(healthy.callers <= {here}, "report is called in another thread")
     given = {id(task) for task in (*healthy.tasks, *healthy.equal)}
-    for task, _ in healthy.said:
+    for task, _ in healthy.messages:
         require(id(task) in given, f"report is called with {task!r}, an object that was not given")
     for task in (*healthy.tasks, *healthy.equal):
-        said = [("begun", task.number), ("nearly done", task.number)]
-        came = [tuple(what) for whose, what in healthy.said if whose is task]
-        require(came == [each for each in said if each in came], f"{task.name} said {came}")
+        sent = [("begun", task.number), ("nearly done", task.number)]
+        received = [tuple(message) for owner, message in healthy.messages if owner is task]
+        in_order = [message for message in sent if message in received]
+        require(received == in_order, f"{task.name} said {received}")
 
 
-def report_that_raises_ends_the_tasks(executor: Executor, seen: Seen) -> None:
-    """An interruption of the caller's own, in report, is not swallowed."""
-    heard = []
+def report_that_raises_ends_the_tasks(executor: Executor, seen: Observations) -> None:
+    """An interruption raised by report comes out of map()."""
+    messages = []
 
-    def report(task: Chore, said: Any) -> None:
-        heard.append(said)
+    def report(task: Chore, message: Any) -> None:
+        messages.append(message)
         raise KeyboardInterrupt
 
     try:
-        list(executor.map(talk, _chores(), report))
+        list(executor.map(work, _chores(), report))
     except KeyboardInterrupt:
         return
-    require(not heard, "KeyboardInterrupt raised by report does not come out of map()")
+    require(not messages, "KeyboardInterrupt raised by report does not come out of map()")
 
 
-def nothing_goes_on_after_closing(executor: Executor, seen: Seen) -> None:
-    """Where the iterator is closed early, no task goes on or begins afterwards."""
+def nothing_goes_on_after_closing(executor: Executor, seen: Observations) -> None:
+    """After the iterator is closed early, no task goes on or begins."""
     with TemporaryDirectory() as folder:
-        running = executor.map(mark, _chores(folder=folder), _silence)
+        running = executor.map(work, _chores(folder=folder), _ignore)
         list(islice(running, 1))
         close = getattr(running, "close", None)
         require(close is not None, "map() returns an iterator without close(); write it with yield")
         assert close is not None
         close()
         at_close = set(os.listdir(folder))
-        time.sleep(2 * _WHILE)
+        time.sleep(2 * _DURATION)
         later = sorted(set(os.listdir(folder)) - at_close)
         require(not later, f"after close(): {', '.join(later)}")
 

@@ -1,4 +1,4 @@
-"""What every indenter keeps: a profile on the grid's points, with its lowest point at 0."""
+"""Contract rules of indenters: a profile on the grid's points, 0 at its lowest point."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from .runs import solved
 def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
     """Check that an indenter keeps its contract.
 
-    Beside what all components keep: ``profile`` makes float heights ≤ 0 of the grid's shape, 0 at
-    the lowest point; it is pure; each height depends on its own point only, unless the indenter
-    ends with the domain; a force curve, if there is one, rises as its sensitivities say; and a
-    small indentation converges.
+    Beside the rules of all components: ``profile`` returns float heights ≤ 0 of the grid's shape, 0
+    at the lowest point; it is pure; each height depends on its own point only, unless the indenter
+    ends with the domain; a force curve, if the indenter has one, rises and agrees with its partial
+    derivatives; and a small indentation converges.
 
     Parameters
     ----------
@@ -42,35 +42,37 @@ def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
 
 def profile_has_the_shape_of_the_grid(indenter: Indenter, grid: Grid) -> None:
     """profile(x, y) of shapes (nx, 1) and (1, ny) is an array of floats of shape (nx, ny)."""
-    found = indenter.profile(*grid.coordinates())
+    profile = indenter.profile(*grid.coordinates())
     require(
-        isinstance(found, np.ndarray) and found.dtype == np.float64 and found.shape == grid.shape,
-        f"{type(found).__name__} of shape {np.shape(found)}, {getattr(found, 'dtype', 'no')} "
+        isinstance(profile, np.ndarray)
+        and profile.dtype == np.float64
+        and profile.shape == grid.shape,
+        f"{type(profile).__name__} of shape {np.shape(profile)}, {getattr(profile, 'dtype', 'no')} "
         f"dtype, for {grid.shape}",
     )
 
 
 def profile_is_pure(indenter: Indenter, grid: Grid) -> None:
-    """The points are as they were, and asking twice gives the same, in an array of its own."""
+    """profile(x, y) does not change x or y, and a second call returns an equal, new array."""
     points = grid.coordinates()
     first = indenter.profile(*points)
-    for name, left, were in zip("xy", points, grid.coordinates(), strict=True):
-        require(np.array_equal(left, were), f"profile(x, y) changes {name}")
-    kept = first.copy()
+    for name, after, before in zip("xy", points, grid.coordinates(), strict=True):
+        require(np.array_equal(after, before), f"profile(x, y) changes {name}")
+    expected = first.copy()
     if first.flags.writeable:
         first[...] = -np.inf
     again = indenter.profile(*grid.coordinates())
-    require(np.array_equal(again, kept, equal_nan=True), "the second profile differs")
+    require(np.array_equal(again, expected, equal_nan=True), "the second profile differs")
 
 
 def profile_is_nowhere_positive(indenter: Indenter, grid: Grid) -> None:
-    """Heights are ≤ 0, finite or −inf, and somewhere there is an indenter."""
-    found = indenter.profile(*grid.coordinates())
+    """Heights are ≤ 0, finite or −inf, and at least one is finite."""
+    profile = indenter.profile(*grid.coordinates())
     x, y = np.broadcast_arrays(*grid.coordinates())
-    for at in np.argwhere(~(found <= 0)):
+    for at in np.argwhere(~(profile <= 0)):
         i, j = map(int, at)
-        raise AssertionError(f"{found[i, j]:g} m at x = {x[i, j]:g} m, y = {y[i, j]:g} m")
-    require(np.isfinite(found).any(), "no height is finite")
+        raise AssertionError(f"{profile[i, j]:g} m at x = {x[i, j]:g} m, y = {y[i, j]:g} m")
+    require(np.isfinite(profile).any(), "no height is finite")
 
 
 def footprint_is_known(indenter: Indenter, grid: Grid) -> None:
@@ -79,14 +81,14 @@ def footprint_is_known(indenter: Indenter, grid: Grid) -> None:
 
 
 def lowest_point_is_at_zero(indenter: Indenter, grid: Grid) -> None:
-    """The highest value is 0; where the indenter ends with the domain, up to what a cell hides."""
-    found = indenter.profile(*grid.coordinates())
-    allowed = (1e-12 if indenter.footprint == "unbounded" else 0.1) * _range(found)
-    require(-found.max() <= allowed, f"the highest value is {found.max():g} m")
+    """The highest value is 0; if the indenter ends with the domain, 0 may lie between the cells."""
+    profile = indenter.profile(*grid.coordinates())
+    allowed = (1e-12 if indenter.footprint == "unbounded" else 0.1) * _range(profile)
+    require(-profile.max() <= allowed, f"the highest value is {profile.max():g} m")
 
 
 def heights_depend_on_their_own_point(indenter: Indenter, grid: Grid) -> None:
-    """Seen on a part of the points, an indenter that is unbounded has the same heights."""
+    """An unbounded indenter has the same heights if only some of the points are evaluated."""
     if indenter.footprint != "unbounded":
         return
     x, y = grid.coordinates()
@@ -100,7 +102,7 @@ def heights_depend_on_their_own_point(indenter: Indenter, grid: Grid) -> None:
 
 
 def force_curve_rises(indenter: Indenter, grid: Grid) -> None:
-    """A force curve is 0 without contact, and rises in depth and length as it says itself."""
+    """A force curve is 0 without contact, rises with depth, and agrees with its derivatives."""
     if not isinstance(indenter, HasForceCurve):
         return
     scale = 0.01 * (_range(indenter.profile(*grid.coordinates())) or min(grid.size))
@@ -114,14 +116,16 @@ def force_curve_rises(indenter: Indenter, grid: Grid) -> None:
         ("by_length", (depth, length - step), (depth, length + step)),
     ):
         below, above = (force_curve_of(indenter, *at).force[2:] for at in (low, high))
-        found = getattr(curve, name)[2:]
-        require_close(found, (above - below) / (2 * step), f"force_curve().{name}", relative=1e-3)
+        derivative = getattr(curve, name)[2:]
+        require_close(
+            derivative, (above - below) / (2 * step), f"force_curve().{name}", relative=1e-3
+        )
 
 
 def run_converges(indenter: Indenter, grid: Grid) -> None:
     """Pressed into a half-space, the indenter makes contact and the run converges."""
     depth = 0.01 * _range(indenter.profile(*grid.coordinates())) or 0.01 * min(grid.size)
-    found = solved(
+    dataset = solved(
         {
             "grid": grid,
             "kernel": {"type": "half_space", "reduced_modulus": 1e4},
@@ -129,7 +133,7 @@ def run_converges(indenter: Indenter, grid: Grid) -> None:
             "loading": {"depth": depth},
         }
     )
-    require(found["force"].item() > 0, f"no contact at a depth of {depth:g} m")
+    require(dataset["force"].item() > 0, f"no contact at a depth of {depth:g} m")
 
 
 def _range(heights: Array) -> float:

@@ -1,4 +1,4 @@
-"""What every kernel keeps: its compliance, its closed form and the operators agree."""
+"""Contract rules of kernels: the compliance, its closed form and the operators agree."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from .component import check
 from .rules import Rule, require, require_close
 from .runs import solved
 
-# Of the Gaussian pressure exp(−r²/2w²) [m].
 _WIDTH = 1e-4
+"""Width w of the Gaussian pressure exp(−r²/2w²) [m]."""
 _FORMS = ("greens_function", "radial_primitive")
 
 
 def check_kernel(kernel: Kernel) -> None:
     """Check that a kernel keeps its contract.
 
-    Beside what all components keep: ``compliance`` is vectorised, pure, positive, finite for
-    10⁻³ to 10¹² rad/m, and does not grow for ever shorter waves; a closed form, if there is one,
-    belongs to it; the operators of both boundaries answer as it says; a small indentation converges
+    Beside the rules of all components: ``compliance`` is vectorised, pure, positive and finite for
+    10⁻³ to 10¹² rad/m, and does not grow towards ever shorter waves; a closed form, if the kernel
+    has one, agrees with it; so do the operators of both boundaries; a small indentation converges
     on both.
 
     Raises
@@ -41,24 +41,24 @@ def _wavenumbers() -> Array:
 
 
 def compliance_is_vectorised(kernel: Kernel) -> None:
-    """compliance(q) has the shape of q, floats, and each value depends on its own q only."""
-    each = [np.ravel(kernel.compliance(_wavenumbers()[i : i + 1]))[0] for i in range(24)]
+    """compliance(q) is a float array of the shape of q; each value depends on its own q only."""
+    single = [np.ravel(kernel.compliance(_wavenumbers()[i : i + 1]))[0] for i in range(24)]
     for shape in ((24,), (4, 6), (2, 3, 4)):
-        found = kernel.compliance(_wavenumbers().reshape(shape))
+        values = kernel.compliance(_wavenumbers().reshape(shape))
         require(
-            isinstance(found, np.ndarray) and found.dtype == np.float64,
-            f"compliance(q) is {type(found).__name__} of {getattr(found, 'dtype', 'no')} dtype",
+            isinstance(values, np.ndarray) and values.dtype == np.float64,
+            f"compliance(q) is {type(values).__name__} of {getattr(values, 'dtype', 'no')} dtype",
         )
         require_close(
-            found,
-            np.reshape(each, shape),
+            values,
+            np.reshape(single, shape),
             f"compliance of q of shape {shape}",
             relative=1e-12,
         )
 
 
 def compliance_leaves_its_argument(kernel: Kernel) -> None:
-    """A kernel is pure: q is as it was, and asking twice gives the same."""
+    """A kernel is pure: it does not change q, and a second call returns the same."""
     q = _wavenumbers()
     first = np.array(kernel.compliance(q))
     require_close(q, _wavenumbers(), "after compliance(q), q")
@@ -66,47 +66,47 @@ def compliance_leaves_its_argument(kernel: Kernel) -> None:
 
 
 def compliance_is_positive_and_finite(kernel: Kernel) -> None:
-    """Pressure pushes the surface inwards at every q > 0."""
+    """The compliance is positive and finite at every q > 0."""
     q = np.geomspace(1e-3, 1e12, 200)
-    found = kernel.compliance(q)
-    for bad in np.flatnonzero(~(np.isfinite(found) & (found > 0))):
-        raise AssertionError(f"compliance is {found[bad]:g} m/Pa at q = {q[bad]:g} rad/m")
+    values = kernel.compliance(q)
+    for bad in np.flatnonzero(~(np.isfinite(values) & (values > 0))):
+        raise AssertionError(f"compliance is {values[bad]:g} m/Pa at q = {q[bad]:g} rad/m")
 
 
 def compliance_does_not_grow_for_short_waves(kernel: Kernel) -> None:
-    """As q grows without bound, the surface does not yield ever more."""
+    """The compliance does not grow with q at large q."""
     q = np.geomspace(1e10, 1e12, 9)
-    found = kernel.compliance(q)
-    for bad in np.flatnonzero(np.diff(found) > 1e-9 * found[:-1]):
+    values = kernel.compliance(q)
+    for bad in np.flatnonzero(np.diff(values) > 1e-9 * values[:-1]):
         raise AssertionError(
-            f"compliance rises from {found[bad]:g} to {found[bad + 1]:g} m/Pa between q = "
+            f"compliance rises from {values[bad]:g} to {values[bad + 1]:g} m/Pa between q = "
             f"{q[bad]:g} and {q[bad + 1]:g} rad/m"
         )
 
 
 def periodic_operator_is_the_compliance(kernel: Kernel) -> None:
-    """A wave of pressure on a periodic grid is answered by G(q) times the wave."""
+    """A wave of pressure on a periodic grid displaces the surface by G(q) times the wave."""
     grid = Grid(points=[32, 18], size=["1 mm", "0.7 mm"], boundary="periodic")
     x, y = grid.coordinates()
     for m, n in ((1, 0), (0, 3), (5, 2), (8, 4)):
         qx, qy = 2 * np.pi * m / grid.size[0], 2 * np.pi * n / grid.size[1]
         wave = np.cos(qx * x + qy * y + 0.3)
-        answer = float(kernel.compliance(np.array([np.hypot(qx, qy)]))[0])
+        compliance = float(kernel.compliance(np.array([np.hypot(qx, qy)]))[0])
         require_close(
             displacement(wave, kernel=kernel, grid=grid),
-            answer * wave,
+            compliance * wave,
             f"the displacement [m] under a wave of 1 Pa, q = ({qx:g}, {qy:g}) rad/m,",
-            absolute=1e-11 * answer,
+            absolute=1e-11 * compliance,
         )
 
 
 def uniform_pressure_sinks_by_the_mean_compliance(kernel: Kernel) -> None:
-    """On a periodic grid a uniform pressure sinks by mean_compliance(), not at all if that is ∞."""
+    """On a periodic grid uniform pressure displaces by mean_compliance(), by 0 if that is ∞."""
     grid = Grid(points=[6, 5], size="1 mm", boundary="periodic")
     mean = mean_compliance(kernel)
     expected = np.full(grid.shape, 3 * mean if np.isfinite(mean) else 0.0)
-    found = displacement(np.full(grid.shape, 3.0), kernel=kernel, grid=grid)
-    require_close(found, expected, "the displacement [m] under 3 Pa", relative=1e-13)
+    values = displacement(np.full(grid.shape, 3.0), kernel=kernel, grid=grid)
+    require_close(values, expected, "the displacement [m] under 3 Pa", relative=1e-13)
 
 
 def periodic_run_converges(kernel: Kernel) -> None:
@@ -132,12 +132,12 @@ def _indent(kernel: Kernel, boundary: str) -> None:
 
 def closed_form_is_whole(kernel: Kernel) -> None:
     """A kernel has both of greens_function and radial_primitive, or neither."""
-    there = [name for name in _FORMS if hasattr(kernel, name)]
-    require(len(there) != 1, f"only {' '.join(there)}")
+    present = [name for name in _FORMS if hasattr(kernel, name)]
+    require(len(present) != 1, f"only {' '.join(present)}")
 
 
 def closed_form_leaves_its_argument(kernel: Kernel) -> None:
-    """Distances r are as they were after greens_function(r) and radial_primitive(r)."""
+    """greens_function(r) and radial_primitive(r) do not change r."""
     for name in _FORMS:
         if method := getattr(kernel, name, None):
             r = np.geomspace(1e-6, 1.0, 9)
@@ -146,7 +146,7 @@ def closed_form_leaves_its_argument(kernel: Kernel) -> None:
 
 
 def primitive_is_the_integral_of_the_closed_form(kernel: Kernel) -> None:
-    """radial_primitive starts at 0 and grows by ∫ greens_function r dr."""
+    """radial_primitive is 0 at r = 0 and grows by ∫ greens_function r dr."""
     if not isinstance(kernel, HasClosedForm):
         return
     radii = np.geomspace(1e-9, 1e2, 45)
@@ -171,7 +171,7 @@ def primitive_is_the_integral_of_the_closed_form(kernel: Kernel) -> None:
 
 
 def closed_form_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
-    """The middle of a Gaussian pressure sinks equally by greens_function and by compliance."""
+    """Amid a Gaussian pressure, greens_function and compliance give the same displacement."""
     if not isinstance(kernel, HasClosedForm):
         return
     form = kernel
@@ -185,7 +185,7 @@ def closed_form_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
 
 
 def free_operator_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
-    """On a free grid the middle of a Gaussian pressure sinks as the Hankel integral says."""
+    """On a free grid the displacement amid a Gaussian pressure is that of the Hankel integral."""
     grid = Grid(points=255, size=10 * _WIDTH, boundary="free")
     x, y = grid.coordinates()
     pressure = np.exp(-(x**2 + y**2) / (2 * _WIDTH**2))
@@ -201,29 +201,29 @@ def free_operator_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
 def _middle_by_compliance(kernel: Kernel, cell: float = 0.0) -> float:
     """Return u(0) = ∫ G(q) p̂(q) q dq / 2π [m] for the Gaussian, p̂ = 2πw² exp(−q²w²/2).
 
-    A pressure that is uniform in each cell of side h has p̂ less by the factor 1 − q²h²/24, except
-    for springs, the part of G that is left at q → ∞: they see the middle of their cell.
+    A pressure uniform in each cell of side h has p̂ smaller by the factor 1 − q²h²/24. Springs, the
+    limit of G at q → ∞, respond to the value at the centre of their cell instead.
     """
     springs = kernel.compliance(np.array([1e12]))
 
     def integrand(t: Array) -> float:
         q = t / _WIDTH
         compliance = kernel.compliance(q)
-        lost = (compliance - springs) * (q * cell) ** 2 / 24
-        return float(((compliance - lost) * t)[0])
+        reduction = (compliance - springs) * (q * cell) ** 2 / 24
+        return float(((compliance - reduction) * t)[0])
 
     return _integral(integrand)
 
 
 def _integral(function: Callable[[Array], float]) -> float:
     """Return ∫ f(t) exp(−t²/2) dt over t > 0."""
-    # Here, not above: the workers of `check_executor` import this package too.
+    # Imported here because the workers of `check_executor` import this package too.
     from scipy.integrate import quad
 
     def integrand(t: float) -> float:
         return function(np.array([t])) * float(np.exp(-(t**2) / 2))
 
-    # full_output: what it says of its accuracy is a warning otherwise, an error to some.
+    # Without full_output, quad may warn of its accuracy, and some turn warnings into errors.
     return float(quad(integrand, 0, 9, epsabs=0, epsrel=1e-11, limit=200, full_output=1)[0])
 
 

@@ -1,4 +1,4 @@
-"""How a contract is checked: rules in a row, and one message for the first that is broken."""
+"""Check a contract rule by rule, with one message for the first broken rule."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 Rule = Callable[..., None]
-"""A function of a component that raises if the sentence of its docstring does not hold."""
+"""A function of a component that raises if the component breaks the rule in its docstring."""
 
 
 def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:
@@ -26,44 +26,44 @@ def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:
             rule(component, *arguments)
         except Exception as error:
             own = isinstance(error, AssertionError)
-            said = str(error) if own else f"{type(error).__name__}: {error}"
-            asked = " ".join((inspect.getdoc(rule) or "").split())
+            message = str(error) if own else f"{type(error).__name__}: {error}"
+            text = " ".join((inspect.getdoc(rule) or "").split())
             raise AssertionError(
                 f"{type(component).__name__} breaks the rule {rule.__name__}\n"
-                f"asked: {asked}\n"
-                f"found: {said}"
+                f"asked: {text}\n"
+                f"found: {message}"
             ) from (None if own else error)
 
 
-def require(kept: bool | np.bool_, found: str) -> None:
-    """Raise AssertionError that says what was found, unless a rule is kept."""
+def require(kept: bool | np.bool_, message: str) -> None:
+    """Raise AssertionError with a message unless a rule is kept."""
     if not kept:
-        raise AssertionError(found)
+        raise AssertionError(message)
 
 
 def require_close(
-    found: ArrayLike,
+    actual: ArrayLike,
     expected: ArrayLike,
-    what: str,
+    name: str,
     *,
     relative: float = 0.0,
     absolute: float = 0.0,
 ) -> None:
-    """Raise AssertionError with the worst place where two arrays differ by more than is allowed."""
-    found, expected = np.asarray(found), np.asarray(expected)
+    """Raise AssertionError with the index of the largest difference if two arrays differ."""
+    actual, expected = np.asarray(actual), np.asarray(expected)
     require(
-        found.shape == expected.shape,
-        f"{what} is of shape {found.shape}; expected {expected.shape}",
+        actual.shape == expected.shape,
+        f"{name} is of shape {actual.shape}; expected {expected.shape}",
     )
-    # One that is not finite differs from everything.
-    wrong = ~(np.abs(found - expected) <= absolute + relative * np.abs(expected))
-    if not wrong.any():
+    # A value that is not finite differs from every other.
+    differs = ~(np.abs(actual - expected) <= absolute + relative * np.abs(expected))
+    if not differs.any():
         return
-    error = np.where(wrong, np.abs(found - expected), -1.0)
+    error = np.where(differs, np.abs(actual - expected), -1.0)
     at = np.unravel_index(np.argmax(np.nan_to_num(error, nan=np.inf)), error.shape)
     where = f" at index {tuple(map(int, at))}" if at else ""
     allowed = absolute + relative * abs(float(expected[at]))
     raise AssertionError(
-        f"{what} is {float(found[at]):.10g}{where}; expected {float(expected[at]):.10g} within "
-        f"{allowed:.1e}; {int(wrong.sum())} of {wrong.size} values differ"
+        f"{name} is {float(actual[at]):.10g}{where}; expected {float(expected[at]):.10g} within "
+        f"{allowed:.1e}; {int(differs.sum())} of {differs.size} values differ"
     )

@@ -1,4 +1,4 @@
-"""Small runs that the checks solve."""
+"""Small runs that the rules solve."""
 
 from __future__ import annotations
 

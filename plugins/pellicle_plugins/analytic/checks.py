@@ -8,16 +8,16 @@ from pellicle.errors import ConfigError
 
 
 def positive(**values: float) -> None:
-    """Raise unless every named value is finite and positive."""
+    """Raise ConfigError unless every named value is finite and positive."""
     for name, value in values.items():
-        if not (math.isfinite(value) and value > 0):
+        if not 0 < value < math.inf:
             raise ConfigError(f"must be finite and positive, got {value!r}", name)
 
 
 def not_negative(**values: float) -> None:
-    """Raise unless every named value is finite and at least zero."""
+    """Raise ConfigError unless every named value is finite and at least zero."""
     for name, value in values.items():
-        if not (math.isfinite(value) and value >= 0):
+        if not 0 <= value < math.inf:
             raise ConfigError(f"must be finite and not negative, got {value!r}", name)
 
 

@@ -45,7 +45,7 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
         or run.grid.boundary != "free"
     ):
         raise ConfigError(
-            f"kernel {kernel.model_dump()['type']!r} and indenter {indenter.model_dump()['type']!r}"
+            f"kernel {kernel.type_name!r} and indenter {indenter.type_name!r}"
             f" on a {run.grid.boundary} boundary have no axisymmetric solution here; it needs the "
             "kernel half_space or tensed_membrane, an indenter with an Abel transform such as "
             "paraboloid, sphere or cone, and a free boundary",

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field
 
 from pellicle import ConfigError, hookimpl
-from pellicle.components import AnyTask, Executor, Outcome, Report, Say, Threads
+from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Threads, Work
 
 
 class Dask(Executor):
@@ -32,15 +32,12 @@ class Dask(Executor):
     threads: Annotated[Threads, Field(description="threads of each run's Fourier transforms")] = 1
 
     def map(
-        self,
-        work: Callable[[AnyTask, Say], Outcome],
-        tasks: Sequence[AnyTask],
-        report: Report[AnyTask],
-    ) -> Iterator[tuple[AnyTask, Outcome | Exception]]:
+        self, work: Work[AnyTask, Outcome], tasks: Sequence[AnyTask], report: Report[AnyTask]
+    ) -> Outcomes[AnyTask, Outcome]:
         """Yield each task as it finishes; see `Executor.map`.
 
-        Where the iterator is closed early, running tasks end when they next report something, which
-        is waited for up to 10 s. If this process dies, they do so too.
+        If the iterator is closed early, running tasks end when they next report something; this
+        waits for them up to 10 s. If this process dies, they end likewise.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""The tasks of one study in the hands of a dask scheduler."""
+"""The tasks of one study on a dask scheduler."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from importlib.metadata import version
 from queue import Empty, SimpleQueue
-from types import TracebackType
 from typing import Any, Generic, Self
 from uuid import uuid4
 
@@ -17,15 +16,15 @@ import cloudpickle
 from distributed import Client, Future, KilledWorker, get_worker
 
 from pellicle import ConfigError, PellicleError, memory
-from pellicle.components import AnyTask, Report, Say
+from pellicle.components import AnyTask, Report, Work
 
-from .execution import attempt_far, pack
+from .execution import execute_remotely, pack
 
-_LOOK_EVERY = 2.0
-"""Time without news after which we look whether there are workers [s]."""
-_END_WITHIN = 10.0
-"""Time that running tasks have to end, which they do when they next report something [s]."""
-_LOOK_AGAIN = 0.05
+_CHECK_INTERVAL = 2.0
+"""Time without events after which we check whether there are workers [s]."""
+_END_TIMEOUT = 10.0
+"""Time for which we wait for running tasks to end, at their next report [s]."""
+_POLL_INTERVAL = 0.05
 _NO_WORKERS = (
     "the dask scheduler has no workers; runs wait until there are some: start them with `dask "
     "worker ADDRESS`"
@@ -51,27 +50,25 @@ def connected(address: str) -> Client:
 
 
 class Submission(Generic[AnyTask]):
-    """Tasks that are submitted on entry, and withdrawn on exit as far as they are not done."""
+    """Tasks that are submitted on entry; unfinished ones are withdrawn on exit."""
 
-    def __init__(
-        self, client: Client, work: Callable[[AnyTask, Say], Any], tasks: Sequence[AnyTask]
-    ) -> None:
+    def __init__(self, client: Client, work: Work[AnyTask, Any], tasks: Sequence[AnyTask]) -> None:
         self._client = client
         self._work = work
         self._tasks = list(tasks)
         self._name = f"pellicle-{uuid4().hex}"
         self._futures: dict[int, Future[bytes]] = {}
-        self._news: SimpleQueue[tuple[int, bytes | None]] = SimpleQueue()
+        self._events: SimpleQueue[tuple[int, bytes | None]] = SimpleQueue()
         self._refused: list[tuple[AnyTask, Exception]] = []
 
     def __enter__(self) -> Self:
-        self._client.subscribe_topic(self._name, lambda event: self._news.put(event[1]))
-        most = _largest_worker(self._client)
+        self._client.subscribe_topic(self._name, lambda event: self._events.put(event[1]))
+        largest = _largest_worker(self._client)
         for index, task in enumerate(self._tasks):
             try:
-                if task.memory > most:
+                if task.memory > largest:
                     raise ConfigError(
-                        f"{task.name} needs about {memory.shortage(task.memory, most)} on the "
+                        f"{task.name} needs about {memory.shortage(task.memory, largest)} on the "
                         "largest worker; use fewer points or fewer steps, or larger workers"
                     )
                 self._submit(index)
@@ -79,33 +76,28 @@ class Submission(Generic[AnyTask]):
                 self._refused.append((task, error))
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self._client.cancel(list(self._futures.values()), force=True)
         self._client.unsubscribe_topic(self._name)
-        end = time.monotonic() + _END_WITHIN
+        end = time.monotonic() + _END_TIMEOUT
         while self._futures and _runs_any(self._client, self._name) and time.monotonic() < end:
-            time.sleep(_LOOK_AGAIN)
+            time.sleep(_POLL_INTERVAL)
 
     def outcomes(self, report: Report[AnyTask]) -> Iterator[tuple[AnyTask, Any]]:
         """Yield each task with its outcome, as they finish.
 
-        dask blames the death of a worker on all tasks that it had, those that waited there too. So
-        what it gives up is submitted once more when the others are done, each task alone.
+        dask attributes the death of a worker to all its tasks, waiting ones included. So the tasks
+        that it gives up are submitted once more after the others, one at a time.
         """
         yield from self._refused
-        blamed: list[int] = []
+        suspects: list[int] = []
         for index, outcome in self._finished(report):
             if isinstance(outcome, KilledWorker):
-                blamed.append(index)
+                suspects.append(index)
             else:
                 yield self._tasks[index], outcome
-        for one in blamed:
-            self._submit(one)
+        for suspect in suspects:
+            self._submit(suspect)
             for index, outcome in self._finished(report):
                 if isinstance(outcome, KilledWorker):
                     deaths = outcome.allowed_failures + 1
@@ -126,62 +118,62 @@ class Submission(Generic[AnyTask]):
             pure=False,
         )
         self._futures[index] = future
-        future.add_done_callback(lambda _: self._news.put((index, None)))
+        future.add_done_callback(lambda _: self._events.put((index, None)))
 
     def _finished(self, report: Report[AnyTask]) -> Iterator[tuple[int, Any]]:
-        """Yield the outcome of each task that is submitted, and report what is said meanwhile."""
+        """Yield the outcome of each submitted task, and report messages meanwhile."""
         warned = False
         while self._futures:
             try:
                 # Without a timeout Windows would not let Ctrl-C through.
-                index, said = self._news.get(timeout=_LOOK_EVERY)
+                index, message = self._events.get(timeout=_CHECK_INTERVAL)
             except Empty:
                 if not warned and not self._client.scheduler_info()["workers"]:
                     warned = True
                     warnings.warn(_NO_WORKERS, stacklevel=2)
                 continue
-            if said is not None:
-                report(self._tasks[index], pickle.loads(said))
+            if message is not None:
+                report(self._tasks[index], pickle.loads(message))
             elif index in self._futures:
-                # A result that is taken is let go of: nobody computes it again if its worker dies.
+                # Dropping the future keeps dask from computing the result again if its worker dies.
                 yield index, _outcome(self._futures.pop(index))
 
 
 def _bootstrap() -> Callable[..., bytes]:
-    """Return `carry_out` in a form that can be read where there is no pellicle.
+    """Return `execute_on_worker` in a form that unpickles where pellicle is not installed.
 
-    A function inside a function travels by value. One that is sent by name ends a worker that does
-    not know it, without a word to us.
+    A nested function is sent by value. A function that is sent by name would end a worker that
+    cannot import it, without an error here.
     """
 
-    def begin(*arguments: Any) -> bytes:
-        from pellicle_plugins.executors.dask_tasks import carry_out
+    def start(*arguments: Any) -> bytes:
+        from pellicle_plugins.executors.dask_tasks import execute_on_worker
 
-        return carry_out(*arguments)
+        return execute_on_worker(*arguments)
 
-    return begin
+    return start
 
 
-def carry_out(parcel: bytes, our_version: str, topic: str, index: int) -> bytes:
+def execute_on_worker(payload: bytes, our_version: str, topic: str, index: int) -> bytes:
     """Return the pickled outcome of a packed task, on a worker."""
-    if (there := version("pellicle")) != our_version:
-        error = f"the worker has pellicle {there}, not {our_version} as here; install the same"
+    if (installed := version("pellicle")) != our_version:
+        error = f"the worker has pellicle {installed}, not {our_version} as here; install the same"
         return pickle.dumps(PellicleError(error))
     worker = get_worker()
     key = worker.get_current_task()
 
-    def say(said: Any) -> None:
-        # dask cannot stop a task at work; but it marks one that nobody waits for any more.
+    def say(message: Any) -> None:
+        # dask cannot stop a running task, but marks one whose result nobody waits for.
         task = worker.state.tasks.get(key)
         if task is None or task.state != "executing":
             raise CancelledError(f"{key} was withdrawn")
-        worker.log_event(topic, (index, cloudpickle.dumps(said)))
+        worker.log_event(topic, (index, cloudpickle.dumps(message)))
 
-    return attempt_far(parcel, say)
+    return execute_remotely(payload, say)
 
 
 def _runs_any(client: Client, prefix: str) -> bool:
-    """Whether a worker is still at a task whose key begins with ``prefix``, withdrawn or not."""
+    """Whether a worker still runs a task whose key begins with ``prefix``, withdrawn or not."""
 
     def runs(dask_worker: Any) -> bool:
         return any(str(key).startswith(prefix) for key in dask_worker.state.tasks)

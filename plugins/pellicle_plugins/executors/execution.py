@@ -1,20 +1,17 @@
-"""Carries out one task, whatever becomes of it, here or in another process."""
+"""Execute one task, here or in another process, and return whatever becomes of it."""
 
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable
 from typing import Any
 
 import cloudpickle
 
 from pellicle import PellicleError
-from pellicle.components import AnyTask, Outcome, Say
+from pellicle.components import AnyTask, Outcome, Say, Work
 
 
-def attempt(
-    work: Callable[[AnyTask, Say], Outcome], task: AnyTask, say: Say
-) -> Outcome | Exception:
+def execute(work: Work[AnyTask, Outcome], task: AnyTask, say: Say) -> Outcome | Exception:
     """Return what ``work(task, say)`` returns or raises; only an interruption passes through."""
     try:
         return work(task, say)
@@ -24,10 +21,10 @@ def attempt(
         return PellicleError(f"{task.name}: its work left by sys.exit({error.code!r})")
 
 
-def pack(work: Callable[[AnyTask, Say], Outcome], task: AnyTask) -> bytes:
-    """Return what `attempt_far` takes.
+def pack(work: Work[AnyTask, Outcome], task: AnyTask) -> bytes:
+    """Return the payload for `execute_remotely`.
 
-    cloudpickle sends what scripts and notebooks define, which a worker cannot import, by value.
+    cloudpickle sends what scripts and notebooks define by value, since workers cannot import it.
 
     Raises
     ------
@@ -35,16 +32,16 @@ def pack(work: Callable[[AnyTask, Say], Outcome], task: AnyTask) -> bytes:
         It does not pickle.
     """
     try:
-        parcel: bytes = cloudpickle.dumps((work, task))
+        payload: bytes = cloudpickle.dumps((work, task))
     except Exception as error:
         raise PellicleError(f"{task.name} does not pickle: {_line(error)}") from error
-    return parcel
+    return payload
 
 
-def attempt_far(parcel: bytes, say: Say) -> bytes:
-    """Return the pickled outcome of a packed task, whatever of it does not pickle."""
+def execute_remotely(payload: bytes, say: Say) -> bytes:
+    """Return the pickled outcome of a packed task; what does not pickle becomes an error."""
     try:
-        work, task = pickle.loads(parcel)
+        work, task = pickle.loads(payload)
     except Exception as error:
         return pickle.dumps(
             PellicleError(
@@ -52,18 +49,16 @@ def attempt_far(parcel: bytes, say: Say) -> bytes:
                 "where its worker is"
             )
         )
-    return _packed(attempt(work, task, say), task.name)
-
-
-def _packed(outcome: Any, name: str) -> bytes:
+    outcome: Any = execute(work, task, say)
     try:
         packed: bytes = cloudpickle.dumps(outcome)
-        # Exceptions with arguments of their own often pickle, and cannot be made again.
+        # Exceptions with arguments of their own often pickle but do not unpickle.
         pickle.loads(packed)
     except Exception as error:
         if isinstance(outcome, Exception):
             return pickle.dumps(PellicleError(_line(outcome)))
-        return pickle.dumps(PellicleError(f"{name}: its outcome does not pickle: {_line(error)}"))
+        message = f"{task.name}: its outcome does not pickle: {_line(error)}"
+        return pickle.dumps(PellicleError(message))
     return packed
 
 

@@ -1,14 +1,23 @@
-"""Several runs at once, each in a process of this machine."""
+"""Several runs at once, each in its own process on this machine."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.components import AnyTask, Executor, Outcome, Report, Say, Threads, Workers
+from pellicle.components import (
+    AnyTask,
+    Executor,
+    Outcome,
+    Outcomes,
+    Report,
+    Threads,
+    Work,
+    Workers,
+)
 
 
 class Processes(Executor):
@@ -29,24 +38,21 @@ class Processes(Executor):
     ] = 1
 
     def map(
-        self,
-        work: Callable[[AnyTask, Say], Outcome],
-        tasks: Sequence[AnyTask],
-        report: Report[AnyTask],
-    ) -> Iterator[tuple[AnyTask, Outcome | Exception]]:
+        self, work: Work[AnyTask, Outcome], tasks: Sequence[AnyTask], report: Report[AnyTask]
+    ) -> Outcomes[AnyTask, Outcome]:
         """Yield each task as it finishes; see `Executor.map`."""
         import loky
 
-        from .process_pool import Crew
+        from .process_pool import ProcessPool
 
-        most = self.workers or max(1, loky.cpu_count() // self.threads)
-        with Crew(work, tasks, most, self.threads) as crew:
-            started = crew.begin()
-            while crew.busy or started:
-                yield from started
-                finished = crew.listen(report)
-                # The workers get on before the caller looks at what is finished.
-                started = [*finished, *crew.begin()]
+        workers = self.workers or max(1, loky.cpu_count() // self.threads)
+        with ProcessPool(work, tasks, workers, self.threads) as pool:
+            finished = pool.start()
+            while pool.busy or finished:
+                yield from finished
+                # The next tasks start before the caller handles the finished ones.
+                finished = pool.receive(report)
+                finished += pool.start()
 
 
 @hookimpl

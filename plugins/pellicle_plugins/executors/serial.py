@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Literal
 
 from pellicle import hookimpl
-from pellicle.components import AnyTask, Executor, Outcome, Report, Say
+from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Work
 
-from .execution import attempt
+from .execution import execute
 
 
 class Serial(Executor):
@@ -18,14 +18,11 @@ class Serial(Executor):
     type: Literal["serial"] = "serial"
 
     def map(
-        self,
-        work: Callable[[AnyTask, Say], Outcome],
-        tasks: Sequence[AnyTask],
-        report: Report[AnyTask],
-    ) -> Iterator[tuple[AnyTask, Outcome | Exception]]:
+        self, work: Work[AnyTask, Outcome], tasks: Sequence[AnyTask], report: Report[AnyTask]
+    ) -> Outcomes[AnyTask, Outcome]:
         """Yield each task, in order, with what ``work`` returned or raised."""
         for task in tasks:
-            yield task, attempt(work, task, partial(report, task))
+            yield task, execute(work, task, partial(report, task))
 
 
 @hookimpl

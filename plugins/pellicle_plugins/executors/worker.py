@@ -1,4 +1,4 @@
-"""A process that carries out one task after the other for its parent, and ends with it."""
+"""A process that executes one task after the other for its parent, and ends with it."""
 
 from __future__ import annotations
 
@@ -19,17 +19,18 @@ import loky  # noqa: F401  (makes the start method "loky" known)
 
 from pellicle import PellicleError
 
-from .execution import attempt_far
+from .execution import execute_remotely
 
-_SAID, _OUTCOME = b"s", b"o"
+_MESSAGE, _OUTCOME = b"m", b"o"
 
 
 class Worker:
     """The parent's side of a process.
 
-    loky starts it: afresh, not as a copy of a process that may have threads, and without importing
-    the parent's ``__main__``, so that neither a script without ``if __name__ == "__main__"`` nor a
-    notebook is carried out once more. What they define travels by value, with cloudpickle.
+    loky starts it as a new process, not as a copy of one that may have threads, and without
+    importing the parent's ``__main__``, so that neither a script without
+    ``if __name__ == "__main__"`` nor a notebook runs again. What they define is sent by value, with
+    cloudpickle.
     """
 
     def __init__(self, environment: Mapping[str, str]) -> None:
@@ -37,19 +38,19 @@ class Worker:
         self._process = get_context("loky").Process(  # type: ignore[attr-defined]
             target=_serve, args=(theirs,), daemon=True, env=dict(environment)
         )
-        with theirs, _interruptions_held():
+        with theirs, _interrupts_blocked():
             self._process.start()
 
-    def begin(self, parcel: bytes) -> None:
-        """Hand over a packed task."""
-        # Where it died in the meantime, `receive` says so.
+    def start(self, payload: bytes) -> None:
+        """Send a packed task."""
+        # If the worker has died in the meantime, `receive` returns that as the outcome.
         with suppress(OSError):
-            self.connection.send_bytes(parcel)
+            self.connection.send_bytes(payload)
 
     def receive(self) -> tuple[bool, Any]:
-        """Return whether this is the outcome of the task, and it, or else what its work said.
+        """Return True and the outcome of the task, or False and a message of its work.
 
-        To be called where `connection` is ready. A worker that died leaves an outcome too.
+        To be called when `connection` is ready. The death of the worker is an outcome too.
         """
         try:
             message = self.connection.recv_bytes()
@@ -61,7 +62,7 @@ class Worker:
 
     @property
     def alive(self) -> bool:
-        """Whether it can take a task."""
+        """Whether the process can take a task."""
         return bool(self._process.is_alive())
 
     def end(self) -> None:
@@ -79,8 +80,8 @@ def _cause(code: int) -> str:
 
 
 @contextmanager
-def _interruptions_held() -> Iterator[None]:
-    """Hold Ctrl-C back here, and for good in a process that is started meanwhile."""
+def _interrupts_blocked() -> Iterator[None]:
+    """Block Ctrl-C here meanwhile, and for good in a process that starts meanwhile."""
     if sys.platform == "win32":
         yield
         return
@@ -92,23 +93,23 @@ def _interruptions_held() -> Iterator[None]:
 
 
 def _serve(connection: Connection[Any, Any]) -> None:
-    """Carry out tasks until the parent ends this process, or ends itself."""
-    # A terminal sends Ctrl-C to workers too; what becomes of them is for the parent to say.
+    """Execute tasks until the parent ends this process, or ends itself."""
+    # A terminal sends Ctrl-C to workers too, but the parent decides when they end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parcels: SimpleQueue[bytes] = SimpleQueue()
-    threading.Thread(target=_listen, args=(connection, parcels), daemon=True).start()
+    payloads: SimpleQueue[bytes] = SimpleQueue()
+    threading.Thread(target=_listen, args=(connection, payloads), daemon=True).start()
 
-    def say(said: Any) -> None:
-        connection.send_bytes(_SAID + cloudpickle.dumps(said))
+    def say(message: Any) -> None:
+        connection.send_bytes(_MESSAGE + cloudpickle.dumps(message))
 
     while True:
-        connection.send_bytes(_OUTCOME + attempt_far(parcels.get(), say))
+        connection.send_bytes(_OUTCOME + execute_remotely(payloads.get(), say))
 
 
-def _listen(connection: Connection[Any, Any], parcels: SimpleQueue[bytes]) -> None:
-    """Take tasks in; where the parent is gone, even by SIGKILL, go too, in mid-task."""
+def _listen(connection: Connection[Any, Any], payloads: SimpleQueue[bytes]) -> None:
+    """Receive tasks; when the parent is gone, even by SIGKILL, exit at once."""
     try:
         while True:
-            parcels.put(connection.recv_bytes())
+            payloads.put(connection.recv_bytes())
     except (EOFError, OSError):
         os._exit(1)

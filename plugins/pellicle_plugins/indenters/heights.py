@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, Literal, NoReturn, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import AfterValidator, Field, model_validator
@@ -76,9 +76,8 @@ class Heights(FromHeights):
             The array is not of the grid's shape.
         """
         shape = np.broadcast_shapes(x.shape, y.shape)
-        if self._heights.shape != shape:
-            name, field = (str(self.path), "path") if self.path else ("the array", "values")
-            _refuse_shape(self._heights.shape, shape, name, field)
+        name, field = (str(self.path), "path") if self.path else ("the array", "values")
+        _require_shape(self._heights.shape, shape, name, field)
         below: Array = (self._heights - self._heights.max()) * self.unit
         return below
 
@@ -141,8 +140,8 @@ def _load_hdf5(path: Path, dataset: str | None) -> Any:
         if dataset is None or dataset not in names:
             if not names:
                 raise ValueError("it holds no array")
-            asked = f"no array {dataset!r}" if dataset else "more than one array"
-            raise ConfigError(f"{path} has {asked}; give one of: {', '.join(names)}", "dataset")
+            content = f"no array {dataset!r}" if dataset else "more than one array"
+            raise ConfigError(f"{path} has {content}; give one of: {', '.join(names)}", "dataset")
         _require_header(file[dataset], path)
         return file[dataset][...]
 
@@ -150,9 +149,8 @@ def _load_hdf5(path: Path, dataset: str | None) -> Any:
 def _require_header(array: Any, path: Path) -> None:
     """Refuse an array of unusable shape, type or size before it is read."""
     _require_kind(array, str(path), "path")
-    expected = shape_of_run()
-    if expected is not None and array.shape != expected:
-        _refuse_shape(array.shape, expected, str(path), "path")
+    if (expected := shape_of_run()) is not None:
+        _require_shape(array.shape, expected, str(path), "path")
     require_content(array.size, path)
     require_memory(
         float(array.size) * (array.dtype.itemsize + _BYTES),
@@ -162,14 +160,15 @@ def _require_header(array: Any, path: Path) -> None:
     )
 
 
-def _refuse_shape(
+def _require_shape(
     shape: tuple[int, ...], expected: tuple[int, ...], name: str, field: str
-) -> NoReturn:
-    raise ConfigError(
-        f"{name} is of shape {shape}, and the grid of shape {expected}; set grid.points = "
-        f"{list(shape)}, or resample it",
-        field,
-    )
+) -> None:
+    if shape != expected:
+        raise ConfigError(
+            f"{name} is of shape {shape}, and the grid of shape {expected}; set grid.points = "
+            f"{list(shape)}, or resample it",
+            field,
+        )
 
 
 def _require_kind(raw: Any, name: str, field: str) -> None:

@@ -27,11 +27,11 @@ from .topography_reader import Scan, library, read_scan, require_memory
 _Position = Annotated[float, Quantity("m", at_least=0)]
 _Level = Literal["none", "mean", "tilt", "curvature"]
 _LEVELS: tuple[_Level, ...] = get_args(_Level)
-"""By the degree of the polynomial that is taken away, from −1."""
-# Bytes for each missing point: above what was measured with 10 and 30 % of 2000² missing.
+"""In the order of the degree of the subtracted polynomial, which is −1 for none."""
 _PER_FILLED = 900
-# Sides [m] and rms slopes above which a unit is more likely wrong than the surface is so.
+"""Peak memory per missing point that is filled in [bytes], for 10 to 30 % of 2000² points."""
 _LARGE, _STEEP = 0.1, 1.0
+"""Size [m] and rms slope above which a wrong unit is likelier than such a surface."""
 
 
 class Topography(FromHeights):
@@ -97,13 +97,13 @@ class Topography(FromHeights):
                 "line contact, the heights alone as type = 'heights' with grid.points = […, 1]",
                 "path",
             )
-        self._remark(scan)
+        self._warn_of_unit(scan)
         self._keep(scan.heights, scan.digest)
         self._size = scan.size
         return self
 
-    def _remark(self, scan: Scan) -> None:
-        """Warn of a size and of slopes that a wrong unit makes."""
+    def _warn_of_unit(self, scan: Scan) -> None:
+        """Warn of a size or slopes that suggest a wrong unit."""
         doubts = []
         if max(scan.size) > _LARGE:
             doubts.append(f"is of {scan.size[0]:g} × {scan.size[1]:g} m")
@@ -146,7 +146,7 @@ class Topography(FromHeights):
                 "surface is interpolated, not measured",
                 stacklevel=2,
             )
-        # Of each axis: the cells seen from the corner of the scan, and the points under the domain.
+        # Cells, and points of the scan under the domain, as distances from its corner.
         cells = [x.ravel() + self._middle[0], y.ravel() + self._middle[1]]
         window = tuple(self._under(which, axis, pitch[which]) for which, axis in enumerate(axes))
         heights = self._prepared(window)
@@ -154,10 +154,10 @@ class Topography(FromHeights):
             (np.arange(s.start, s.stop) + 0.5) * d for s, d in zip(window, pitch, strict=True)
         ]
         sampled = heights
-        for axis, (own, wanted) in enumerate(zip(points, cells, strict=True)):
-            spline = make_interp_spline(own, sampled, k=min(3, own.size - 1), axis=axis)
-            sampled = spline(np.clip(wanted, own[0], own[-1]))
-        # A spline may rise above the points that it goes through.
+        for axis, (known, cell) in enumerate(zip(points, cells, strict=True)):
+            spline = make_interp_spline(known, sampled, k=min(3, known.size - 1), axis=axis)
+            sampled = spline(np.clip(cell, known[0], known[-1]))
+        # A spline may exceed the points that it interpolates.
         return sampled - max(float(heights.max()), float(sampled.max()))
 
     @property
@@ -168,7 +168,7 @@ class Topography(FromHeights):
         """Return the points of the scan under the domain along one axis."""
         low = axis.first - axis.spacing / 2 + self._middle[which]
         high = low + axis.period
-        # Instruments disagree by a point on what the size of a scan is.
+        # Instruments count the size of a scan with or without its last point.
         if low < -0.51 * pitch or high > self._size[which] + 0.51 * pitch:
             name, centre = "xy"[which], self._middle[which]
             room = 2 * min(centre, self._size[which] - centre)
@@ -189,7 +189,7 @@ class Topography(FromHeights):
         return slice(first, last)
 
     def _prepared(self, window: tuple[slice, ...]) -> Array:
-        """Return what is measured under the domain, filled, levelled and with peaks up [m]."""
+        """Return the scan under the domain, filled, levelled and with peaks up [m]."""
         heights = self._heights[window]
         missing = np.isnan(heights)
         if missing.any():
@@ -212,14 +212,14 @@ class Topography(FromHeights):
 
 
 def _rms(values: Array) -> float:
-    """Return the root mean square of what is finite; 0 if nothing is."""
+    """Return the root mean square of the finite values; 0 without any."""
     finite = np.abs(values[np.isfinite(values)])
     largest = float(finite.max(initial=0.0))
     return largest * float(np.sqrt(np.mean((finite / largest) ** 2))) if largest else 0.0
 
 
 def _filled(heights: Array, missing: Mask) -> Array:
-    """Return heights whose missing ones solve Laplace's equation among the others."""
+    """Return heights with missing ones filled in by the solution of Laplace's equation."""
     known = np.ma.masked_array(np.where(missing, 0.0, heights), mask=missing)
     scan = library().Topography(known, heights.shape)
     filled = scan.interpolate_undefined_data_with_harmonic_function()
@@ -227,10 +227,10 @@ def _filled(heights: Array, missing: Mask) -> Array:
 
 
 def _levelled(heights: Array, degree: int) -> Array:
-    """Return heights less the polynomial of that total degree that fits them best.
+    """Return heights minus the polynomial of a total degree that fits them best.
 
-    The basis is a product of ones along x and y, and so are its scalar products: what a solver of
-    least squares would take twenty times the memory of the heights for.
+    The basis functions are products of functions of x and of y, and so are their scalar products. A
+    general least-squares solver would take twenty times the memory of the heights.
     """
     if degree < 0:
         return heights
@@ -239,7 +239,7 @@ def _levelled(heights: Array, degree: int) -> Array:
     gram_x, gram_y = along_x.T @ along_x, along_y.T @ along_y
     products = gram_x[np.ix_(i, i)] * gram_y[np.ix_(j, j)]
     factors = np.zeros((degree + 1, degree + 1))
-    # Two points do not tell a square from a constant.
+    # On two points a square and a constant are linearly dependent.
     factors[i, j] = np.linalg.lstsq(products, (along_x.T @ heights @ along_y)[i, j])[0]
     return np.asarray(heights - along_x @ factors @ along_y.T)
 

@@ -1,4 +1,4 @@
-"""Reads the files of profilometers and scanning probe microscopes, by SurfaceTopography."""
+"""Read files of profilometers and scanning probe microscopes with SurfaceTopography."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 from pellicle.units import Quantity
 
-# Peak while a scan is read and laid on the grid, in arrays of its points, and while plain text is
-# parsed, in lengths of the file: above what was measured at 2000² points (8) and 1000² (11).
 _ARRAYS = 9
-_TIMES_TEXT = 12
-# What deflate, which HDF5, zip and gzip pack by, makes of equal bytes: no file holds more.
+"""Peak memory while a scan is read, in arrays of its points; 8 were measured at 2000² points."""
+_TEXT_FACTOR = 12
+"""Peak memory while text is parsed, over the length of the file; 11 were measured at 1000²."""
 _POINTS_PER_BYTE = 1032
-# Share of their distance by which the places of regular points may be off, as they are rounded.
-_OFF_PLACE = 0.05
-# Share by which the size in a header may differ from that which the coordinates have.
-_OFF_SIZE = 0.02
+"""Largest ratio at which deflate, used by HDF5, zip and gzip, compresses equal bytes."""
+_POSITION_TOLERANCE = 0.05
+"""Allowed rounding of the positions of regular points, relative to their spacing."""
+_SIZE_TOLERANCE = 0.02
+"""Allowed difference of the sizes in the header and by the coordinates, relative."""
 
 
 class Scan(NamedTuple):
     """A measured surface."""
 
     heights: Array
-    """[m], along x then y; NaN where a point is missing."""
+    """Heights [m] along x, then y; NaN where a point is missing."""
     size: tuple[float, float]
     """Edge lengths [m]."""
     digest: str
@@ -53,11 +53,11 @@ def read_scan(
     path
         The file.
     channel
-        Name of the data set; the one that the format means as a rule if None.
+        Name of the data set; the default of the file format if None.
     unit
-        Length that 1 in the file stands for [m], if the file does not say it.
+        Length that 1 in the file stands for [m], if the file does not state it.
     size
-        Edge lengths [m], if the file does not say them.
+        Edge lengths [m], if the file does not state them.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def read_scan(
     return _read(path.absolute(), stat.st_mtime_ns, stat.st_size, channel, unit, size)
 
 
-# The runs of a study may take many parts of one large scan.
+# The runs of a study may use many parts of one large scan.
 @lru_cache(maxsize=1)
 def _read(
     path: Path,
@@ -82,19 +82,19 @@ def _read(
     unit: float | None,
     size: tuple[float, float] | None,
 ) -> Scan:
-    """Return what `read_scan` does; a file that was written to since is read again."""
+    """Return the scan as `read_scan` does; a file that has changed is read again."""
     io = library().IO
     try:
         file = path.open("rb")
     except OSError as error:
         raise ConfigError(f"{path}: {error.strerror}; give the file of a scan", "path") from None
-    # The readers warn of what is not ours to mend, and raise whatever a damaged file leads to.
+    # Readers warn of what we cannot change, and raise any exception for a damaged file.
     with file, warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         warnings.simplefilter("error", np.exceptions.ComplexWarning)
         text = b"\0" not in file.read(512)
         require_memory(
-            length * (_TIMES_TEXT if text else 1),
+            length * (_TEXT_FACTOR if text else 1),
             f"{path}, a file of {length / 1e9:.3g} GB,",
             "export a part of it",
             "path",
@@ -105,12 +105,12 @@ def _read(
         try:
             reader = io.open_topography(file)
             if reader.format() == "hgt" and path.suffix.lower() != ".hgt":
-                # Any file of 2n² bytes passes as this format, which is n² bare whole numbers.
+                # Any file of 2n² bytes passes as this format of n² integers without a header.
                 raise io.CannotDetectFileFormat
-            found = _channel(reader, path, channel)
-            scale = _scale(found, path, unit)
-            edges = _size(found, path, scale, size)
-            nx, ny = found.nb_grid_pts
+            data = _channel(reader, path, channel)
+            scale = _scale(data, path, unit)
+            edges = _size(data, path, scale, size)
+            nx, ny = data.nb_grid_pts
             require_content(nx * ny, path)
             require_memory(
                 8.0 * _ARRAYS * nx * ny,
@@ -118,11 +118,11 @@ def _read(
                 "export a part of it",
                 "path",
             )
-            # Sizes are not needed for the heights, but asked for where the file has none.
-            dummy = None if found.physical_sizes is not None else (1.0, 1.0)
-            read = found.topography(physical_sizes=dummy).heights()
-            heights = np.ma.filled(np.ma.asarray(read, dtype=np.float64), np.nan)
-            if _is_coordinates(reader, found):
+            # The heights do not depend on the size, but the reader requires one.
+            dummy = None if data.physical_sizes is not None else (1.0, 1.0)
+            raw = data.topography(physical_sizes=dummy).heights()
+            heights = np.ma.filled(np.ma.asarray(raw, dtype=np.float64), np.nan)
+            if _is_coordinates(reader, data):
                 heights = _on_grid(heights, edges, path)
         except ConfigError:
             raise
@@ -155,7 +155,7 @@ def library() -> ModuleType:
     """
     try:
         with warnings.catch_warnings():
-            # It says that there is no MPI, which is not asked for.
+            # It warns that there is no MPI, which we do not use.
             warnings.simplefilter("ignore", ImportWarning)
             import SurfaceTopography.IO
     except ImportError as error:
@@ -168,32 +168,32 @@ def library() -> ModuleType:
 
 
 def _channel(reader: Any, path: Path, name: str | None) -> Any:
-    """Return the data set that is meant, which is heights over a regular grid."""
-    channels = {each.name: each for each in reader.channels}
-    heights = ", ".join(repr(each.name) for each in reader.height_channels) or "none"
+    """Return the data set of that name, or the default; it must be heights on a regular grid."""
+    channels = {channel.name: channel for channel in reader.channels}
+    heights = ", ".join(repr(channel.name) for channel in reader.height_channels) or "none"
     if name is not None and name not in channels:
         raise ConfigError(
             f"{name!r} is not in {path}; its channels of heights are: {heights}", "channel"
         )
-    found = reader.default_channel if name is None else channels[name]
-    if not found.is_height_channel:
+    channel = reader.default_channel if name is None else channels[name]
+    if not channel.is_height_channel:
         raise ConfigError(
-            f"{found.name!r} of {path} is in {found.data_unit}, not heights; its channels of "
+            f"{channel.name!r} of {path} is in {channel.data_unit}, not heights; its channels of "
             f"heights are: {heights}",
             "channel",
         )
-    if found.dim != 2:
+    if channel.dim != 2:
         raise ConfigError(
             f"{path} is a profile along a line, and contact needs an area; give an areal scan, or, "
             "for line contact, the heights alone as type = 'heights' with grid.points = […, 1]",
             "path",
         )
-    # A reader of coordinates has refused those that are read as a matrix, but for their header.
-    if found.is_uniform is False or (
-        _is_coordinates(reader, found) and found.physical_sizes is None
+    # A matrix of three columns without a size in the header is a list of irregular points.
+    if channel.is_uniform is False or (
+        _is_coordinates(reader, channel) and channel.physical_sizes is None
     ):
         raise _irregular(path)
-    return found
+    return channel
 
 
 def _irregular(path: Path) -> ConfigError:
@@ -203,17 +203,17 @@ def _irregular(path: Path) -> ConfigError:
 
 
 def _is_coordinates(reader: Any, channel: Any) -> bool:
-    """Whether what was read as a matrix of three columns are points x, y, z."""
+    """Whether a matrix of three columns is a list of points x, y, z."""
     return bool(reader.format() == "asc" and channel.nb_grid_pts[0] == 3)
 
 
 def _on_grid(columns: Array, size: tuple[float, float], path: Path) -> Array:
-    """Return the heights of points x, y, z, of shape (3, n), over the regular grid they make.
+    """Return the heights of points x, y, z, of shape (3, n), on their regular grid.
 
     Raises
     ------
     ConfigError
-        They make none, or one whose edges are not as ``size``, stated in the file, is.
+        They are not on a regular grid, or its edges differ from ``size``, stated in the file.
     """
     *positions, heights = columns
     rows, extents = [], []
@@ -222,34 +222,34 @@ def _on_grid(columns: Array, size: tuple[float, float], path: Path) -> Array:
             raise _irregular(path)
         gaps = np.diff(np.sort(position))
         pitch = np.ptp(position) / np.count_nonzero(gaps > gaps.max() / 2)
-        place = (position - position.min()) / pitch
-        if (np.abs(place - np.rint(place)) > _OFF_PLACE).any():
+        index = (position - position.min()) / pitch
+        if (np.abs(index - np.rint(index)) > _POSITION_TOLERANCE).any():
             raise _irregular(path)
-        rows.append(np.rint(place).astype(int))
+        rows.append(np.rint(index).astype(int))
         extents.append(np.ptp(position) + pitch)
     shape = rows[0].max() + 1, rows[1].max() + 1
-    index = rows[0] * shape[1] + rows[1]
-    if heights.size != shape[0] * shape[1] or (np.bincount(index) != 1).any():
+    cell = rows[0] * shape[1] + rows[1]
+    if heights.size != shape[0] * shape[1] or (np.bincount(cell) != 1).any():
         raise _irregular(path)
     # Coordinates and size may be in different units, and the size with or without the last pitch.
     ratios = [
         {edge / extent, edge / (extent * (n - 1) / n)}
         for edge, extent, n in zip(size, extents, shape, strict=True)
     ]
-    if all(abs(one / other - 1) > _OFF_SIZE for one in ratios[0] for other in ratios[1]):
+    if all(abs(x / y - 1) > _SIZE_TOLERANCE for x in ratios[0] for y in ratios[1]):
         raise ConfigError(
             f"{path} states a size of {size[0]:g} × {size[1]:g} m, and its coordinates are as "
             f"{extents[0]:g} to {extents[1]:g}; correct its header",
             "path",
         )
     grid = np.empty(heights.size)
-    grid[index] = heights
+    grid[cell] = heights
     return grid.reshape(shape)
 
 
-def _scale(found: Any, path: Path, unit: float | None) -> float:
+def _scale(channel: Any, path: Path, unit: float | None) -> float:
     """Return the length that 1 in the file stands for [m]."""
-    if found.unit is None:
+    if channel.unit is None:
         if unit is None:
             raise ConfigError(
                 f"is missing, and {path} does not say in which unit its heights are; give the "
@@ -258,18 +258,18 @@ def _scale(found: Any, path: Path, unit: float | None) -> float:
             )
         return unit
     if unit is not None:
-        raise ConfigError(f"{path} states its own unit, {found.unit}; leave this out", "unit")
+        raise ConfigError(f"{path} states its own unit, {channel.unit}; leave this out", "unit")
     try:
-        return Quantity("m")(f"1 {found.unit}")
+        return Quantity("m")(f"1 {channel.unit}")
     except ValueError as error:
-        raise ConfigError(f"{path} is in a unit that is no length: {error}", "path") from None
+        raise ConfigError(f"{path} is in a unit that is not a length: {error}", "path") from None
 
 
 def _size(
-    found: Any, path: Path, scale: float, size: tuple[float, float] | None
+    channel: Any, path: Path, scale: float, size: tuple[float, float] | None
 ) -> tuple[float, float]:
-    stated = found.physical_sizes
-    # Programs that do not know the size write 0.
+    stated = channel.physical_sizes
+    # Programs without knowledge of the size write 0.
     if stated is None or not all(0 < edge < inf for edge in stated):
         if size is None:
             raise ConfigError(
@@ -285,12 +285,12 @@ def _size(
 
 
 def require_content(points: int, path: Path) -> None:
-    """Refuse a file whose header claims more points than its bytes can hold, packed or not.
+    """Check that the bytes of a file can hold the points of its header, compressed or not.
 
     Raises
     ------
     ConfigError
-        In ``path``: it claims so.
+        They cannot; the error is in ``path``.
     """
     length = path.stat().st_size
     if points > _POINTS_PER_BYTE * length:
@@ -301,18 +301,18 @@ def require_content(points: int, path: Path) -> None:
         )
 
 
-def require_memory(needed: float, asked: str, remedy: str, field: str) -> None:
-    """Refuse what needs more memory [bytes] than there is.
+def require_memory(needed: float, subject: str, remedy: str, field: str) -> None:
+    """Check that the available memory [bytes] suffices.
 
     Raises
     ------
     ConfigError
-        In ``field``: it does not fit.
+        It does not; the error is in ``field``.
     """
-    there = memory.available()
-    if there is not None and needed > there:
-        shortage = memory.shortage(needed, there)
-        raise ConfigError(f"{asked} needs about {shortage}; {remedy}", field)
+    available = memory.available()
+    if available is not None and needed > available:
+        shortage = memory.shortage(needed, available)
+        raise ConfigError(f"{subject} needs about {shortage}; {remedy}", field)
 
 
 def _reason(error: Exception) -> str:

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from tests.framework.bad_input.command_line import START, Cli, Outcome
 from typer.testing import CliRunner
 
 from pellicle.cli import app
+from tests.framework.bad_input.command_line import START, Cli, Outcome
 
 
 @pytest.fixture

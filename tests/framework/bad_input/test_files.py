@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 import xarray as xr
-from tests.framework.bad_input.command_line import Cli, says
 
 import pellicle as pl
 from pellicle.results import storage
+from tests.framework.bad_input.command_line import Cli, says
 
 TOML_FILES = {
     "syntax": (
@@ -52,6 +53,17 @@ def _write_hdf5(path: Path, **arrays: object) -> None:
             file[name] = values
 
 
+def _npy(values: np.ndarray) -> bytes:
+    file = BytesIO()
+    np.save(file, values)
+    return file.getvalue()
+
+
+def _write_npz(path: Path) -> None:
+    with path.open("wb") as file:
+        np.savez(file, GOOD)
+
+
 def _write_huge_npy(path: Path) -> None:
     with path.open("wb") as file:
         header = {"descr": "<f8", "fortran_order": False, "shape": (10**9, 10**9)}
@@ -77,13 +89,13 @@ HEIGHTS: dict[str, tuple[str, Callable[[Path], object], list[str]]] = {
     ),
     "truncated npy": (
         "h.npy",
-        lambda path: (np.save(path, GOOD), path.write_bytes(path.read_bytes()[:-99])),
+        lambda path: path.write_bytes(_npy(GOOD)[:-99]),
         ["indenter.path", "cannot be read as npy", "2-D array"],
     ),
     "npy that claims an exabyte": ("h.npy", _write_huge_npy, ["cannot be read as npy"]),
     "npz": (
         "h.npy",
-        lambda path: (np.savez("h", GOOD), Path("h.npz").rename(path)),
+        _write_npz,
         ["no .npy file"],
     ),
     "NaN": ("h.npy", lambda path: np.save(path, NAN), ["holds 16 NaN or infinite", "fill or crop"]),

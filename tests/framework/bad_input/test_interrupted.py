@@ -12,11 +12,11 @@ from pathlib import Path
 import h5py
 import pytest
 import xarray as xr
-from tests.framework.bad_input.command_line import START, says
 from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli import app
+from tests.framework.bad_input.command_line import START, says
 
 # Where tests run in the background, their processes would ignore Ctrl-C.
 LISTENING = (

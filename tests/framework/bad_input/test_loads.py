@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from tests.framework.bad_input.command_line import Cli, says
 
 import pellicle as pl
+from tests.framework.bad_input.command_line import Cli, says
 
 LOADINGS = {
     "two": (

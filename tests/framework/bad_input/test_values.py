@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from tests.framework.bad_input.command_line import Cli, says
 
 from pellicle import memory
+from tests.framework.bad_input.command_line import Cli, says
 
 KEYS_AND_TYPES = {
     "unknown key": (

@@ -6,9 +6,9 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
-from tests.framework.broken_contracts.short_run import BOUNDARIES, GRID, run
 
 import pellicle as pl
+from tests.framework.broken_contracts.short_run import BOUNDARIES, GRID, run
 
 
 def correction_that_returns(returned: object) -> pl.AreaCorrection:

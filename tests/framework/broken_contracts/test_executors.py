@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any, Literal
 
 import pytest
-from tests.framework.broken_contracts.short_run import study
 
 import pellicle as pl
+from tests.framework.broken_contracts.short_run import study
 
 
 class Executor(pl.Executor):

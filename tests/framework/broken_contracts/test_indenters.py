@@ -6,12 +6,15 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
-from tests.framework.broken_contracts.short_run import base, run
 
 import pellicle as pl
+from tests.framework.broken_contracts.short_run import base, run
+
+Paraboloid: Any = base("indenter", "paraboloid")
+Sphere: Any = base("indenter", "sphere")
 
 
-class Indenter(base("indenter", "paraboloid")):  # type: ignore[misc]
+class Indenter(Paraboloid):
     """Paraboloid that breaks its contract."""
 
     type: Literal["liar"] = "liar"
@@ -152,7 +155,7 @@ def too_short(curve: pl.ForceCurve, depth: Any) -> Any:
     return curve._replace(force=curve.force[:-1])
 
 
-def complex_force(curve: pl.ForceCurve, depth: Any) -> Any:
+def complex_force(curve: Any, depth: Any) -> Any:
     """Return a complex force."""
     return curve._replace(force=curve.force + 0j)
 
@@ -181,7 +184,7 @@ FORCE_CURVES = {
 def test_a_force_curve_that_lies_is_refused(change: Any) -> None:
     """No modulus is fitted by a force that is none."""
 
-    class Bead(base("indenter", "sphere")):  # type: ignore[misc]
+    class Bead(Sphere):
         """Sphere with another force curve."""
 
         type: Literal["liar"] = "liar"
@@ -191,7 +194,7 @@ def test_a_force_curve_that_lies_is_refused(change: Any) -> None:
             return change(super().force_curve(depth, length), depth)
 
     depth = np.linspace(-1e-6, 2e-6, 60)
-    force = 1e4 * base("indenter", "sphere")(radius=1e-5).force_curve(depth, 1e-7).force
+    force = 1e4 * Sphere(radius=1e-5).force_curve(depth, 1e-7).force
     with pytest.raises(pl.PluginError, match="indenter 'liar'") as error:
         pl.fit(depth, force, indenter=Bead(radius=1e-5))
     assert FORCE_CURVES[change] in str(error.value)

@@ -6,12 +6,15 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
-from tests.framework.broken_contracts.short_run import BOUNDARIES, GRID, base, run
 
 import pellicle as pl
+from tests.framework.broken_contracts.short_run import BOUNDARIES, GRID, base, run
+
+HalfSpace: Any = base("kernel", "half_space")
+TensedMembrane: Any = base("kernel", "tensed_membrane")
 
 
-class Kernel(base("kernel", "half_space")):  # type: ignore[misc]
+class Kernel(HalfSpace):
     """Half-space that breaks its contract."""
 
     type: Literal["liar"] = "liar"
@@ -117,7 +120,7 @@ class OtherSolid(Kernel):
         return 0.5 * super().radial_primitive(r)
 
 
-class SkinForgotten(base("kernel", "tensed_membrane")):  # type: ignore[misc]
+class SkinForgotten(TensedMembrane):
     """Has the closed form without its skin: right for long waves only."""
 
     type: Literal["liar"] = "liar"

@@ -8,10 +8,12 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
-from tests.framework.broken_contracts.short_run import base, run, study
 
 import pellicle as pl
 from pellicle.plugins import registry
+from tests.framework.broken_contracts.short_run import base, run, study
+
+HalfSpace: Any = base("kernel", "half_space")
 
 
 class Output(pl.Output):
@@ -156,7 +158,7 @@ def test_each_output_gets_data_of_its_own(tmp_path: Path) -> None:
             result.dataset.attrs["title"] = "another"
             return ()
 
-    class Looking(Output):
+    class Looking(pl.Output):
         """Looks at what it is given."""
 
         type: Literal["looking"] = "looking"
@@ -175,7 +177,7 @@ def test_each_output_gets_data_of_its_own(tmp_path: Path) -> None:
 def test_a_component_cannot_end_the_process(code: int) -> None:
     """A component that calls sys.exit() is named; the run does not end as if all were well."""
 
-    class Leaving(base("kernel", "half_space")):  # type: ignore[misc]
+    class Leaving(HalfSpace):
         """Ends the process."""
 
         type: Literal["liar"] = "liar"

@@ -7,13 +7,15 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
-from tests.framework.broken_contracts.short_run import base, run
 
 import pellicle as pl
 from pellicle.problem import Problem
+from tests.framework.broken_contracts.short_run import base, run
+
+ConjugateGradient: Any = base("solver", "conjugate_gradient")
 
 
-class Solver(base("solver", "conjugate_gradient")):  # type: ignore[misc]
+class Solver(ConjugateGradient):
     """Conjugate gradients that break their contract."""
 
     type: Literal["liar"] = "liar"
@@ -22,7 +24,7 @@ class Solver(base("solver", "conjugate_gradient")):  # type: ignore[misc]
         """Return the solution, changed."""
         return self.change(super().solve(problem, start, monitor), problem, start)
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Return something else."""
         return solution
 
@@ -30,14 +32,14 @@ class Solver(base("solver", "conjugate_gradient")):  # type: ignore[misc]
 class NoSolution(Solver):
     """Forgets to return."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Return None."""
 
 
 class BarePressure(Solver):
     """Returns the pressure alone."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Return an array."""
         return solution.pressure
 
@@ -45,7 +47,7 @@ class BarePressure(Solver):
 class Transposed(Solver):
     """Returns a pressure of the wrong shape."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Return the transpose."""
         return replace(solution, state=solution.pressure.T)
 
@@ -53,7 +55,7 @@ class Transposed(Solver):
 class ComplexPressure(Solver):
     """Returns a complex pressure."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Return an imaginary part."""
         return replace(solution, state=solution.pressure + 1j)
 
@@ -61,7 +63,7 @@ class ComplexPressure(Solver):
 class PressureAsText(Solver):
     """Returns text as its pressure."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Return text."""
         return replace(solution, state="10 Pa")
 
@@ -69,7 +71,7 @@ class PressureAsText(Solver):
 class NoStop(Solver):
     """Does not say why it stopped."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Return a solution without a reason."""
         return replace(solution, stop=None)
 
@@ -77,7 +79,7 @@ class NoStop(Solver):
 class OtherOperator(Solver):
     """Puts another operator into its problem."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Set the operator behind the back of the dataclass."""
         object.__setattr__(problem, "operator", None)
         return solution
@@ -86,7 +88,7 @@ class OtherOperator(Solver):
 class AssignsOperator(Solver):
     """Assigns another operator to its problem."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Set the operator."""
         problem.operator = None
         return solution
@@ -95,7 +97,7 @@ class AssignsOperator(Solver):
 class SofterOperator(Solver):
     """Makes the operator twice as soft in place, and solves that."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Scale the symbol."""
         problem.operator._symbol["D"][...] *= 2
         return solution
@@ -104,7 +106,7 @@ class SofterOperator(Solver):
 class OtherSymbol(Solver):
     """Gives the operator another symbol."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Replace the symbol."""
         problem.operator._symbol.double = 2 * problem.operator._symbol["D"]
         return solution
@@ -113,7 +115,7 @@ class OtherSymbol(Solver):
 class OtherKernel(Solver):
     """Gives the operator another kernel."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Replace the kernel."""
         problem.operator.kernel = None
         return solution
@@ -122,7 +124,7 @@ class OtherKernel(Solver):
 class LowersProfile(Solver):
     """Lowers the indenter."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Write to the profile."""
         problem.profile[...] -= 1e-6
         return solution
@@ -131,7 +133,7 @@ class LowersProfile(Solver):
 class WorksInStart(Solver):
     """Returns the array that it is given to start from, with new values."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Write to the start."""
         if start is not None:
             start.pressure[...] = solution.pressure
@@ -166,7 +168,7 @@ class ClipsStart(Solver):
 class NamesPressure(Solver):
     """Names the argument of a solution that is a state by now."""
 
-    def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+    def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Make a solution by keyword."""
         made: Any = pl.Solution
         return made(pressure=solution.pressure, iterations=1)
@@ -210,7 +212,7 @@ def test_applications_cannot_be_set() -> None:
     class Modest(Solver):
         """Sets the count back."""
 
-        def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+        def change(self, solution: Any, problem: Any, start: Any) -> Any:
             """Set the count."""
             problem.operator.applications = 0
 
@@ -226,7 +228,7 @@ def test_a_solver_that_uses_its_memory_again_changes_no_earlier_step() -> None:
     class Thrifty(Solver):
         """Returns the same array each time."""
 
-        def change(self, solution: pl.Solution, problem: Any, start: Any) -> Any:
+        def change(self, solution: Any, problem: Any, start: Any) -> Any:
             """Write into one array."""
             memory[...] = solution.pressure
             return replace(solution, state=memory)

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.framework.broken_contracts.short_run import GRID, study
 
 import pellicle as pl
 from pellicle.plugins import registry
+from tests.framework.broken_contracts.short_run import GRID, study
 
 NO_THREADS = [0, -1, 1.5, 2.0, "2", True, np.float64(2), [2], np.array([1, 2])]
 

@@ -23,9 +23,10 @@ def test_is_refused_at_once(content: str, message: str, tmp_path: Path) -> None:
     """A tower of powers, a sea of spaces and an endless number end in a message."""
     path = tmp_path / "a.csv"
     path.write_text(content, encoding="utf-8")
+    error: object
     try:
         (error,) = read(path).values()
     except PellicleError as raised:
-        error = raised  # type: ignore[assignment]
+        error = raised
     assert isinstance(error, PellicleError)
     assert message in str(error)

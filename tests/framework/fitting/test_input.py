@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 from click.testing import Result
 from numpy.typing import NDArray
-from tests.pictures import drawn_width
 
 import pellicle as pl
 from pellicle.fitting.curves.curve import Curve, clean
 from pellicle.fitting.curves.readers import read
+from tests.pictures import drawn_width
 
 Array = NDArray[np.float64]
 MODULUS, TENSION, RADIUS, POINT = 5e3, 7.5e-3, 10e-6, 1e-6

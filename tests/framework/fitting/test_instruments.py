@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.framework.fitting import instruments
 
 import pellicle as pl
 from pellicle.fitting.curves.columns import Calibration
@@ -26,6 +25,7 @@ from pellicle.fitting.models.force_model import (
     MODULUS as REDUCED_MODULUS,
 )
 from pellicle.fitting.statistics.likelihood import Likelihood
+from tests.framework.fitting import instruments
 
 Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS, SPRING, SENSITIVITY = 5e3, 3e-6, 10e-6, 0.05, 50e-9

@@ -72,7 +72,7 @@ def test_folder(cli: Cli, tmp_path: Path) -> None:
         assert words in result.stderr
     with xr.open_dataset("out/fits.h5", engine="h5netcdf") as table:
         assert table["reduced_modulus"].attrs["units"] == "Pa"
-        assert np.isfinite(table["reduced_modulus"]).values.tolist() == [True] * 2 + [False] * 4
+        assert np.isfinite(table["reduced_modulus"].values).tolist() == [True] * 2 + [False] * 4
         assert (table["reduced_modulus_low"] < table["reduced_modulus"])[:2].all()
     lines = Path("out/fits.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0].startswith("curve,status,reduced_modulus [Pa],reduced_modulus_low [Pa],")

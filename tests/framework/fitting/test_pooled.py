@@ -6,13 +6,13 @@ import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from math import log
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import Result
 from numpy.typing import NDArray
-from tests.pictures import drawn_width
 
 import pellicle as pl
 from pellicle.fitting.models import simulation
@@ -30,6 +30,7 @@ from pellicle.fitting.report.page import save_report
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.pooled_likelihood import Pool
 from pellicle.fitting.statistics.profile import widen
+from tests.pictures import drawn_width
 
 Array = NDArray[np.float64]
 TRUE_MODULUS, TRUE_TENSION = 2e3, 5e-3
@@ -157,15 +158,22 @@ def test_slopes_and_bound_are_those_of_all_points(fit: pl.PooledFit) -> None:
     assert [deviations[p] for p in pool.parameters] == pytest.approx(bound, rel=1e-6)
 
 
+def ends_of(estimate: pl.Estimate) -> tuple[float, float]:
+    """Return both ends of an interval that is closed."""
+    assert estimate.low is not None
+    assert estimate.high is not None
+    return estimate.low, estimate.high
+
+
 def test_ends_are_where_the_profile_has_risen(fit: pl.PooledFit) -> None:
     """At each end the least χ² is up by the stated rise, and no start finds less."""
     random = np.random.default_rng(3)
     bound = fit.pool.deviations(fit.parameters)
     points = [curve.contact_point for curve in fit.curves]
     for which, ends in (
-        (MODULUS, np.log([fit.reduced_modulus.low, fit.reduced_modulus.high])),
-        (TENSION, [fit.tension.low, fit.tension.high]),
-        *((CONTACT_POINT.of_curve(at), [each.low, each.high]) for at, each in enumerate(points)),
+        (MODULUS, tuple(map(log, ends_of(fit.reduced_modulus)))),
+        (TENSION, ends_of(fit.tension)),
+        *((CONTACT_POINT.of_curve(at), ends_of(point)) for at, point in enumerate(points)),
     ):
         for end in ends:
             start = {
@@ -234,14 +242,20 @@ def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> Non
     """What coarser grids would shift is added to the intervals, as for one curve."""
     depths, ratios = 2.0 ** np.arange(-9, 1), simulation._RATIOS
     bead = pl.indenter("paraboloid", radius=1.0)
-    forces = np.array(
+    forces: Array = np.array(
         [
             [bead.force_curve(np.array([depth]), ratio * depth**0.5).force[0] for ratio in ratios]  # type: ignore[attr-defined]
             for depth in depths
         ]
     )
     coarse = SimulatedCurve(
-        bead, {"type": "tensed_membrane"}, depths, ratios, np.log(1.01 * forces), (0.5, 0.0), 1.0
+        bead,
+        {"type": "tensed_membrane"},
+        np.asarray(depths),
+        ratios,
+        np.log(1.01 * forces),
+        (0.5, 0.0),
+        1.0,
     )
     exact = replace(coarse, log_forces=np.log(forces))
     starts = [truth(float(z[z.size // 4])) for z, _ in measured.values()]
@@ -275,13 +289,10 @@ def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Re
     said = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
     assert said["reduced_modulus"]["low"] < TRUE_MODULUS < said["reduced_modulus"]["high"]
     # The curves, their residuals, and what each parameter costs.
-    for columns, rows in (
-        ((0.0, 0.5), (0.0, 0.68)),
-        ((0.0, 0.5), (0.72, 1.0)),
-        ((0.5, 1.0), (0.0, 0.5)),
-        ((0.5, 1.0), (0.5, 1.0)),
-    ):
-        assert drawn_width(Path("out/pool.png"), columns, rows) > 0.6
+    left, right = (0.0, 0.5), (0.5, 1.0)
+    panels = (left, (0.0, 0.68)), (left, (0.72, 1.0)), (right, (0.0, 0.5)), (right, (0.5, 1.0))
+    for panel in panels:
+        assert drawn_width(Path("out/pool.png"), *panel) > 0.6
     page = Path("out/pool.html").read_text(encoding="utf-8")
     for words in (
         "The curves agree",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import log
+
 import numpy as np
 import pytest
 from fit_ensemble import scores
@@ -96,6 +98,13 @@ def test_jacobian(ratio: float) -> None:
         assert np.allclose(slope[away], near[away] / 2, atol=tolerance)
 
 
+def ends_of(estimate: pl.Estimate) -> tuple[float, float]:
+    """Return both ends of an interval that is closed."""
+    assert estimate.low is not None
+    assert estimate.high is not None
+    return estimate.low, estimate.high
+
+
 def test_interval_ends_are_where_the_profile_has_risen() -> None:
     """A minimiser of another kind finds χ² up by the stated rise at each end."""
     fit = fitted(*synthetic(0.3))
@@ -105,9 +114,9 @@ def test_interval_ends_are_where_the_profile_has_risen() -> None:
         CONTACT_POINT: (MODULUS, TENSION),
     }
     ends = {
-        MODULUS: np.log([fit.reduced_modulus.low, fit.reduced_modulus.high]),
-        TENSION: [fit.tension.low, fit.tension.high],
-        CONTACT_POINT: [fit.contact_point.low, fit.contact_point.high],
+        MODULUS: tuple(map(log, ends_of(fit.reduced_modulus))),
+        TENSION: ends_of(fit.tension),
+        CONTACT_POINT: ends_of(fit.contact_point),
     }
     bound = fit.likelihood.deviations(fit.parameters)
     for which, free in others.items():
@@ -149,14 +158,13 @@ def test_interval_ends_of_a_cone_without_tension() -> None:
     assert fit.tension.high is not None
     step = {CONTACT_POINT: 5e-9, MODULUS: 0.01, TENSION: fit.tension.high / 5}
     for which, end in (
-        (CONTACT_POINT, fit.contact_point.low),
-        (CONTACT_POINT, fit.contact_point.high),
+        *((CONTACT_POINT, end) for end in ends_of(fit.contact_point)),
         (TENSION, fit.tension.high),
     ):
         free = [p for p in step if p != which]
 
         def chi_squared(
-            u: Array, which: Parameter = which, free: object = free, end: float | None = end
+            u: Array, which: Parameter = which, free: list[Parameter] = free, end: float = end
         ) -> float:
             parameters = fit.parameters | {which: end}
             for parameter, change in zip(free, u, strict=True):

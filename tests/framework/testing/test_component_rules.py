@@ -11,12 +11,12 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import pytest
 from pydantic import ConfigDict, Field, SerializationInfo, model_serializer
-from tests.framework.testing.mutants import base, complaint
 
 import pellicle as pl
 from pellicle.plugins import registry
 from pellicle.testing import component as component_rules
 from pellicle.units import Length
+from tests.framework.testing.mutants import base, complaint
 
 Paraboloid: Any = base("indenter", "paraboloid")
 

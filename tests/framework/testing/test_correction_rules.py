@@ -4,6 +4,7 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
+
 from tests.framework.testing.mutants import base, check_base, check_mutant, rules_of
 
 Yastrebov: Any = base("correction", "yastrebov")

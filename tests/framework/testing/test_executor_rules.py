@@ -7,10 +7,10 @@ from functools import partial
 from typing import Any, Literal
 
 import pytest
-from tests.framework.testing.mutants import check_base, check_mutant, rules_of
 
 import pellicle as pl
 from pellicle import testing
+from tests.framework.testing.mutants import check_base, check_mutant, rules_of
 
 
 class Executor(pl.Executor):

@@ -4,6 +4,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
+
 from tests.framework.testing.mutants import base, check_base, check_mutant, rules_of
 
 Paraboloid: Any = base("indenter", "paraboloid")

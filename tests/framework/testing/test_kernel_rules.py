@@ -5,6 +5,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
+
 from tests.framework.testing.mutants import base, check_base, check_mutant, rules_of
 
 HalfSpace: Any = base("kernel", "half_space")
@@ -80,7 +81,7 @@ class Wavering(Kernel):
     _answers: ClassVar[Any] = count(1)
 
     def mean_compliance(self) -> float:
-        return 1e-6 * next(self._answers)
+        return 1e-6 * int(next(self._answers))
 
 
 class Half(Kernel):

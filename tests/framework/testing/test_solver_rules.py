@@ -4,9 +4,9 @@ from dataclasses import replace
 from typing import Any, Literal
 
 import pytest
-from tests.framework.testing.mutants import base, check_base, check_mutant, rules_of
 
 import pellicle as pl
+from tests.framework.testing.mutants import base, check_base, check_mutant, rules_of
 
 ConjugateGradient: Any = base("solver", "conjugate_gradient")
 

@@ -141,7 +141,7 @@ def test_task_that_kills_every_worker_is_given_up(address: str) -> None:
 
 def test_no_workers_are_warned_of(start_dask: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Who waits for workers that do not come is told so, and how to start them."""
-    monkeypatch.setattr("pellicle_plugins.executors.dask_tasks._LOOK_EVERY", 0.05)
+    monkeypatch.setattr("pellicle_plugins.executors.dask_tasks._CHECK_INTERVAL", 0.05)
     with (
         start_dask(0) as address,
         pytest.raises(UserWarning, match=r"has no workers; .* `dask worker ADDRESS`"),

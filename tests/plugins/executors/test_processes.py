@@ -190,6 +190,7 @@ def test_linear_algebra_is_pinned(threads: int, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
     ((_, seen),) = processes(workers=1, threads=threads).map(environment, [Job(0)], silence)
+    assert isinstance(seen, dict)
     assert seen["OMP_NUM_THREADS"] == seen["OPENBLAS_NUM_THREADS"] == str(threads)
 
 

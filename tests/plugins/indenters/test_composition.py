@@ -135,8 +135,8 @@ def test_lowest_point_is_off_by_what_cells_hide() -> None:
 
 def test_heights_add_up_to_a_constant() -> None:
     """A sum has the shape of its parts' heights added."""
-    parts = [{"type": "sphere", "radius": "1 mm"}, ROUGH, QUADRIC]
-    added = sum(_profile(_make(part)) for part in parts)
+    parts: list[dict[str, Any]] = [{"type": "sphere", "radius": "1 mm"}, ROUGH, QUADRIC]
+    added = np.sum([_profile(_make(part)) for part in parts], axis=0)
     difference = _profile(pl.indenter("sum", parts=parts)) - added
     assert np.ptp(difference) < 1e-18
     assert difference.mean() > 0
@@ -159,7 +159,7 @@ def _axis(data: Any) -> float:
     p = data["pressure"][0]
     x, y = data["x"], data["y"]
     xx, yy, xy = (float((p * each).sum()) for each in (x * x, y * y, x * y))
-    return np.arctan2(2 * xy, xx - yy) / 2 % pi
+    return float(np.arctan2(2 * xy, xx - yy) / 2 % pi)
 
 
 def test_turning_by_a_right_angle_swaps_the_axes() -> None:

@@ -38,7 +38,8 @@ def _profile(grid: pl.Grid = GRID, path: Path = GWY, **fields: Any) -> np.ndarra
 
 def _heights() -> np.ndarray:
     """Return the heights [m] that both files are made from."""
-    return PATCH["surface"]()
+    heights: np.ndarray = PATCH["surface"]()
+    return heights
 
 
 def test_heights_unit_and_size_are_the_files() -> None:
@@ -231,7 +232,8 @@ def test_parts_of_one_scan_share_its_heights() -> None:
     """A study over places of a scan reads it once, and holds it once."""
     centres = [["0.5 mm", "0.5 mm"], ["0.6 mm", "0.4 mm"]]
     study = pl.Study(run=_run(GWY), vary={"indenter.parts.0.centre": centres})
-    first, second = (point.run.indenter.parts[0] for point in study.points)
+    indenters: list[Any] = [point.run.indenter for point in study.points]
+    first, second = (indenter.parts[0] for indenter in indenters)
     assert first != second
     assert first._heights is second._heights
 

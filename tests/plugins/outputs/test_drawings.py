@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from tests.pictures import drawn_width, pixels
 
 import pellicle as pl
 from pellicle.errors import ConvergenceWarning
 from pellicle.plugins import registry
+from tests.pictures import drawn_width, pixels
 
 TENSION, RADIUS = "kernel.tension", "indenter.radius"
 

@@ -12,13 +12,13 @@ from typing import Any
 import matplotlib
 import numpy as np
 import pytest
-from tests.pictures import colourfulness, drawn_width, pixels
 from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli import app
 from pellicle.plotting import save_figure, svg, without_round_off
 from pellicle.report.page import Section, Text, page
+from tests.pictures import colourfulness, drawn_width, pixels
 
 RUN: dict[str, Any] = {
     "grid": {"points": 16, "size": "1 mm", "boundary": "periodic"},

@@ -19,10 +19,10 @@ import numpy as np
 import pint
 import pytest
 import xarray as xr
-from tests.pictures import colourfulness
 
 import pellicle as pl
 from pellicle.runs import steps
+from tests.pictures import colourfulness
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -93,7 +93,8 @@ class Page(HTMLParser):
     def maps(self) -> dict[str, Any]:
         """The data of the maps."""
         (text,) = (text for text in self.texts["script"] if text.startswith("{"))
-        return json.loads(text)  # type: ignore[no-any-return]
+        data: dict[str, Any] = json.loads(text)
+        return data
 
     @property
     def said(self) -> str:
@@ -373,7 +374,7 @@ def show(browser: Chrome, path: Path) -> None:
 
 def drawn(browser: Chrome) -> list[int]:
     """Return how many colours each map has inside its axes, once it is drawn."""
-    return browser.execute_async_script(  # type: ignore[no-untyped-call,no-any-return]
+    return browser.execute_async_script(  # type: ignore[no-any-return]
         """
         const done = arguments[0], begun = Date.now();
         const look = (canvas) => {
@@ -395,7 +396,7 @@ def drawn(browser: Chrome) -> list[int]:
 
 def picture(browser: Chrome, number: int = 0) -> str:
     """Return a canvas as it is drawn now."""
-    text: str = browser.execute_script(  # type: ignore[no-untyped-call]
+    text: str = browser.execute_script(
         f"return document.querySelectorAll('canvas')[{number}].toDataURL()"
     )
     return text
@@ -425,9 +426,9 @@ def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset]) -> N
 
     origin = ScrollOrigin.from_element(canvas)
     ActionChains(browser, duration=0).scroll_from_origin(origin, 0, -300).perform()
+    ActionChains(browser, duration=0).move_to_element(canvas).perform()
     found = re.fullmatch(
-        r"x = (\S+) µm, y = (\S+) µm: contact pressure (\S+) Pa, gap (\S+) µm",
-        (ActionChains(browser, duration=0).move_to_element(canvas).perform(), readout.text)[1],
+        r"x = (\S+) µm, y = (\S+) µm: contact pressure (\S+) Pa, gap (\S+) µm", readout.text
     )
     assert found, readout.text
     x, y, pressure, gap = (float(text.replace("−", "-")) for text in found.groups())
@@ -476,7 +477,7 @@ def test_browser_shows_a_study(browser: Chrome, studied: tuple[Path, xr.Dataset]
     last = table["force"].isel(step=-1).values.ravel()
     names = table["run"].values.ravel()
     for order in (np.argsort(last), np.argsort(-last)):
-        browser.execute_script("arguments[0].click()", force)  # type: ignore[no-untyped-call]
+        browser.execute_script("arguments[0].click()", force)
         links = browser.find_elements(By.CSS_SELECTOR, "tbody a")
         assert [link.text for link in links] == list(names[order])
     assert errors(browser) == []

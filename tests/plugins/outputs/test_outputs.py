@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.colors import to_hex
-from tests.pictures import drawn_width, pixels
 
 import pellicle as pl
+from tests.pictures import drawn_width, pixels
 
 BLUE, ORANGE = "#1f77b4", "#ff7f0e"
 FIGURES = {
@@ -26,7 +26,7 @@ FIGURES = {
 """The colours of the lines in each figure."""
 
 
-def _run(outputs: list[dict[str, Any]], **changes: Any) -> pl.Run:
+def _run(outputs: list[dict[str, Any]] | None, **changes: Any) -> pl.Run:
     return pl.Run(
         **{
             "title": "Two Steps",
@@ -103,13 +103,13 @@ def _interrupt_in_step(step: int, monkeypatch: pytest.MonkeyPatch, module: Any) 
 def _line_colours(path: Path) -> set[str]:
     """Return the colours of the lines in a figure: of PNG those of all pixels."""
     if path.suffix == ".png":
-        return {to_hex(pixel) for pixel in np.unique(pixels(path).reshape(-1, 3), axis=0)}
+        return {to_hex(tuple(pixel)) for pixel in np.unique(pixels(path).reshape(-1, 3), axis=0)}
     if path.suffix == ".svg":
         return set(re.findall(r"(?<=stroke: )#\w{6}", path.read_text(encoding="utf-8")))
     streams = re.findall(rb"(?s)stream\n(x.*?)\nendstream", path.read_bytes())
     content = b"\n".join(zlib.decompressobj().decompress(stream) for stream in streams)
     strokes = re.findall(rb"([\d.]+)\s([\d.]+)\s([\d.]+)\sRG\b", content)
-    return {to_hex([float(part) for part in stroke]) for stroke in strokes}
+    return {to_hex((float(stroke[0]), float(stroke[1]), float(stroke[2]))) for stroke in strokes}
 
 
 @pytest.mark.parametrize("format_", ["png", "svg", "pdf"])
@@ -160,7 +160,7 @@ def test_figures_have_units(tmp_path: Path) -> None:
         plotting.force_depth(result, axes)
     assert axes.get_xlabel() == "depth [µm]"
     assert axes.get_ylabel() == "force [µN]"
-    assert list(axes.lines[0].get_xdata()) == pytest.approx([5.0, 10.0])
+    assert np.asarray(axes.lines[0].get_xdata()) == pytest.approx([5.0, 10.0])
 
 
 def test_hdf5(tmp_path: Path) -> None:
@@ -204,6 +204,7 @@ def test_hdf5_replaces_its_own_result_only(tmp_path: Path) -> None:
 def test_library_writes_nothing_unasked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A library call without a folder or outputs leaves no file."""
     monkeypatch.chdir(tmp_path)
-    for outputs in (None, []):
-        pl.run(_run(outputs), progress=False)  # type: ignore[arg-type]
+    choices: tuple[list[dict[str, Any]] | None, ...] = (None, [])
+    for outputs in choices:
+        pl.run(_run(outputs), progress=False)
     assert list(tmp_path.iterdir()) == []

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from pellicle import ConfigError, Grid, Kernel, Problem, Solver, State, Stop
+from pellicle.numerics.problem import Depth, Force
 from pellicle.operators import Array, make_operator
 from pellicle.problem import Equilibrium, measure
 from pellicle_plugins.indenters.self_affine import SelfAffine
@@ -62,7 +63,8 @@ class Layer(Kernel):
     def compliance(self, q: Array) -> Array:
         """Return 1/k; numerator and denominator times 2 exp(−2x), which do not overflow."""
         x = q * self.thickness
-        return 2 / q * np.expm1(-2 * x) ** 2 / (4 * x * np.exp(-2 * x) - np.expm1(-4 * x))
+        bottom = 4 * x * np.exp(-2 * x) - np.expm1(-4 * x)
+        return np.asarray(2 / q * np.expm1(-2 * x) ** 2 / bottom)
 
 
 class Plate(Kernel):
@@ -204,13 +206,16 @@ def test_depth_that_does_not_touch(boundary: Boundary, points: int) -> None:
     # The centre is no cell's on an even grid, so that the lowest cell is above the lowest point.
     problem = make(points + 1, boundary, skin(0.02), paraboloid, "depth", 1.0)
     lowest = -float(problem.profile.max())
-    assert not replace(problem, value=0.999 * lowest).touches
-    assert not replace(problem, value=lowest).touches
-    just = replace(problem, value=1.001 * lowest)
+    assert not replace(problem, control=Depth(0.999 * lowest)).touches
+    assert not replace(problem, control=Depth(lowest)).touches
+    just = replace(problem, control=Depth(1.001 * lowest))
     assert just.touches
     found = active_set(just).found
     assert np.count_nonzero(found.contact) == 4
-    assert measure(replace(problem, value=0.999 * lowest), np.zeros(problem.grid.shape)).force == 0
+    assert (
+        measure(replace(problem, control=Depth(0.999 * lowest)), np.zeros(problem.grid.shape)).force
+        == 0
+    )
 
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)
@@ -228,7 +233,7 @@ def test_one_cell(boundary: Boundary, s: float, points: int) -> None:
     assert found.pressure[middle] == pytest.approx(expected, rel=1e-12)
 
     force = expected * problem.grid.cell_area
-    back = active_set(replace(problem, prescribed="force", value=force)).found
+    back = active_set(replace(problem, control=Force(force))).found
     assert np.count_nonzero(back.contact) == 1
     assert back.depth == pytest.approx(problem.value, rel=1e-10)
 
@@ -243,7 +248,7 @@ def test_full_contact_on_a_periodic_boundary(s: float, excess: float) -> None:
     stiffness[q > 0] = 1 / skin(s).compliance(q[q > 0])
     shape = np.fft.irfft2(stiffness * np.fft.rfft2(problem.profile), s=(96, 96))
     mean = -excess * float(shape.min())
-    solved = active_set(replace(problem, value=mean), tolerance=1e-9)
+    solved = active_set(replace(problem, control=Force(mean)), tolerance=1e-9)
     assert solved.found.contact.all()
     np.testing.assert_allclose(solved.found.pressure, shape + mean, atol=1e-7 * mean)
     assert solved.found.depth == pytest.approx(-problem.profile.mean(), rel=1e-9)
@@ -274,7 +279,7 @@ def test_flat_punch_on_the_whole_domain(
 def test_depth_near_the_mean_plane(s: float, share: float) -> None:
     """Depths up to 99.99 % of what no load reaches on a periodic boundary."""
     problem = make(64, "periodic", skin(s), rough(0.1), "depth", 1.0)
-    problem = replace(problem, value=-share * float(problem.profile.mean()))
+    problem = replace(problem, control=Depth(-share * float(problem.profile.mean())))
     assert assert_agrees(problem).applications <= 55  # 17 … 42
 
 
@@ -394,7 +399,8 @@ def test_grids(
     for prescribed, value in (("depth", 0.05), ("force", 2e-3 * size[0] * size[1])):
         problem = make(points, boundary, skin(s), paraboloid, prescribed, value, size)  # type: ignore[arg-type]
         if not problem.touches or value >= -float(problem.profile.mean()):
-            problem = replace(problem, value=-(problem.profile.max() + problem.profile.mean()) / 2)
+            value = -float(problem.profile.max() + problem.profile.mean()) / 2
+            problem = replace(problem, control=replace(problem.control, value=value))
         assert_agrees(problem)
 
 
@@ -477,7 +483,7 @@ def waves(number: int, power: float) -> Shape:
 
     def profile(x: Array, y: Array) -> Array:
         each = (np.cos(2 * np.pi * k * x + phase) / k**power for k, phase in enumerate(phases, 1))
-        return 0.01 * sum(each) + 0 * y
+        return np.asarray(0.01 * sum(each) + 0 * y)
 
     return profile
 
@@ -598,7 +604,7 @@ def test_force_and_depth_agree(boundary: Boundary, s: float, shape: Shape) -> No
     """The force found at a depth has that depth, and the same pressure."""
     problem = make(97, boundary, skin(s), shape, "depth", 0.012)
     first = active_set(problem).found
-    second = active_set(replace(problem, prescribed="force", value=first.force)).found
+    second = active_set(replace(problem, control=Force(first.force))).found
     assert second.depth == pytest.approx(problem.value, rel=1e-8)
     highest = first.pressure.max()
     np.testing.assert_allclose(second.pressure, first.pressure, atol=1e-7 * highest)
@@ -610,7 +616,7 @@ def test_force_and_depth_agree(boundary: Boundary, s: float, shape: Shape) -> No
 def next_step(kernel: Kernel, boundary: Boundary, shape: Shape, depth: float) -> tuple[int, int]:
     """Return the applications of a step of +5 % depth, started warm and cold, at N = 256."""
     problem = make(256, boundary, kernel, shape, "depth", depth)
-    later = replace(problem, value=1.05 * depth)
+    later = replace(problem, control=Depth(1.05 * depth))
     before = active_set(problem, 1e-6).found.pressure
     warm, cold = active_set(later, 1e-6, start=before), active_set(later, 1e-6)
     highest = cold.found.pressure.max()
@@ -657,7 +663,7 @@ def rough_applications(s: float) -> dict[int, int]:
     counts = {}
     for points in (128, 256, 512):
         problem = make(points, "periodic", skin(s), rough(16 / points), "force", 1.0)
-        problem = replace(problem, value=0.1 * rms_slope(problem))
+        problem = replace(problem, control=Force(0.1 * rms_slope(problem)))
         counts[points] = active_set(problem, 1e-6).applications
     return counts
 

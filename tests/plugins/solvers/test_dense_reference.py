@@ -24,6 +24,7 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.optimize import brentq, nnls
 
 from pellicle import Grid, Problem, Solution, Solver, Stop
+from pellicle.numerics.problem import Force
 from pellicle.operators import Array, make_operator
 from pellicle.problem import height_scale, measure
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
@@ -190,13 +191,15 @@ class InOtherUnits:
         )
         size = tuple(self.length * edge for edge in problem.grid.size)
         grid = problem.grid.model_copy(update={"size": size})
-        of_force = self.modulus * self.length**2
+        unit = self.length
+        if isinstance(problem.control, Force):
+            unit = self.modulus * self.length**2
         scaled = replace(
             problem,
             grid=grid,
             operator=make_operator(larger, grid),
             profile=problem.profile * self.length,
-            value=problem.value * (self.length if problem.prescribed == "depth" else of_force),
+            control=replace(problem.control, value=problem.control.value * unit),
         )
         solution = self.solver.solve(scaled, None, lambda iteration, residual_ratio: None)
         return replace(solution, state=solution.pressure / self.modulus)

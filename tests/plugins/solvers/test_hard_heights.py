@@ -62,7 +62,7 @@ def test_a_checkerboard_under_a_plate(points: int, most: int, depth: float) -> N
     """
     grid = Grid(points=points, size=LENGTH, boundary="free")
     i, j = np.indices(grid.shape)
-    assert_solved(make(PLATE, grid, -1e-6 * ((i + j) % 2), "depth", depth), most)
+    assert_solved(make(PLATE, grid, np.where((i + j) % 2, -1e-6, 0.0), "depth", depth), most)
 
 
 @pytest.mark.parametrize("depth", [1e-6, 3e-6, 1e-5])

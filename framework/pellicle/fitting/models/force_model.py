@@ -46,7 +46,7 @@ class Parameter:
 
     def value(self, coordinate: float) -> float:
         """Return the value at a coordinate."""
-        return np.exp(coordinate) if self.logarithmic else coordinate
+        return float(np.exp(coordinate)) if self.logarithmic else coordinate
 
 
 Values = Mapping[Parameter, float]
@@ -83,38 +83,30 @@ class ForceModel(Protocol):
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """The parameters, without contact point and baseline, which every curve has."""
-        ...
 
     @property
     def depth_limit(self) -> float:
         """Depth [m] up to which the model holds; infinite if there is none."""
-        ...
 
     @property
     def accuracy(self) -> float:
         """Error of the force relative to the largest one; noise below this cannot be resolved."""
-        ...
 
     @property
     def coarse(self) -> ForceModel | None:
         """The same model from coarser grids, if it is simulated, else None."""
-        ...
 
     def force(self, depth: Array, values: Values) -> ModelForce:
         """Return force and derivatives at depths [m] of shape (n,); 0 where ``depth`` ≤ 0."""
-        ...
 
     def guesses(self, span: float) -> Iterable[Values]:
         """Yield values to compare with a curve whose positions span ``span`` [m]."""
-        ...
 
     def scaled(self, values: Values, factor: float) -> Values:
         """Return values for which the force is ``factor`` times as large at every depth."""
-        ...
 
     def description(self) -> dict[str, Any]:
         """Return indenter and solid as JSON data."""
-        ...
 
 
 class TensionModel(ForceModel, ABC):

@@ -53,14 +53,29 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     trend = line
     if depth * independent < _DEEPEST * noise_of_sums:
         trend = np.column_stack([line, _last(window, points)])
-        failed.append(_adhesion(drop, window))
+        message = (
+            f"the force dips by {drop:.3g} N below its baseline over the last {window} points "
+            "before contact: that is adhesion, which the model does not have, and which bends a "
+            "curve as tension does; measure where nothing attracts, or fit the tension with a "
+            "model of adhesion"
+        )
+        failed.append(FailedCheck("adhesion", message))
     else:
         far = points
     failed += _drift_or_offset(residuals, force[:far], line[:far], noise_of_sums)
     if slow is not None:
-        failed.append(_correlated(slow, independent, far))
+        message = (
+            f"the noise before contact is correlated: {far} points carry as much information as "
+            f"{max(far / slow.excess(independent), 1):.2g} independent ones, and the intervals are "
+            "widened by that"
+        )
+        failed.append(FailedCheck("slow_noise", message))
     if residuals.step > _COARSE * neighbour_noise(force):
-        failed.append(_steps(residuals.step))
+        message = (
+            f"the force comes in steps of {residuals.step:.3g} N, larger than its noise, and "
+            "values between them are not known; measure with a finer range of the detector"
+        )
+        failed.append(FailedCheck("steps", message))
     remainder = force - trend @ np.linalg.lstsq(trend, force, rcond=None)[0]
     freedom = points - trend.shape[1]
     noise = max(float(np.sqrt(np.sum(remainder**2) / freedom)), residuals.floor)
@@ -75,7 +90,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
 
 def falling_baseline(residuals: Residuals) -> tuple[str, ...]:
     """Return a warning if a fitted baseline falls towards contact, as attraction would cause."""
-    if not residuals.is_free(SLOPE):
+    if SLOPE not in residuals.baseline:
         return ()
     before = residuals.before
     force, travel = residuals.likelihood.force[before], residuals.likelihood.travel[before]
@@ -148,54 +163,24 @@ def _equal_bins(points: int) -> Array:
     return np.where(index[:, None] == np.arange(_BINS), 1.0, 0.0)
 
 
-def _adhesion(drop: float, window: int) -> FailedCheck:
-    return FailedCheck(
-        "adhesion",
-        f"the force dips by {drop:.3g} N below its baseline over the last {window} points before "
-        "contact: that is adhesion, which the model does not have, and which bends a curve as "
-        "tension does; measure where nothing attracts, or fit the tension with a model of adhesion",
-    )
-
-
 def _drift_or_offset(
     residuals: Residuals, force: Array, line: Array, noise: float
 ) -> list[FailedCheck]:
     """Return the check that the force before contact is constant and 0, unless that is fitted."""
     slope, steepness = _slope(force, line)
-    if not residuals.is_free(SLOPE) and 2 * ndtr(-abs(slope) / noise) < CHANCE:
+    if SLOPE not in residuals.baseline and 2 * ndtr(-abs(slope) / noise) < CHANCE:
         change = slope * steepness * float(np.ptp(line[:, 1]))
-        return [
-            FailedCheck(
-                "drift",
-                f"the force drifts by {change:.3g} N before contact, and modulus and tension are "
-                "off by its drift in contact; fit the baseline too, with baseline 'slope'",
-            )
-        ]
+        message = (
+            f"the force drifts by {change:.3g} N before contact, and modulus and tension are off "
+            "by its drift in contact; fit the baseline too, with baseline 'slope'"
+        )
+        return [FailedCheck("drift", message)]
     mean = float(np.mean(force))
     least = 10 * residuals.likelihood.accuracy * float(np.max(np.abs(residuals.likelihood.force)))
     if residuals.baseline or abs(mean) <= max(_OFFSET_LIMIT * noise / np.sqrt(force.size), least):
         return []
-    return [
-        FailedCheck(
-            "offset",
-            f"the force before contact is {mean:.3g} N, not 0, and modulus and tension are off by "
-            "it; fit the baseline too, with baseline 'offset'",
-        )
-    ]
-
-
-def _correlated(slow: BinnedNoise, independent: float, points: int) -> FailedCheck:
-    return FailedCheck(
-        "slow_noise",
-        f"the noise before contact is correlated: {points} points carry as much information as "
-        f"{max(points / slow.excess(independent), 1):.2g} independent ones, and the intervals are "
-        "widened by that",
+    message = (
+        f"the force before contact is {mean:.3g} N, not 0, and modulus and tension are off by it; "
+        "fit the baseline too, with baseline 'offset'"
     )
-
-
-def _steps(step: float) -> FailedCheck:
-    return FailedCheck(
-        "steps",
-        f"the force comes in steps of {step:.3g} N, larger than its noise, and values between them "
-        "are not known; measure with a finer range of the detector",
-    )
+    return [FailedCheck("offset", message)]

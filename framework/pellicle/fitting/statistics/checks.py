@@ -124,15 +124,13 @@ def _spikes(residuals: Residuals) -> list[FailedCheck]:
     wild[1:-1] &= (np.abs(off[1:-1]) >= np.abs(off[:-2])) & (np.abs(off[1:-1]) >= np.abs(off[2:]))
     if not (count := int(wild.sum())):
         return []
-    first = int(np.argmax(wild)) + 1
-    return [
-        FailedCheck(
-            "spikes",
-            f"{count} points lie more than {_WILD:g} standard deviations from their neighbours, "
-            f"first the one at {residuals.likelihood.position[first]:.6g} m: such spikes are not "
-            "normal noise, and shift the fit; leave them out",
-        )
-    ]
+    first = residuals.likelihood.position[int(np.argmax(wild)) + 1]
+    message = (
+        f"{count} points lie more than {_WILD:g} standard deviations from their neighbours, first "
+        f"the one at {first:.6g} m: such spikes are not normal noise, and shift the fit; leave "
+        "them out"
+    )
+    return [FailedCheck("spikes", message)]
 
 
 def _check_whole(residuals: Residuals) -> NoiseEstimate:
@@ -154,11 +152,17 @@ def _check_contact(residuals: Residuals, before: NoiseEstimate) -> NoiseEstimate
     """Return the noise before contact, widened by the checks that residuals in contact fail."""
     contact = ~residuals.before
     count = int(contact.sum())
-    freedom_contact = max(count - len(residuals.likelihood.free) + residuals.baseline, 1)
+    freedom_contact = max(count - len(residuals.likelihood.free) + len(residuals.baseline), 1)
     scatter = float(np.sqrt(np.sum(residuals.force[contact] ** 2) / freedom_contact))
     noise, freedom, failed = before.noise, before.freedom, list(before.failed)
     if scatter > noise and fdtrc(freedom_contact, freedom, (scatter / noise) ** 2) < CHANCE:
-        failed.append(_misfit(residuals, scatter / noise))
+        failed.append(
+            _misfit(
+                "misfit",
+                f"the residuals are {scatter / noise:.2g} times the noise before it",
+                residuals,
+            )
+        )
         noise, freedom = scatter, min(freedom, freedom_contact)
     sums = residuals.binned(_contact_bins(residuals))
     if sums is None:
@@ -184,29 +188,22 @@ def _contact_bins(residuals: Residuals) -> Array:
     return np.where(index[:, None] == np.arange(len(_DEPTHS) - 1), 1.0, 0.0)
 
 
-def _model(residuals: Residuals) -> str:
-    """Return the assumptions of the model in words."""
-    point = residuals.parameters[CONTACT_POINT]
-    fixed = "" if residuals.is_free(CONTACT_POINT) else f", contact from {point:g} m on"
-    return f"the model (this indenter, this elastic solid, no adhesion{fixed})"
-
-
-def _misfit(residuals: Residuals, factor: float) -> FailedCheck:
-    return FailedCheck(
-        "misfit",
-        f"in contact the residuals are {factor:.2g} times the noise before it: "
-        f"{_model(residuals)} does not describe the curve; the intervals are widened by that "
-        "factor",
-    )
-
-
 def _pattern(residuals: Residuals, sums: BinnedNoise, independent: float) -> FailedCheck:
     factor = np.sqrt(sums.excess(independent))
+    finding = (
+        f"the residuals follow a pattern, with sums {factor:.2g} times those of independent noise"
+    )
+    return _misfit("pattern", finding, residuals)
+
+
+def _misfit(code: str, finding: str, residuals: Residuals) -> FailedCheck:
+    point = residuals.parameters[CONTACT_POINT]
+    is_free = CONTACT_POINT in residuals.likelihood.free
+    fixed = "" if is_free else f", contact from {point:g} m on"
     return FailedCheck(
-        "pattern",
-        f"in contact the residuals follow a pattern, with sums {factor:.2g} times those of "
-        f"independent noise: {_model(residuals)} does not describe the curve; the intervals are "
-        "widened by that factor",
+        code,
+        f"in contact {finding}: the model (this indenter, this elastic solid, no adhesion{fixed}) "
+        "does not describe the curve; the intervals are widened by that factor",
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -24,7 +24,7 @@ from pellicle.fitting.models.force_model import (
 
 REACH = np.log(100.0)
 """Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""
-FARTHEST = 10.0
+_FARTHEST = 10.0
 """Largest distance of the contact point before the first position, over the range of positions."""
 _LARGEST_CHANGE = 20.0
 """Largest change of a logarithm in one search: beyond every interval, and exp does not overflow."""
@@ -98,7 +98,7 @@ class ChiSquared(ABC):
     def ranges(self) -> Mapping[Parameter, Range]:
         """Scale and limits of each coordinate.
 
-        Beyond the limits (contact further away than `FARTHEST`, a baseline that carries more than
+        Beyond the limits (contact further away than `_FARTHEST`, a baseline that carries more than
         the whole force) other parameters cancel the change, along valleys of χ² without end.
         """
 
@@ -188,25 +188,18 @@ class ChiSquared(ABC):
             return start | dict(zip(free, (u * scale).tolist(), strict=True))
 
         # The optimiser asks for the Jacobian where it has just asked for the residuals.
-        jacobians: dict[bytes, Array] = {}
-
-        def residuals(u: Array) -> Array:
-            jacobians.clear()
-            values, jacobians[u.tobytes()] = self.linearised(full(u))
-            return values
-
-        def jacobian(u: Array) -> Array:
-            known = jacobians.get(u.tobytes())
-            scaled: Array = (self.jacobian(full(u)) if known is None else known)[:, columns] * scale
-            return scaled
+        @lru_cache(maxsize=1)
+        def linearised(u: bytes) -> tuple[Array, Array]:
+            residuals, jacobian = self.linearised(full(np.frombuffer(u)))
+            return residuals, jacobian[:, columns] * scale
 
         u = np.clip([start[p] for p in free], lowest, highest) / scale
         # Dogbox is faster at active bounds, but makes small steps along curved valleys.
         for method, most in _METHODS:
             solution = least_squares(
-                residuals,
+                lambda u: linearised(u.tobytes())[0],
                 u,
-                jacobian,
+                lambda u: linearised(u.tobytes())[1],
                 (lowest / scale, highest / scale),
                 method=method,
                 xtol=_TOLERANCE,
@@ -284,7 +277,7 @@ class Likelihood(ChiSquared):
             for p in self.force_model.parameters
         }
         return ranges | {
-            CONTACT_POINT: Range(span, z.min() - FARTHEST * span, z.max()),
+            CONTACT_POINT: Range(span, z.min() - _FARTHEST * span, z.max()),
             OFFSET: Range(height, force.min() - height, force.max() + height),
             SLOPE: Range(height / span, -steepest, steepest),
         }

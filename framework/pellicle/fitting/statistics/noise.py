@@ -110,14 +110,10 @@ class Residuals(NamedTuple):
             max(likelihood.accuracy * largest, step / np.sqrt(12)),
         )
 
-    def is_free(self, parameter: Parameter) -> bool:
-        """Return whether a parameter is fitted."""
-        return parameter in self.likelihood.free
-
     @property
-    def baseline(self) -> int:
-        """Number of fitted parameters of the baseline."""
-        return sum(map(self.is_free, (OFFSET, SLOPE)))
+    def baseline(self) -> tuple[Parameter, ...]:
+        """The fitted parameters of the baseline."""
+        return tuple(p for p in (OFFSET, SLOPE) if p in self.likelihood.free)
 
     def independent_noise(self, points: Mask) -> float:
         """Return the noise [N] of some points, from differences of neighbours."""
@@ -161,7 +157,9 @@ def binned_noise(residuals: Array, jacobian: Array, bins: Array) -> BinnedNoise 
     orthogonal to the columns of its ``jacobian``, so these are projected out of the bins too; the
     sums are then orthogonalised.
     """
-    span, _ = np.linalg.qr(jacobian / np.maximum(np.linalg.norm(jacobian, axis=0), _tiny(jacobian)))
+    # A column that is zero stays zero.
+    tiny = float(np.finfo(float).eps) * float(np.linalg.norm(jacobian))
+    span, _ = np.linalg.qr(jacobian / np.maximum(np.linalg.norm(jacobian, axis=0), tiny))
     remainder = bins - span @ (span.T @ bins)
     basis, sizes, _ = np.linalg.svd(remainder, full_matrices=False)
     basis = basis[:, sizes > _RANK * np.sqrt(residuals.size)]
@@ -169,8 +167,3 @@ def binned_noise(residuals: Array, jacobian: Array, bins: Array) -> BinnedNoise 
     if not sums.size:
         return None
     return BinnedNoise(float(np.sqrt(np.mean(sums**2))), sums.size)
-
-
-def _tiny(matrix: Array) -> float:
-    """Return a norm below which a column of a matrix counts as zero."""
-    return float(np.finfo(float).eps) * float(np.linalg.norm(matrix))

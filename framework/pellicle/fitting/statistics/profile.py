@@ -49,12 +49,6 @@ class Estimate:
         """Return JSON data, with None for an open end or a bound that is infinite."""
         return vars(self) | {"bound": self.bound if np.isfinite(self.bound) else None}
 
-    def exponential(self) -> Estimate:
-        """Return the estimate of the quantity whose natural logarithm this is."""
-        value = float(np.exp(self.value))
-        low, high = (None if end is None else float(np.exp(end)) for end in (self.low, self.high))
-        return replace(self, value=value, low=low, high=high, bound=self.bound * value)
-
     def times(self, factor: float) -> Estimate:
         """Return the estimate of a multiple."""
         low, high = (None if end is None else end * factor for end in (self.low, self.high))
@@ -93,14 +87,16 @@ class ProfileResult:
         Without an interval the ends are None.  Where the interval is narrower than the Cramér–Rao
         bound, that bound is infinite: it is that of a linear model, and this model is not linear.
         """
-        value, bound = self.best.parameters[parameter], self._bounds[parameter]
+        best, bound = self.best.parameters[parameter], self._bounds[parameter]
         fixed = parameter not in self.likelihood.free
-        low, high = (value, value) if fixed else self.ends.get(parameter, (None, None))
+        low, high = (best, best) if fixed else self.ends.get(parameter, (None, None))
         lowest = parameter.minimum if low is None else low
-        if high is not None and max(high - value, value - lowest) < bound:
+        if high is not None and max(high - best, best - lowest) < bound:
             bound = np.inf
-        estimate = Estimate(value, low, high, parameter.unit, bound, fixed)
-        return estimate.exponential() if parameter.logarithmic else estimate
+        value = parameter.value(best)
+        low, high = (None if end is None else parameter.value(end) for end in (low, high))
+        bound *= value if parameter.logarithmic else 1.0
+        return Estimate(value, low, high, parameter.unit, bound, fixed)
 
 
 def chi_squared_threshold(freedom: float) -> float:
@@ -148,15 +144,12 @@ def profile_likelihood(
         else:
             wider, messages = widen(ends, likelihood, best)
             if failures:
-                messages += (_unidentifiable(failures),)
+                messages += (
+                    f"the search for the interval of {', '.join(failures)} did not converge, and "
+                    "it is left open: the curve does not tell the parameters apart; fix one of "
+                    "them, or fit less of the baseline",
+                )
             return ProfileResult(likelihood, best, without, wider, messages)
-
-
-def _unidentifiable(names: Sequence[str]) -> str:
-    return (
-        f"the search for the interval of {', '.join(names)} did not converge, and it is left open: "
-        "the curve does not tell the parameters apart; fix one of them, or fit less of the baseline"
-    )
 
 
 def widen(
