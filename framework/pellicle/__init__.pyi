@@ -10,7 +10,7 @@ from .components import Indenter as Indenter
 from .components import IterativeSolver as IterativeSolver
 from .components import Kernel as Kernel
 from .components import Output as Output
-from .components import Place as Place
+from .components import Runs as Runs
 from .components import Solver as Solver
 from .config.json_schema import schema as schema
 from .config.run import Run as Run
