@@ -35,9 +35,9 @@ def schema() -> Draft202012Validator:
 def without(path: str) -> dict[str, Any]:
     """Return the run without one of its entries."""
     *tables, last = path.split(".")
-    made = {key: dict(table) for key, table in RUN.items()}
-    del (made[tables[0]] if tables else made)[last]
-    return made
+    table = {key: dict(table) for key, table in RUN.items()}
+    del (table[tables[0]] if tables else table)[last]
+    return table
 
 
 @pytest.mark.parametrize("path", sorted(STUDIES.glob("*.toml")), ids=lambda path: path.name)
@@ -60,7 +60,7 @@ def test_accepts_the_studies_of_the_documentation(path: Path, schema: Draft20201
 def test_what_varies_may_be_left_out(
     path: str, values: object, schema: Draft202012Validator
 ) -> None:
-    """A required entry is missing where an axis gives it, as in a study that can be made."""
+    """A required entry is missing where an axis gives it, as in a study that can be table."""
     data = without(path) | {"study": {"vary": {path: values}}}
     assert pl.Study.from_mapping(data).points
     schema.validate(data)
