@@ -12,8 +12,8 @@ from .components import Indenter as Indenter
 from .components import IterativeSolver as IterativeSolver
 from .components import Kernel as Kernel
 from .components import Output as Output
-from .components import Place as Place
 from .components import Prescription as Prescription
+from .components import Runs as Runs
 from .components import Search as Search
 from .components import Setting as Setting
 from .components import Solver as Solver

@@ -25,19 +25,20 @@ class Raising(pl.Output):
 
     type: Literal["raising"] = "raising"
 
-    def close(self, place: pl.Place, result: pl.Result) -> tuple[Path, ...]:
+    def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
         """Fail."""
-        return (Path(result.dataset["nothing"].item()),)
+        return (Path(runs.table["nothing"].item()),)
 
 
 def test_an_output_that_raises(tmp_path: Path) -> None:
     """The exception is its own, with a note; the outputs after it leave their files."""
-    made = pl.Run(**RUN, outputs=[Raising(), pl.registry().make(pl.Output, {"type": "hdf5"})])
+    made = pl.Run(**RUN, outputs=[Raising(), pl.registry().make(pl.Output, {"type": "csv"})])
     with pytest.raises(KeyError) as caught:
         pl.run(made, directory=tmp_path, progress=False)
     (note,) = caught.value.__notes__
     assert note.startswith(f"output 'raising' failed ({__file__}, line ")
     assert pl.load(tmp_path / "run.h5").converged
+    assert (tmp_path / "run.csv").is_file()
 
 
 def test_the_command_has_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -46,7 +47,7 @@ def test_the_command_has_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     def fail(*_: object) -> None:
         raise ValueError("boom")
 
-    monkeypatch.setattr(Csv, "close", fail)
+    monkeypatch.setattr(Csv, "write", fail)
     (tmp_path / "a.toml").write_text(
         pl.Run(**RUN, outputs=[{"type": "csv"}]).to_toml(), encoding="utf-8"
     )

@@ -125,6 +125,25 @@ def test_a_good_plugin_is_registered_with_its_origin(plugin: Plugin) -> None:
     }
 
 
+OLD_OUTPUTS = {
+    "imports the place": "from pellicle import Place",
+    "imports it from components": "from pellicle.components import Place",
+    "annotates it": "import pellicle as pl\ndef f(place: pl.Place): ...",
+    **{
+        method: f"from pellicle import Output\nclass Old(Output):\n    def {method}(self, *_): ..."
+        for method in ("open", "close", "study", "endings", "resume")
+    },
+}
+
+
+@pytest.mark.parametrize("name", OLD_OUTPUTS)
+def test_an_output_of_the_earlier_contract_is_told_the_method(name: str, plugin: Plugin) -> None:
+    """It is refused when it is loaded, not left without its files."""
+    found = load([plugin(OLD_OUTPUTS[name], name="output.old")])
+    assert "earlier version" in found.broken[0].error
+    assert "write(runs, stem)" in found.broken[0].error
+
+
 def test_one_plugin_may_bring_several_families(plugin: Plugin) -> None:
     """All hooks of a module are called, the one for validation suites included."""
     more = SOFT + (

@@ -12,7 +12,7 @@ from contextlib import closing
 from dataclasses import replace
 from numbers import Integral
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast, get_args
+from typing import Any, cast, get_args
 
 import numpy as np
 
@@ -21,7 +21,6 @@ from pellicle.checks import (
     blamed,
     component_name,
     read_only,
-    read_only_dataset,
     real_array,
     real_number,
 )
@@ -33,12 +32,9 @@ from pellicle.numerics.solution import Solution, State, Stop
 from .correction import AreaCorrection
 from .executor import AnyTask, Executor, Outcome, Report, Say
 from .indenter import Footprint, ForceCurve, HasForceCurve, Indenter
-from .output import Output, Place
+from .output import Output, Runs, stem_of
 from .prescription import Prescription, Search, Setting
 from .solver import Monitor, Solver
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # Rounding of heights over the size of the domain, and of areas over their own size.
 _ROUNDING = 1e-12
@@ -336,82 +332,38 @@ def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> flo
     return area
 
 
-def endings_of(output: Output) -> tuple[str, ...]:
-    """Return the endings of the files that an output leaves.
+def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
+    """Return the files that an output writes of a run or study whose stem is ``stem``.
 
     Raises
     ------
     PluginError
-        They are not a tuple of text: the letters of one text would stand for endings of their own.
+        As for `require_files`.
     """
     with blamed(output):
-        value = output.endings()
-    if not isinstance(value, (tuple, list)) or not all(isinstance(e, str) for e in value):
-        raise PluginError(
-            f"{component_name(output)}: endings() returned {shown(value)}; it has to return a "
-            'tuple of text, such as (".txt",)'
-        )
-    return tuple(value)
+        files = output.write(runs, stem_of(output, stem))
+    require_files(output, files, stem)
+    return tuple(files)
 
 
-def earlier_steps(output: Output, place: Place, steps: int) -> xr.Dataset | None:
-    """Return the steps that an output has from an earlier process, if any.
+def require_files(output: Output, files: object, stem: Path) -> None:
+    """Refuse what write() of an output returned unless it is files of its own stem.
 
     Raises
     ------
     PluginError
-        It is not a dataset of at most so many steps.
+        It is not a tuple of paths that begin with the stem.
     """
-    import xarray as xr
-
-    with blamed(output):
-        value = output.resume(place)
-    if value is None:
-        return None
-    number = value.sizes.get("step", 0) if isinstance(value, xr.Dataset) else 0
-    if not 0 < number <= steps:
+    own = stem_of(output, stem)
+    call = f"{component_name(output)}: write(runs, stem) returned"
+    if not isinstance(files, (tuple, list)) or not all(isinstance(path, Path) for path in files):
         raise PluginError(
-            f"{component_name(output)}: resume() returned {type(value).__name__} of {number} "
-            f"steps; it has to return None, or an xarray.Dataset of 1 to {steps} steps"
+            f"{call} {shown(files)}; it has to return a tuple of pathlib.Path, empty if there is "
+            "none"
         )
-    return value
-
-
-def hand_over(outputs: Sequence[Output], place: Place, step: xr.Dataset) -> None:
-    """Give a finished step to every output, even where one of them fails; none can change it.
-
-    Raises
-    ------
-    Exception
-        What the first that failed raised.
-    """
-    errors: list[Exception] = []
-    for output in outputs:
-        try:
-            with blamed(output):
-                output.step(place, read_only_dataset(step))
-        except Exception as error:
-            errors.append(error)
-    if errors:
-        raise errors[0]
-
-
-def files_of(output: Output, call: str, leave: Callable[[Output], object]) -> tuple[Path, ...]:
-    """Return the files that an output left behind.
-
-    Raises
-    ------
-    PluginError
-        They are not a tuple of paths.
-    """
-    with blamed(output):
-        value = leave(output)
-    if not isinstance(value, (tuple, list)) or not all(isinstance(path, Path) for path in value):
-        raise PluginError(
-            f"{component_name(output)}: {call} returned {shown(value)}; it has to return a "
-            "tuple of pathlib.Path, empty if there is none"
-        )
-    return tuple(value)
+    for path in files:
+        if not str(path).startswith(str(own)):
+            raise PluginError(f"{call} {path}; its files have to begin with the stem, {own}")
 
 
 def outcomes_of(

@@ -22,6 +22,7 @@ from pydantic import (
 )
 
 from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
+from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid, grid_of_run
 from pellicle.model.from_file import FromFile
@@ -30,7 +31,6 @@ from pellicle.plugins import registry
 
 from .component_field import FromRegistry
 from .loading import Loading
-from .output_conflicts import refuse_clashes
 
 DEFAULT_SOLVER = "active_set"
 # Raised when equal configurations begin to give other numbers, not with the layout of files.
@@ -56,7 +56,7 @@ class Run(FromFile):
     ] = ()
     outputs: Annotated[
         tuple[Annotated[Output, FromRegistry()], ...] | None,
-        Field(description="what the run leaves behind; all the standard outputs if not given"),
+        Field(description="what is written besides the result file; csv and figures if not given"),
     ] = None
 
     @field_validator("indenter", mode="wrap")
@@ -91,7 +91,7 @@ class Run(FromFile):
 
     @model_validator(mode="after")
     def _each_file_once(self) -> Self:
-        refuse_clashes(self.outputs or ())
+        refuse_shared_files(self.outputs or ())
         return self
 
     @classmethod

@@ -14,6 +14,7 @@ from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from pellicle import memory
 from pellicle.components import Executor
+from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, shown
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate
 from pellicle.model.from_file import FromFile, read
@@ -26,7 +27,6 @@ from pellicle.results.variables import FIELDS, VARIABLES, corrected_area, names_
 
 from .component_field import FromRegistry
 from .coordinates import Coordinate, as_json, coordinate
-from .output_conflicts import refuse_clashes_with_study
 from .points import Point, points_of
 from .run import Run
 
@@ -116,7 +116,7 @@ class Study(FromFile):
             self._points = tuple(points_of(self.run, self.dimensions))
         self._check_derived()
         try:
-            refuse_clashes_with_study(self.points[0].run.outputs or ())
+            refuse_shared_files(self.points[0].run.outputs or (), of_study=True)
         except ConfigError as error:
             raise error.within("run") from None
         return self

@@ -10,7 +10,8 @@ import numpy as np
 
 from pellicle import Run
 from pellicle.errors import ConfigError
-from pellicle.results.derived import Runs, derive
+from pellicle.results.derived import derive
+from pellicle.results.runs import Runs
 from pellicle_plugins.kernels.half_space import HalfSpace
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 

@@ -38,8 +38,8 @@ KEYS_AND_TYPES = {
         ["outputs.0.formats.0: 'bmp' is not allowed", "pdf, png, svg"],
     ),
     "one output twice": (
-        "outputs=[{type='hdf5'}, {type='csv'}, {type='hdf5'}]",
-        ["outputs.2.type: 'hdf5' would write NAME.h5, as outputs.0 ('hdf5')", "leave one out"],
+        "outputs=[{type='csv'}, {type='hdf5'}, {type='csv'}]",
+        ["outputs.2.type: 'csv' would write NAME.csv, as outputs.0 ('csv')", "leave one out"],
     ),
     "two outputs of one name": (
         "outputs=[{type='maps', name='a'}, {type='maps', name='b'}, {type='maps', name='a'}]",

@@ -132,7 +132,7 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         assert estimate.high / estimate.low < 1.5
     assert "the force curve is simulated" in fit.messages[-1]
     assert fit.to_dict()["model"]["kernel"] == {"type": "tensed_membrane"}
-    monkeypatch.setattr(simulation, "carry_out", None)
+    monkeypatch.setattr(simulation, "execute", None)
     again = pl.fit(
         depth * 1e3,
         force * 1e6,
