@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 
 import pellicle as pl
 from pellicle.model import Model
-from pellicle.results.variables import VARIABLES
+from pellicle.results.variables import VARIABLES, Variable
 from pellicle.units import Quantity, quantity_of
 
 _HEADINGS = {
@@ -22,6 +22,7 @@ _HEADINGS = {
     "correction": "Corrections of the area",
     "output": "Outputs",
     "executor": "Executors",
+    "prescription": "Prescriptions",
 }
 
 
@@ -43,6 +44,10 @@ def _components() -> Iterator[str]:
         for registered in members.values():
             yield f"### `{registered.type}`\n"
             yield f"{_paragraphs(registered.component.__doc__)}\n"
+            if issubclass(registered.component, pl.Prescription):
+                quantity = registered.component.quantity()
+                values = " ".join([*quantity.bounds, quantity.unit])
+                yield f"Key of `[loading]` for load steps {values}.\n"
             yield fields(registered.component)
 
 
@@ -79,9 +84,15 @@ def variables() -> str:
     """Return a table of the variables of a result."""
     rows = [
         (f"`{v.name}`", "step, x, y" if v.kind == "field" else "step", v.unit, v.meaning)
-        for v in VARIABLES.values()
+        for v in (*VARIABLES.values(), *_prescribed())
     ]
     return _table(("variable", "dimensions", "unit", "meaning"), rows)
+
+
+def _prescribed() -> Iterable[Variable]:
+    """Return the variables that prescriptions add to a result, each once."""
+    found = pl.registry().components["prescription"].values()
+    return dict.fromkeys(v for r in found for v in r.component.variables)  # type: ignore[attr-defined]
 
 
 def cases() -> str:

@@ -10,4 +10,11 @@ import lazy_loader
 
 # The public names stand in __init__.pyi, for type checkers and for this. Numpy, scipy and pydantic
 # take a second to import: a name pays for its own module only.
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+_public, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+
+def __getattr__(name: str) -> object:
+    if name == "Place":
+        # Raises what a plugin of an earlier version has to be told.
+        from .components import Place  # noqa: F401
+    return _public(name)

@@ -1,7 +1,7 @@
-"""What a component returns is checked where the framework calls it.
+"""Checks of what components return, where the framework calls them.
 
-A component that breaks its contract at work raises a `PluginError` that names the component, what
-it returned and what is required. Its arguments are read-only, so that it cannot change them.
+For a component that breaks its contract they raise a `PluginError` that names the component, what
+it returned and what is required. Arguments of components are read-only.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-# In the messages of numpy, Cython, dataclasses and pydantic about an object that must not change.
+# Words in the messages of numpy, Cython, dataclasses and pydantic about read-only objects.
 _REFUSALS = "read-only", "cannot assign to field", "Instance is frozen"
 
 
 def component_name(component: object) -> str:
-    """Return what messages call a component, such as ``kernel 'half_space'``."""
+    """Return the name of a component in messages, such as ``kernel 'half_space'``."""
     family = getattr(component, "family", "component")
     return f"{family} {getattr(component, 'type_name', type(component).__name__)!r}"
 
 
 @contextmanager
 def blamed(component: object) -> Iterator[None]:
-    """Note on an exception which component raised it, and where in its code.
+    """Attribute errors to a component: note it and the line in its code on the exception.
 
     Raises
     ------
@@ -47,26 +47,26 @@ def blamed(component: object) -> Iterator[None]:
     except (PellicleError, MemoryError):
         raise
     except SystemExit as error:
-        name, place = component_name(component), _place(component, error)
+        name, line = component_name(component), _line(component, error)
         raise PluginError(
-            f"{name} calls sys.exit({error.code!r}){place}; it has to raise an error that says "
+            f"{name} calls sys.exit({error.code!r}){line}; it has to raise an error that says "
             "what is wrong"
         ) from None
     except Exception as error:
         if getattr(error, "__notes__", ()):
             raise
-        name, place = component_name(component), _place(component, error)
+        name, line = component_name(component), _line(component, error)
         is_write = isinstance(error, (ValueError, AttributeError))
         if is_write and any(refusal in str(error) for refusal in _REFUSALS):
             raise PluginError(
-                f"{name} changes what it is given{place}: {error}; it has to work on a copy"
+                f"{name} changes what it is given{line}: {error}; it has to work on a copy"
             ) from error
-        error.add_note(f"{name} failed{place}")
+        error.add_note(f"{name} failed{line}")
         raise
 
 
-def _place(component: object, error: BaseException) -> str:
-    """Return the file of a component's class and the line in it that an error comes from."""
+def _line(component: object, error: BaseException) -> str:
+    """Return the file of a component's class and the line in it where an error occurred."""
     home = inspect.getsourcefile(type(component))
     inside = [frame for frame in extract_tb(error.__traceback__) if frame.filename == home]
     return f" ({home}, line {inside[-1].lineno})" if inside else ""
@@ -83,7 +83,7 @@ def read_only_dataset(dataset: xr.Dataset) -> xr.Dataset:
     """Return a dataset that shares the arrays of ``dataset`` and cannot be used to change them."""
     copy = dataset.copy()
     for name, variable in dataset.variables.items():
-        # Text has no view that xarray would keep, and coordinates are shared with an index.
+        # xarray replaces a view of texts, and coordinates are shared with an index.
         if name in dataset.coords or variable.dtype.kind == "O":
             copy[name] = variable.copy(deep=True)
         else:
@@ -92,14 +92,14 @@ def read_only_dataset(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def real_array(component: object, call: str, value: object, shape: tuple[int, ...]) -> Array:
-    """Return what ``call`` of a component returned, as an array of float64.
+    """Return the ``value`` that ``call`` of a component returned, as an array of float64.
 
     Whole numbers are refused: in SI units they are values that lost their digits.
 
     Raises
     ------
     PluginError
-        It is not an array of real floating-point numbers of this shape.
+        The value is not an array of real floating-point numbers of this shape.
     """
     try:
         array = np.asarray(value)
@@ -115,12 +115,12 @@ def real_array(component: object, call: str, value: object, shape: tuple[int, ..
 
 
 def real_number(component: object, call: str, value: object) -> float:
-    """Return the number that ``call`` of a component returned; it may be infinite.
+    """Return the number that ``call`` of a component returned, possibly infinite.
 
     Raises
     ------
     PluginError
-        It is not a real number, or it is NaN.
+        The value is not a real number, or it is NaN.
     """
     number = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
     if not isinstance(number, Real) or isinstance(number, bool) or number != number:
@@ -139,26 +139,28 @@ def _description(value: object) -> str:
 
 
 def whole_number(value: object, unit: str) -> int:
-    """Return a number of cells, threads and the like.
+    """Return a number of cells, threads and the like; ``unit`` is their name.
 
     Raises
     ------
     ValueError
-        It is not a whole number ≥ 1; ``unit`` says of what.
+        The value is not a whole number ≥ 1.
     """
-    number = value.item() if getattr(value, "ndim", None) == 0 else value  # type: ignore[attr-defined]
+    number = (
+        value.item() if isinstance(value, np.generic | np.ndarray) and value.ndim == 0 else value
+    )
     if not isinstance(number, int) or isinstance(number, bool) or number < 1:
         raise ValueError(f"{shown(value)} is not allowed; give a whole number of {unit} ≥ 1")
     return number
 
 
 def checked_threads(threads: object) -> int | None:
-    """Return a number of threads, None for as many as there are by default.
+    """Return a number of threads, or None for the default.
 
     Raises
     ------
     ConfigError
-        It is neither None nor a whole number ≥ 1.
+        The value is neither None nor a whole number ≥ 1.
     """
     try:
         return None if threads is None else whole_number(threads, "threads")

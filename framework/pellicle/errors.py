@@ -1,4 +1,4 @@
-"""What can go wrong, said to the user: every error names the field, the value and what to do."""
+"""Errors: every message names the field, the value and what to do."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from typing import NamedTuple
 
 
 def shown(value: object) -> str:
-    """Return ``value`` as a message shows it: on one line, and not for ever."""
+    """Return ``value`` as a message shows it, on one line of at most 60 characters."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}…"
 
 
 class PellicleError(Exception):
-    """Base of all errors that pellicle raises on purpose."""
+    """Base class of all errors that pellicle raises on purpose."""
 
 
 class Problem(NamedTuple):
-    """One thing wrong with a configuration."""
+    """One problem of a configuration."""
 
     field: str
-    """Dotted path of the field, e.g. ``kernel.tension``; empty for the whole."""
+    """Dotted path of the field, e.g. ``kernel.tension``; empty for the whole configuration."""
     message: str
-    """What was asked, what is allowed, what to do."""
+    """The value, what is allowed, and what to do."""
 
     def __str__(self) -> str:
         return f"{self.field}: {self.message}" if self.field else self.message
@@ -34,9 +34,9 @@ class ConfigError(PellicleError, ValueError):
     Parameters
     ----------
     problems
-        All that is wrong, or one message.
+        All problems, or one message.
     field
-        Dotted path of the field that a single message speaks of.
+        Dotted path of the field of a single message.
     """
 
     def __init__(self, problems: Iterable[Problem] | str, field: str = "") -> None:
@@ -49,7 +49,7 @@ class ConfigError(PellicleError, ValueError):
         return type(self), (self.problems,)
 
     def within(self, field: str) -> ConfigError:
-        """Return the same problems, seen from one level further out."""
+        """Return the same problems with ``field`` before their paths."""
         return type(self)(
             Problem(f"{field}.{inner}" if inner else field, message)
             for inner, message in self.problems
@@ -57,11 +57,11 @@ class ConfigError(PellicleError, ValueError):
 
 
 class PluginError(PellicleError):
-    """A plugin is broken, two claim one name, or a component breaks its contract at work."""
+    """A plugin is broken, two claim one name, or a component breaks its contract when called."""
 
 
 class ConvergenceError(PellicleError):
-    """A result of the asked accuracy could not be had."""
+    """A result of the required accuracy cannot be computed."""
 
 
 class StorageError(PellicleError):
@@ -69,4 +69,4 @@ class StorageError(PellicleError):
 
 
 class ConvergenceWarning(UserWarning):
-    """A step of a run is kept but marked: its numbers are not what was asked."""
+    """A step of a run is marked as not converged or too coarse; its numbers are kept."""

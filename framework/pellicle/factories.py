@@ -14,7 +14,7 @@ from .plugins import registry
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 
 
-def kernel(type: str, /, **fields: Any) -> Kernel:  # noqa: A002 - the name of the field
+def kernel(type: str, /, **fields: Any) -> Kernel:  # noqa: A002 - name of the field
     """Return a kernel by its type, e.g. ``kernel("half_space", reduced_modulus="10 kPa")``.
 
     Raises
@@ -25,7 +25,7 @@ def kernel(type: str, /, **fields: Any) -> Kernel:  # noqa: A002 - the name of t
     return _component(Kernel, type, fields)
 
 
-def indenter(type: str, /, **fields: Any) -> Indenter:  # noqa: A002 - the name of the field
+def indenter(type: str, /, **fields: Any) -> Indenter:  # noqa: A002 - name of the field
     """Return an indenter by its type, e.g. ``indenter("sphere", radius="5 um")``.
 
     Raises
@@ -36,7 +36,7 @@ def indenter(type: str, /, **fields: Any) -> Indenter:  # noqa: A002 - the name 
     return _component(Indenter, type, fields)
 
 
-def solver(type: str, /, **fields: Any) -> Solver:  # noqa: A002 - the name of the field
+def solver(type: str, /, **fields: Any) -> Solver:  # noqa: A002 - name of the field
     """Return a solver by its type, e.g. ``solver("conjugate_gradient", tolerance=1e-6)``.
 
     Raises

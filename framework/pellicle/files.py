@@ -1,4 +1,4 @@
-"""Files: written whole or not at all, and texts in whatever encoding a stranger used."""
+"""Write files whole or not at all, and read texts in any encoding."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 
 from .errors import StorageError
 
-# The longer marks first: that of UTF-32 begins with that of UTF-16.
+# UTF-32 comes before UTF-16, whose byte order mark is the beginning of its own.
 _MARKS = {
     codecs.BOM_UTF8: "utf-8-sig",
     codecs.BOM_UTF32_LE: "utf-32",
@@ -21,26 +21,24 @@ _MARKS = {
     codecs.BOM_UTF16_LE: "utf-16",
     codecs.BOM_UTF16_BE: "utf-16",
 }
-
-
-# Neither XML nor HTML allows them; line feeds and tabs it does.
+# Neither XML nor HTML allows these control characters; both allow line feeds and tabs.
 _NOT_IN_DOCUMENTS = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
 def for_document(text: str) -> str:
-    """Return a text with a replacement character for each that no document may hold."""
+    """Return a text with a replacement character for each one that documents may not contain."""
     return _NOT_IN_DOCUMENTS.sub("\ufffd", text)
 
 
 def read_text(path: Path) -> str:
-    """Return a text in UTF-8, in UTF-16 or UTF-32 with their mark, or in Windows' code page 1252.
+    """Read a text in UTF-8, in UTF-16 or UTF-32 with a byte order mark, or in code page 1252.
 
     Raises
     ------
     OSError
         The file cannot be read.
     ValueError
-        It is not text.
+        The file is not text.
     """
     content = path.read_bytes()
     encoding = next((_MARKS[mark] for mark in _MARKS if content.startswith(mark)), None)
@@ -49,7 +47,7 @@ def read_text(path: Path) -> str:
     except UnicodeDecodeError:
         if encoding is not None:
             raise
-        # Instruments write µ, ° and ² so, and any other file of one byte a letter passes as this.
+        # Instruments write µ, ° and ² in code page 1252, which accepts other one-byte encodings.
         text = content.decode("cp1252")
     if "\0" in text:
         raise ValueError("it holds bytes that are not text")
@@ -57,22 +55,22 @@ def read_text(path: Path) -> str:
 
 
 def check_writable(path: Path) -> None:
-    """Find out before computing whether a file can be written at ``path``.
+    """Check before computing that a file can be written at ``path``.
 
-    What processes that have died left half-written in its folder is removed.
+    Partial files that dead processes left in its folder are removed.
 
     Raises
     ------
     StorageError
-        It cannot.
+        No file can be written there.
     """
     with storage_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=path.parent):
             pass
         for part in path.parent.glob(".*.part"):
-            made_by = re.search(r"\.([^.]+)\.(\d+)\.part$", part.name)
-            if made_by and made_by[1] == _host() and not _alive(int(made_by[2])):
+            owner = re.search(r"\.([^.]+)\.(\d+)\.part$", part.name)
+            if owner and owner[1] == _host() and not _alive(int(owner[2])):
                 part.unlink(missing_ok=True)
 
 
@@ -89,7 +87,7 @@ def storage_errors(path: Path) -> Iterator[None]:
 
 @contextmanager
 def atomic_write(path: Path) -> Iterator[Path]:
-    """Yield a name to write to; rename it to ``path`` when whole, leave nothing when not."""
+    """Yield a path to write to, which becomes ``path`` on success and is removed on failure."""
     part = path.with_name(f".{path.name}.{_host()}.{os.getpid()}.part")
     with storage_errors(path):
         try:
@@ -107,7 +105,7 @@ def _host() -> str:
 
 
 def _alive(pid: int) -> bool:
-    """Whether a process of this machine lives; on Windows, where asking would end it, yes."""
+    """Whether a process of this machine lives; on Windows, where os.kill would end it, true."""
     if os.name == "nt":
         return True
     try:

@@ -1,4 +1,4 @@
-"""The grid: a rectangle of surface cut into equal rectangular cells."""
+"""The grid: a rectangle of surface divided into equal rectangular cells."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from .units import Length
 Boundary = Literal["free", "periodic"]
 
 LARGEST: Final = 1e100
-"""Length [m] whose square, over that of a cell, is still a number."""
+"""Bound of lengths [m], so that ratios of areas do not overflow."""
 _of_run: ContextVar[Grid | None] = ContextVar("grid of the run", default=None)
 
 
 @contextmanager
 def grid_of_run(grid: Grid | None) -> Iterator[None]:
-    """Let components that are made here know the grid of their run; None if it is not known."""
+    """Tell components that are made within this context the grid of their run, if it is known."""
     token = _of_run.set(grid)
     try:
         yield
@@ -35,14 +35,14 @@ def grid_of_run(grid: Grid | None) -> Iterator[None]:
 def shape_of_run() -> tuple[int, int] | None:
     """Return the shape of the grid of the run that is being made; None outside of one.
 
-    What is read from a file is compared with it before memory is spent on it.
+    A file is compared with it before its content takes memory.
     """
     grid = _of_run.get()
     return None if grid is None else grid.shape
 
 
 def pair(value: object) -> object:
-    """Return one value for both directions as two of them; two, or none, as they are."""
+    """Return a single value twice, for both directions; a pair or None as it is."""
     return value if value is None or isinstance(value, (list, tuple)) else (value, value)
 
 
@@ -55,7 +55,7 @@ _Points = Annotated[int, BeforeValidator(_whole, json_schema_input_type=_Whole)]
 
 
 class Grid(Model):
-    """Cells of a surface rectangle whose centre is the origin; fields lie at cell centres."""
+    """A rectangle of cells centred at the origin; fields have their values at cell centres."""
 
     points: Annotated[
         tuple[_Points, _Points],
@@ -79,15 +79,15 @@ class Grid(Model):
     def _measurable(self) -> Self:
         if not 1 / LARGEST < min(self.size) <= max(self.size) < LARGEST:
             raise ConfigError(
-                f"{self.size[0]:g} × {self.size[1]:g} m has cells whose area is beyond the numbers "
-                "that a computer has; check the unit",
+                f"{self.size[0]:g} × {self.size[1]:g} m has cells whose area is beyond the range "
+                "of floating-point numbers; check the unit",
                 "size",
             )
         return self
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Cells along x and y: the shape of every field."""
+        """Number of cells along x and y, the shape of every field."""
         return self.points
 
     @property
@@ -123,7 +123,7 @@ class Grid(Model):
     def wavenumbers(self) -> tuple[Array, Array]:
         """Return q_x of shape (nx, 1) and q_y of shape (1, ny//2 + 1) [rad/m].
 
-        They are those of ``scipy.fft.rfft2`` over a field of the grid's shape.
+        Their order is that of ``scipy.fft.rfft2`` of a field.
         """
         import numpy as np
         import scipy.fft

@@ -1,4 +1,4 @@
-"""The hooks a plugin may implement. Signatures only; mark yours with `pellicle.hookimpl`."""
+"""The hooks that a plugin may implement, marked with `pellicle.hookimpl`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,16 @@ from collections.abc import Callable
 
 import pluggy
 
-from .components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver, Suite
+from .components import (
+    AreaCorrection,
+    Executor,
+    Indenter,
+    Kernel,
+    Output,
+    Prescription,
+    Solver,
+    Suite,
+)
 
 hookspec = pluggy.HookspecMarker("pellicle")
 hookimpl = pluggy.HookimplMarker("pellicle")
@@ -43,5 +52,10 @@ def register_executors(register: Callable[[type[Executor]], None]) -> None:
 
 
 @hookspec
+def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
+    """Call ``register`` with each prescription class of the plugin."""
+
+
+@hookspec
 def register_validations(register: Callable[[Suite], None]) -> None:
-    """Call ``register`` with a function that yields cases of known truth for `validate`."""
+    """Call ``register`` with a function that yields cases with known results for `validate`."""

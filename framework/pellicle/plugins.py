@@ -1,8 +1,8 @@
-"""Finds the components that are installed.
+"""The registry of installed components.
 
 pluggy's own loader stops at the first broken plugin, silently drops the second of two equal names
-and leaves half of a failing plugin registered; so each entry point is loaded here on its own, and
-what is wrong with it is written down instead of raised.
+and leaves half of a failing plugin registered. Here each entry point is loaded on its own, and an
+error is recorded instead of raised.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ from typing import Any, Literal, TypeVar, cast, get_args, get_origin
 import pluggy
 
 from . import hookspecs
-from .components import FAMILIES, Component, Suite
+from .components import FAMILIES, Component, Prescription, Suite
 from .components.foreign_code import diverted_output, noted_interrupts
 from .errors import ConfigError, PellicleError, PluginError
+from .loading import OPTIONS
 from .model.messages import nearest
 from .units import quantity_of
 
@@ -34,13 +35,14 @@ _HOOK_OF_FAMILY = {
     "correction": "register_corrections",
     "output": "register_outputs",
     "executor": "register_executors",
+    "prescription": "register_prescriptions",
 }
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a component comes from."""
+    """The entry point and distribution of a component."""
 
     entry_point: str
     distribution: str
@@ -48,7 +50,7 @@ class Origin:
 
     @classmethod
     def of(cls, entry: EntryPoint) -> Origin:
-        """Return the origin that an entry point states."""
+        """Return the origin of an entry point."""
         if entry.dist is None:
             return cls(entry.name, "unknown distribution", "?")
         return cls(entry.name, entry.dist.name, entry.dist.version)
@@ -59,7 +61,7 @@ class Origin:
 
 @dataclass(frozen=True)
 class Registered:
-    """A component that can be used."""
+    """An installed component."""
 
     component: type[Component]
     type: str
@@ -73,7 +75,7 @@ class Registered:
 
 @dataclass(frozen=True)
 class Broken:
-    """A plugin that cannot be used, and why."""
+    """A plugin that cannot be used, and the error."""
 
     origin: Origin
     error: str
@@ -81,7 +83,7 @@ class Broken:
 
 @dataclass(frozen=True)
 class Registry:
-    """All components by family and type, all suites of known truth, and what is broken."""
+    """All components by family and type, all validation suites, and broken plugins."""
 
     components: Mapping[str, Mapping[str, Registered]]
     suites: tuple[Suite, ...] = ()
@@ -114,43 +116,46 @@ class Registry:
         for origin in self.disabled:
             if origin.entry_point == f"{family}.{type_}":
                 raise PluginError(f"{family} {type_!r} of {origin} is switched off by {DISABLE}")
+        article = "an" if family[0] in "aeiou" else "a"
         others = f"; {len(self.broken)} broken: see `pellicle plugins`" if self.broken else ""
-        raise ConfigError(f"{type_!r} is no {family}; {nearest(type_, known)}{others}", "type")
+        raise ConfigError(
+            f"{type_!r} is not {article} {family}; {nearest(type_, known)}{others}", "type"
+        )
 
-    def make(self, base: type[AnyComponent], given: object) -> AnyComponent:
-        """Return the component of ``base``'s family that ``given`` describes.
+    def make(self, base: type[AnyComponent], value: object) -> AnyComponent:
+        """Return the component of ``base``'s family that ``value`` describes.
 
-        ``given`` is a table with ``type`` and the component's fields, or the component itself.
+        ``value`` is a table with ``type`` and the component's fields, or the component itself.
 
         Raises
         ------
         ConfigError, PluginError
-            See `find`, and whatever the fields do not allow.
+            As for `find`, or a field is not allowed.
         """
-        if isinstance(given, base):
-            return given
-        if not isinstance(given, Mapping) or "type" not in given:
+        if isinstance(value, base):
+            return value
+        if not isinstance(value, Mapping) or "type" not in value:
             known = ", ".join(sorted(self.components[base.family]))
-            what = "has no type" if isinstance(given, Mapping) else f"{given!r} is not a table"
+            what = "has no type" if isinstance(value, Mapping) else f"{value!r} is not a table"
             raise ConfigError(f"{what}; give a table with type = one of: {known}")
-        component_class = cast("type[AnyComponent]", self.find(base.family, given["type"]))
+        component_class = cast("type[AnyComponent]", self.find(base.family, value["type"]))
         try:
-            return component_class(**given)
+            return component_class(**value)
         except (PellicleError, MemoryError):
             raise
         except Exception as error:
-            error.add_note(f"{base.family} {given['type']!r} failed")
+            error.add_note(f"{base.family} {value['type']!r} failed")
             raise
 
 
 @cache
 def registry() -> Registry:
-    """Return the registry of everything that is installed here."""
+    """Return the registry of all installed plugins."""
     return load(entry_points(group=GROUP), os.environ.get(DISABLE, ""))
 
 
 def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
-    """Load plugins, each on its own.
+    """Load each plugin on its own.
 
     Parameters
     ----------
@@ -177,12 +182,12 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
         suites.extend(its_suites)
         for registered in components:
             claims.setdefault((registered.component.family, registered.type), []).append(registered)
-    found: dict[str, dict[str, Registered]] = {family: {} for family in FAMILIES}
+    registered_by_family: dict[str, dict[str, Registered]] = {f: {} for f in FAMILIES}
     for (family, type_), owners in claims.items():
         if len(owners) == 1:
-            found[family][type_] = owners[0]
+            registered_by_family[family][type_] = owners[0]
     return Registry(
-        components=found,
+        components=registered_by_family,
         suites=tuple(suites),
         broken=tuple(broken),
         clashes={
@@ -195,10 +200,10 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
 
 
 def _load_one(entry: EntryPoint, origin: Origin) -> tuple[list[Registered], list[Suite]] | Broken:
-    """Return what one plugin registers, or what is wrong with it.
+    """Return the components and suites that one plugin registers, or its error.
 
-    A plugin may fail in any way, even by sys.exit() or by what looks like Ctrl-C; only the user's
-    own Ctrl-C ends the command.
+    A plugin may fail in any way, even by sys.exit() or KeyboardInterrupt; only Ctrl-C of the user
+    ends the command.
     """
     registration: tuple[list[Registered], list[Suite]] | Broken
     with noted_interrupts() as interrupt:
@@ -222,12 +227,18 @@ def _is_disabled(origin: Origin, disable: str) -> bool:
 
 
 def _same(name: str) -> str:
-    """Return what all spellings of a name share: my_plugin is My-Plugin to package indexes."""
+    """Return the normalised name: package indexes treat my_plugin and My-Plugin as the same."""
     return re.sub(r"[-_.]+", "-", name.strip()).lower()
 
 
 def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[Suite]]:
-    """Return what one plugin registers, or raise what is wrong with it."""
+    """Return the components and suites that one plugin registers.
+
+    Raises
+    ------
+    PluginError
+        The plugin, or one of its components, breaks a rule.
+    """
     manager = pluggy.PluginManager(GROUP)
     manager.add_hookspecs(hookspecs)
     manager.register(plugin)
@@ -259,10 +270,16 @@ def _call_hooks(plugin: object, origin: Origin) -> tuple[list[Registered], list[
 
 
 def checked_type(component: Any, family: str) -> str:
-    """Return the type of a component class that keeps its contract, or raise PluginError."""
+    """Return the type of a component class.
+
+    Raises
+    ------
+    PluginError
+        The class breaks a rule for components.
+    """
     base = FAMILIES[family]
     if not (isinstance(component, type) and issubclass(component, base)):
-        raise PluginError(f"{component!r} is no subclass of pellicle.{base.__name__}")
+        raise PluginError(f"{component!r} is not a subclass of pellicle.{base.__name__}")
     name = component.__name__
     if component.family != family:
         raise PluginError(f"{name}.family is {component.family!r}; leave it to {base.__name__}")
@@ -282,6 +299,21 @@ def checked_type(component: Any, family: str) -> str:
             raise PluginError(f"{name}.{field_} lacks Field(description=…) with its unit")
         if (quantity := quantity_of(its)) and not quantity.has_known_unit:
             raise PluginError(f"{name}.{field_}: Quantity({quantity.unit!r}) is of no known unit")
+    if issubclass(component, Prescription):
+        _check_prescription(component, str(names[0]))
     # Raises on a field whose type is unknown or has no JSON: it would spoil the schema of all.
     component.model_json_schema()
     return str(names[0])
+
+
+def _check_prescription(component: type[Prescription], type_: str) -> None:
+    """Raise PluginError on a prescription that ``[loading]`` cannot hold."""
+    name = component.__name__
+    if not isinstance(getattr(component, "unit", None), str):
+        raise PluginError(f"{name} lacks the class variable unit: the SI unit of its values")
+    if not component.quantity().has_known_unit:
+        raise PluginError(f"{name}.unit is {component.unit!r}, which is not a known unit")
+    if taken := {type_, *component.model_fields} & OPTIONS:
+        raise PluginError(f"{name}: {min(taken)!r} is an option of [loading]; choose another name")
+    if type_ in component.model_fields:
+        raise PluginError(f"{name} has a field of the name of its type; choose another name")

@@ -1,6 +1,8 @@
 """The contact problem, for plugins: the contents of `pellicle.numerics.problem`."""
 
+from pellicle.numerics.problem import Depth as Depth
 from pellicle.numerics.problem import Equilibrium as Equilibrium
+from pellicle.numerics.problem import Force as Force
 from pellicle.numerics.problem import Problem as Problem
 from pellicle.numerics.problem import Stiffness as Stiffness
 from pellicle.numerics.problem import height_scale as height_scale

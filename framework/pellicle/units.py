@@ -1,6 +1,6 @@
-"""Field types that accept ``0.01``, ``"10 kPa"`` or a pint quantity, and hold SI floats.
+"""Field types that accept ``0.01``, ``"10 kPa"`` or a pint quantity and store SI floats.
 
-Units exist at this edge only: inside pellicle every number is SI.
+Units exist only here and where numbers are shown: inside pellicle every number is SI.
 """
 
 from __future__ import annotations
@@ -36,11 +36,10 @@ _EXAMPLES = {
     "rad": "70 degree",
 }
 _NUMBER_AND_UNIT = re.compile(
-    r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)",
-    re.DOTALL | re.IGNORECASE,
+    r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)", re.DOTALL | re.IGNORECASE
 )
-# pint evaluates every number and power in a text, and "Pa*9**9**9**9" never ends. It is given names
-# with one small power, multiplied and divided, and nothing else.
+# pint evaluates every number and power in a text, and "Pa*9**9**9**9" never ends. It only gets
+# products and quotients of names with one small power.
 _LETTER = r"[^\W\d⁰¹²³⁴-⁹]"
 _NAME = rf"(?:{_LETTER}|[°%‰])(?:{_LETTER}|[0-9])*"
 _EXPONENT = r"[-+]?\d{1,2}(?:\.\d{1,20})?"
@@ -58,7 +57,7 @@ _MOST = 8
 
 
 def _root(one: Any) -> str:
-    """Return the unit that a quantity is reduced to, such as radian."""
+    """Return the unit to which pint reduces a quantity, such as radian."""
     return str(one.to_root_units().units)
 
 
@@ -72,29 +71,29 @@ def _registry() -> pint.UnitRegistry[Any]:
 
 
 def ramp(start: float, stop: float, num: int, *, log: bool = False) -> list[float]:
-    """Return ``num`` values from ``start`` to ``stop``, evenly spaced, or their logarithms so."""
+    """Return ``num`` values from ``start`` to ``stop``, spaced evenly or geometrically."""
     shares = [i / (num - 1) for i in range(num)]
     values = (
         [start * (stop / start) ** share for share in shares]
         if log
         else [(start * (num - 1 - i) + stop * i) / (num - 1) for i in range(num)]
     )
-    # Fifteen digits are what a user can have meant: 3e-05, not 3.0000000000000004e-05.
+    # Rounded to fifteen digits: 3e-05, not 3.0000000000000004e-05.
     return [float(f"{value:.15g}") for value in values]
 
 
 def split(text: str) -> tuple[float, str] | None:
-    """Return number and unit of a text like ``"10 kPa"``; None if it is none."""
+    """Return number and unit of a text like ``"10 kPa"``; None for any other text."""
     match = _NUMBER_AND_UNIT.fullmatch(text.strip())
     return (float(match[1]), match[2]) if match else None
 
 
 def _is_unit(text: str) -> bool:
-    """Whether a text is a product of names with powers, which pint reads in no time."""
+    """Whether a text is a product of names with powers, which pint parses quickly."""
     return len(text) <= _LONGEST_UNIT and _UNIT.fullmatch(text) is not None
 
 
-# Each takes pint half a millisecond, and a study has thousands of values.
+# pint takes half a millisecond for a conversion, and a study has thousands of values.
 @lru_cache(maxsize=1000)
 def _factor(unit: str, si: str) -> float:
     """Return the factor from ``unit`` to the unit ``si``.
@@ -102,9 +101,9 @@ def _factor(unit: str, si: str) -> float:
     Raises
     ------
     ValueError
-        What is wrong with the unit.
+        The unit is unknown or does not fit.
     """
-    unknown = f"has no unit that is known ({shown(unit)})"
+    unknown = f"has an unknown unit ({shown(unit)})"
     if not _is_unit(unit):
         raise ValueError(unknown)
     registry = _registry()
@@ -118,7 +117,7 @@ def _factor(unit: str, si: str) -> float:
             raise ValueError(unknown) from None
         measured = registry.Unit(unit).dimensionality
         raise ValueError(f"measures {measured}, not {_dimension(si)}") from None
-    # Per cent, decibels and counts have no dimension in pint, as an angle has none.
+    # In pint per cent, decibels and counts have no dimension, and neither have angles.
     if _root(one) != root:
         raise ValueError(f"measures {_root(one)}, not {_dimension(si)}")
     if zero != 0:
@@ -179,14 +178,14 @@ def _text(value: Any) -> str:
 
 @dataclass(frozen=True)
 class Quantity:
-    """Annotation of a float field: its SI unit and the values that make sense.
+    """Annotation of a float field: its SI unit and its bounds.
 
     Parameters
     ----------
     unit
         SI unit, e.g. ``"Pa"``; ``"1"`` for a pure number.
     above, at_least, below, at_most
-        Bounds in that unit, the first and third excluded.
+        Bounds in that unit; ``above`` and ``below`` exclude the bound.
     """
 
     unit: str
@@ -240,14 +239,14 @@ class Quantity:
         except ValueError as problem:
             raise ValueError(f"{shown(value)} {problem}; give {self._wanted()}") from None
         if not math.isfinite(float(number)) or float(number) == 0:
-            # Its exponent may be beyond those of a decimal.
+            # Its exponent may be beyond the range of a decimal.
             return float(number)
         # In decimal "10 um" is 1e-05; in binary it would be 9.999999999999999e-06.
         return float(Decimal(number) * Decimal(repr(factor)))
 
     @property
     def has_known_unit(self) -> bool:
-        """Whether values of other units can be brought to its unit."""
+        """Whether values in other units can be converted to its unit."""
         if self.unit == "1" or self.unit in _EXAMPLES:
             return True
         try:
@@ -257,7 +256,7 @@ class Quantity:
         return True
 
     def powers(self) -> tuple[int, int]:
-        """Return the powers of Pa and of m that make the unit, whatever it has of seconds."""
+        """Return the powers of Pa and of m in the unit; its power of seconds is ignored."""
         dimensions: Mapping[str, Any] = _registry().Unit(self.unit).dimensionality
         pressure = int(dimensions.get("[mass]", 0))
         return pressure, int(dimensions.get("[length]", 0)) + pressure
@@ -272,13 +271,8 @@ class Quantity:
 
     @property
     def bounds(self) -> list[str]:
-        """The bounds that there are, e.g. ``["> 0", "≤ 0.5"]``."""
-        all_four = (
-            (">", self.above),
-            ("≥", self.at_least),
-            ("<", self.below),
-            ("≤", self.at_most),
-        )
+        """The bounds as text, e.g. ``["> 0", "≤ 0.5"]``."""
+        all_four = ((">", self.above), ("≥", self.at_least), ("<", self.below), ("≤", self.at_most))
         return [f"{sign} {bound:g}" for sign, bound in all_four if bound is not None]
 
     def _wanted(self) -> str:
@@ -312,23 +306,23 @@ class Quantity:
         number = {"type": "number"} | {k: v for k, v in bounds.items() if v is not None}
         if self.unit == "1":
             return number
-        text = {"type": "string", "pattern": r"^\s*[-+]?[0-9.].*[A-Za-zµ°]"}
+        text: dict[str, Any] = {"type": "string", "pattern": r"^\s*[-+]?[0-9.].*[A-Za-zµ°]"}
         if self.unit in _EXAMPLES:
-            text["examples"] = [_EXAMPLES[self.unit]]  # type: ignore[assignment]
+            text["examples"] = [_EXAMPLES[self.unit]]
         return {"anyOf": [number, text], "unit": self.unit}
 
 
 def quantity_of(info: FieldInfo) -> Quantity | None:
-    """Return the quantity that a field of a model holds, one or several; None if it is none."""
-    for found in (*info.metadata, *_annotations(info.annotation)):
-        quantity = getattr(found, "quantity", found)
+    """Return the quantity of a field of one or several values; None for any other field."""
+    for annotation in (*info.metadata, *_annotations(info.annotation)):
+        quantity = getattr(annotation, "quantity", annotation)
         if isinstance(quantity, Quantity):
             return quantity
     return None
 
 
 def _annotations(annotation: Any) -> Iterator[Any]:
-    """Yield what annotates the types inside a type."""
+    """Yield the annotations of the types inside a type."""
     yield from getattr(annotation, "__metadata__", ())
     for inner in get_args(annotation):
         yield from _annotations(inner)

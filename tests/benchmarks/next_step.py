@@ -19,10 +19,10 @@ import numpy as np
 import scipy.fft
 
 import pellicle as pl
+from pellicle.numerics.initial_guess import with_force
 from pellicle.operators import Array
 from pellicle.problem import Problem, height_scale
 from pellicle_plugins.solvers.contact_cg import inner_solve
-from pellicle_plugins.solvers.initial_guess import with_force
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 
 
@@ -54,7 +54,7 @@ def with_known_contact(problem: Problem, tolerance: float, start: Array, answer:
     error = float(np.abs(aloft[contact] - depth).max())
     while error > tolerance * scale:
         found = inner_solve(
-            problem, on_contact, pressure, displacement, tolerance / 2 * scale, doubt=np.inf
+            problem, on_contact, pressure, displacement, tolerance / 2 * scale, certainty=np.inf
         )
         pressure, displacement = found.pressure, problem.operator(found.pressure)
         aloft = (displacement - problem.profile)[contact]

@@ -79,6 +79,16 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
     },
     "solver": {"active_set": {"tolerance": 1e-9}, "conjugate_gradient": {"tolerance": 1e-9}},
     "correction": {"yastrebov": {}},
+    "prescription": {
+        "depth": {},
+        "mean_plane_depth": {},
+        "force": {},
+        "mean_pressure": {},
+        "contact_area": {},
+        "contact_radius": {},
+        "base_displacement": {"spring_constant": "0.1 N/m"},
+        "gap_volume": {},
+    },
     "output": {
         "hdf5": {},
         "csv": {},

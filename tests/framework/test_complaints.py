@@ -25,19 +25,20 @@ class Raising(pl.Output):
 
     type: Literal["raising"] = "raising"
 
-    def close(self, place: pl.Place, result: pl.Result) -> tuple[Path, ...]:
+    def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
         """Fail."""
-        return (Path(result.dataset["nothing"].item()),)
+        return (Path(runs.table["nothing"].item()),)
 
 
 def test_an_output_that_raises(tmp_path: Path) -> None:
     """The exception is its own, with a note; the outputs after it leave their files."""
-    made = pl.Run(**RUN, outputs=[Raising(), pl.registry().make(pl.Output, {"type": "hdf5"})])
+    made = pl.Run(**RUN, outputs=[Raising(), pl.registry().make(pl.Output, {"type": "csv"})])
     with pytest.raises(KeyError) as caught:
         pl.run(made, directory=tmp_path, progress=False)
     (note,) = caught.value.__notes__
     assert note.startswith(f"output 'raising' failed ({__file__}, line ")
     assert pl.load(tmp_path / "run.h5").converged
+    assert (tmp_path / "run.csv").is_file()
 
 
 def test_the_command_has_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -46,7 +47,7 @@ def test_the_command_has_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     def fail(*_: object) -> None:
         raise ValueError("boom")
 
-    monkeypatch.setattr(Csv, "close", fail)
+    monkeypatch.setattr(Csv, "write", fail)
     (tmp_path / "a.toml").write_text(
         pl.Run(**RUN, outputs=[{"type": "csv"}]).to_toml(), encoding="utf-8"
     )
@@ -73,9 +74,13 @@ def test_coarse_steps_are_told_once(tmp_path: Path) -> None:
 def test_arguments_that_are_something_else(tmp_path: Path) -> None:
     """A type, a table, a study and a folder are answered with what is wanted."""
     kernel, grid = pl.kernel("half_space", reduced_modulus=1e4), pl.Grid(points=2, size=1.0)
-    with pytest.raises(pl.ConfigError, match=r"kernel: 'half_space' is no kernel; .*pellicle\.ker"):
+    with pytest.raises(
+        pl.ConfigError, match=r"kernel: 'half_space' is not a kernel; .*pellicle\.ker"
+    ):
         pl.displacement([[1, 0], [0, 0]], kernel="half_space", grid=grid)  # type: ignore[arg-type]
-    with pytest.raises(pl.ConfigError, match=r"grid: \{'points': 2\} is no grid; .*pellicle\.Grid"):
+    with pytest.raises(
+        pl.ConfigError, match=r"grid: \{'points': 2\} is not a grid; .*pellicle\.Grid"
+    ):
         pl.displacement([[1, 0], [0, 0]], kernel=kernel, grid={"points": 2})  # type: ignore[arg-type]
     with pytest.raises(pl.ConfigError, match="study: makes this a study: use run_study"):
         pl.run(RUN | {"study": {"vary": {"indenter.radius": [1, 2]}}}, progress=False)

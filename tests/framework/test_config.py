@@ -128,10 +128,10 @@ def test_outputs_absent_or_empty() -> None:
 
 def test_same_output_twice() -> None:
     """Two outputs that write the same are refused in a run and in a study, objects or tables."""
-    twice = [registry().make(Output, {"type": "hdf5"}), {"type": "csv"}, {"type": "hdf5"}]
-    with pytest.raises(pl.ConfigError, match=r"^outputs\.2\.type: 'hdf5' would write NAME\.h5"):
+    twice = [registry().make(Output, {"type": "csv"}), {"type": "hdf5"}, {"type": "csv"}]
+    with pytest.raises(pl.ConfigError, match=r"^outputs\.2\.type: 'csv' would write NAME\.csv"):
         pl.Run(**BASE, outputs=twice)
-    with pytest.raises(pl.ConfigError, match=r"outputs\.2\.type: 'hdf5' would write NAME\.h5"):
+    with pytest.raises(pl.ConfigError, match=r"outputs\.2\.type: 'csv' would write NAME\.csv"):
         pl.Study(run=BASE | {"outputs": twice}, vary={"indenter.radius": [1e-3, 2e-3]})
     maps = [{"type": "maps", "name": name} for name in ("", "gap")]
     assert len(pl.Run(**BASE, outputs=[*maps, {"type": "csv"}]).outputs or ()) == 3

@@ -55,9 +55,9 @@ BROKEN = {
     "no hook": ("@hookimpl", "", "implements no hook; decorate with @pellicle.hookimpl"),
     "wrong argument": ("(register):", "(add):", "'add'"),
     "fails half-way": (REGISTER, REGISTER + "    1 / 0\n", "ZeroDivisionError"),
-    "wrong hook": ("register_kernels", "register_indenters", "no subclass of pellicle.Indenter"),
+    "wrong hook": ("register_kernels", "register_indenters", "not a subclass of pellicle.Indenter"),
     "no suite": (REGISTER, REGISTER + _NO_SUITE, "() is not a function that yields cases"),
-    "no class": ("register(Soft)", "register(Soft())", "no subclass of pellicle.Kernel"),
+    "no class": ("register(Soft)", "register(Soft())", "not a subclass of pellicle.Kernel"),
     "no type": (TYPE, "", "Soft needs a field: type: Literal"),
     "any text as type": (TYPE, 'type: str = "soft"', "Soft needs a field: type: Literal"),
     "two types": (TYPE, 'type: Literal["a", "b"] = "a"', "Soft needs a field: type: Literal"),
@@ -123,6 +123,25 @@ def test_a_good_plugin_is_registered_with_its_origin(plugin: Plugin) -> None:
         "type": "soft",
         "scale": 2.0,
     }
+
+
+OLD_OUTPUTS = {
+    "imports the place": "from pellicle import Place",
+    "imports it from components": "from pellicle.components import Place",
+    "annotates it": "import pellicle as pl\ndef f(place: pl.Place): ...",
+    **{
+        method: f"from pellicle import Output\nclass Old(Output):\n    def {method}(self, *_): ..."
+        for method in ("open", "close", "study", "endings", "resume")
+    },
+}
+
+
+@pytest.mark.parametrize("name", OLD_OUTPUTS)
+def test_an_output_of_the_earlier_contract_is_told_the_method(name: str, plugin: Plugin) -> None:
+    """It is refused when it is loaded, not left without its files."""
+    found = load([plugin(OLD_OUTPUTS[name], name="output.old")])
+    assert "earlier version" in found.broken[0].error
+    assert "write(runs, stem)" in found.broken[0].error
 
 
 def test_one_plugin_may_bring_several_families(plugin: Plugin) -> None:
@@ -341,7 +360,7 @@ def test_an_unknown_type_gets_the_nearest_known() -> None:
     with pytest.raises(ConfigError) as raised:
         load(BUILT_INS).make(Kernel, {"type": "halfspace"})
     assert str(raised.value) == (
-        "type: 'halfspace' is no kernel; did you mean 'half_space'? Known: half_space"
+        "type: 'halfspace' is not a kernel; did you mean 'half_space'? Known: half_space"
     )
 
 

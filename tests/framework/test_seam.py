@@ -1,4 +1,4 @@
-"""A surface whose edges do not meet is no period, and is said not to be."""
+"""A surface whose edges do not meet is not periodic, and the user is warned."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.numerics.grid_checks import warn_of_seam
+from pellicle.numerics.grid_checks import warn_of_period
 
 PERIODIC = pl.Grid(points=[24, 32], size=["0.6 mm", "0.8 mm"], boundary="periodic")
 X, Y = PERIODIC.coordinates()
@@ -17,7 +17,7 @@ X, Y = PERIODIC.coordinates()
 def test_a_tilted_surface_is_no_period() -> None:
     """The step is that of the tilt, along the axis that it is along."""
     with pytest.warns(UserWarning, match=r"along y: .* step of 0\.00078 m .* 2\.5e-05 m") as told:
-        warn_of_seam(np.broadcast_to(Y, PERIODIC.shape), PERIODIC)
+        warn_of_period(np.broadcast_to(Y, PERIODIC.shape), PERIODIC)
     assert len(told) == 1
 
 
@@ -33,10 +33,10 @@ def test_what_is_a_period_is_silent(seed: int) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for heights in (rough.profile(X, Y), noise, wave, peak):
-            warn_of_seam(heights, PERIODIC)
+            warn_of_period(heights, PERIODIC)
 
 
 def test_a_free_grid_has_no_seam() -> None:
     """There nothing goes on beyond the edge."""
     free = pl.Grid(points=PERIODIC.points, size=PERIODIC.size)
-    warn_of_seam(np.broadcast_to(Y, free.shape), free)
+    warn_of_period(np.broadcast_to(Y, free.shape), free)

@@ -218,8 +218,8 @@ def test_what_runs_warn_of_is_said_once(tmp_path: Path) -> None:
         pl.run_study(made, tmp_path, progress=False)
     coarse, along_x, along_y = sorted(str(each.message) for each in told)
     assert coarse == "of 2 runs, in 2 the cells are too coarse for this contact; see status"
-    assert along_x.startswith("the surface is no period along x")
-    assert along_y.startswith("the surface is no period along y")
+    assert along_x.startswith("the surface is not periodic along x")
+    assert along_y.startswith("the surface is not periodic along y")
 
 
 def test_corrections_that_vary() -> None:
@@ -446,33 +446,41 @@ class Listing(pl.Output):
     """Names each run that it is called for."""
 
     type: Literal["listing"] = "listing"
+    scope: ClassVar[Literal["run", "study", "both"]] = "run"
 
-    def close(self, place: pl.Place, result: pl.Result) -> tuple[Path, ...]:
-        """Leave an empty file."""
-        path = place.file(".txt")
-        path.touch()
+    def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
+        """Leave a text of the runs."""
+        path = Path(f"{stem}.txt")
+        path.write_text(f"{runs.table['force'].max().item()}", encoding="utf-8")
         return (path,)
 
 
 class Summary(Listing):
-    """Leaves one file for the study."""
+    """Leaves one file for the study, and for a run that stands alone."""
 
     type: Literal["summary"] = "summary"  # type: ignore[assignment]
+    scope: ClassVar[Literal["run", "study", "both"]] = "both"
 
-    def study(self, place: pl.Place, table: xr.Dataset) -> tuple[Path, ...]:
-        """Leave the highest force."""
-        path = place.file("-summary.txt")
-        path.write_text(f"{table['force'].max().item()}", encoding="utf-8")
-        return (path,)
+
+class OfStudies(Listing):
+    """Leaves one file for a study only."""
+
+    type: Literal["of_studies"] = "of_studies"  # type: ignore[assignment]
+    scope: ClassVar[Literal["run", "study", "both"]] = "study"
 
 
 def test_outputs_of_runs_and_of_the_study(tmp_path: Path) -> None:
-    """An output with a method for studies is called once, any other by each run."""
-    table = carry_out(study(outputs=[Listing(), Summary()]), tmp_path)
+    """An output of scope run is called by each run, any other once."""
+    outputs = [Listing(), Summary(), OfStudies()]
+    table = carry_out(study(outputs=outputs), tmp_path)
     texts = {path.name for path in tmp_path.rglob("*.txt")}
-    assert texts == {"study-summary.txt", *(f"{name}.txt" for name in table["run"].values.ravel())}
+    names = {f"{name}-listing.txt" for name in table["run"].values.ravel()}
+    assert texts == {"study-summary.txt", "study-of_studies.txt", *names}
     highest = float((tmp_path / "study-summary.txt").read_text())
     assert highest == table["force"].max().item()
+    pl.run(RUN | {"outputs": outputs}, directory=tmp_path / "run", progress=False)
+    texts = {path.name for path in (tmp_path / "run").glob("*.txt")}
+    assert texts == {"study-listing.txt", "study-summary.txt"}
 
 
 def test_figures(tmp_path: Path) -> None:

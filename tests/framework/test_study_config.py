@@ -242,7 +242,7 @@ def test_relative_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
             {"kernle.tension": [7]},
             "vary.kernle.tension: 7: is not a field here; did you mean 'kernel'?",
         ),
-        ({"kernel.type": ["nope"]}, "vary.kernel.type: 'nope' is no kernel"),
+        ({"kernel.type": ["nope"]}, "vary.kernel.type: 'nope' is not a kernel"),
         ({TENSION: [1, 1.0]}, "are the same run; leave one out"),
         ({TENSION: [0.01, "10 mN/m"]}, "(kernel.tension = 0.01) and (kernel.tension = 10 mN/m)"),
         ({"title": ["a", "b"]}, "are the same run"),

@@ -129,7 +129,7 @@ def test_angle(given: str, expected: float) -> None:
 @pytest.mark.parametrize("unit", ["foo", "N/", "N/m)", "2 N/m", "N + m", "N/0", "__import__('os')"])
 def test_unknown_unit(unit: str) -> None:
     """Whatever does not parse as a unit is refused in our words, not in pint's."""
-    with pytest.raises(ValueError, match="has no unit that is known"):
+    with pytest.raises(ValueError, match="has an unknown unit"):
         TENSION(f"1 {unit}")
 
 
@@ -148,14 +148,14 @@ def test_unknown_unit(unit: str) -> None:
 )
 def test_unit_that_would_never_end(unit: str) -> None:
     """Towers of powers and endless texts are refused at once: pint is not given them."""
-    with pytest.raises(ValueError, match="has no unit that is known"):
+    with pytest.raises(ValueError, match="has an unknown unit"):
         Quantity("Pa")(f"1 {unit}")
 
 
 @pytest.mark.parametrize("unit", ["Pa\0", "{Pa}", "Pa#x", "Pa\x1b[2J", "Pa;Pa", "[Pa]"])
 def test_unit_with_marks_of_other_languages(unit: str) -> None:
     """A unit is letters, small powers, products and quotients; nothing else is ignored."""
-    with pytest.raises(ValueError, match="has no unit that is known"):
+    with pytest.raises(ValueError, match="has an unknown unit"):
         Quantity("Pa")(f"1 {unit}")
 
 

@@ -1,8 +1,8 @@
-"""Analysis of contact: functions of the fields of one load step, and of the grid they lie on.
+"""Analysis of contact: functions of the fields of one load step and of their grid.
 
 Fields are arrays of the grid's shape (nx, ny), such as ``result.dataset["contact"][-1]``; the grid
-is ``result.grid``. Where the domain ends there is no contact on a free boundary; on a periodic one
-the opposite edges lie against each other.
+is ``result.grid``. On a free boundary there is no contact beyond the domain; on a periodic one
+opposite edges are neighbours.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How often a field has which value."""
+"""The probability density of the values of a field."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ class Distribution:
     edges: Array
     """Ends of the bins, shape (bins + 1,)."""
     density: Array
-    """Share of the samples over the width of the bin."""
+    """Fraction of the samples in each bin over its width."""
     mean: Array
-    """Mean of the samples in each bin; its middle where there is none."""
+    """Mean of the samples in each bin; the middle of an empty one."""
 
     @property
     def width(self) -> Array:
@@ -28,19 +28,20 @@ class Distribution:
 
 
 def distribution(values: ArrayLike, bins: int = 50) -> Distribution:
-    """Return the distribution of samples over equal bins from 0 to the highest.
+    """Return the distribution of samples over equal bins from 0 to the highest value.
 
     Parameters
     ----------
     values
-        Samples of any shape, such as the pressure of the cells in contact. Infinite ones, as the
-        gap has where there is no indenter, are left out. The lowest bin goes down to any below 0.
+        Samples of any shape, such as the pressure of the cells in contact. Infinite ones, such as
+        the gap where there is no indenter, are left out. Negative ones extend the bins below 0.
     bins
         Number of bins.
 
     Returns
     -------
-    No bins, if there are no samples or all of them are 0.
+    Distribution
+        Without bins if there are no samples or all of them are 0.
     """
     given = np.asarray(values, dtype=np.float64).ravel()
     samples = given[np.isfinite(given)]

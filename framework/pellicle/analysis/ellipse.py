@@ -1,4 +1,4 @@
-"""The ellipse that stands for a contact."""
+"""The ellipse with the moments of a contact."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ class Ellipse:
     semi_minor_axis: float
     """[m]."""
     angle: float
-    """From x to the major axis [rad], over −π/2 to π/2; of a circle it is arbitrary."""
+    """From the x axis to the major axis [rad], from −π/2 to π/2; arbitrary for a circle."""
 
 
 def ellipse(contact: ArrayLike, grid: Grid) -> Ellipse:
     """Return the ellipse with the centroid and the second moments of a contact.
 
     A full ellipse with semi-axes a₁ ≥ a₂ has the principal second moments a₁²/4 and a₂²/4 per
-    area. The cells count as rectangles, so that a single one has an extension.
+    area. Cells are rectangles here, so that a single one has an extent.
 
     Parameters
     ----------
@@ -45,18 +45,19 @@ def ellipse(contact: ArrayLike, grid: Grid) -> Ellipse:
 
     Returns
     -------
-    Of no contact: semi-axes 0, centre and angle NaN. On a periodic grid positions are seen from
-    the circular mean of the contact along each axis; a contact that has none, such as full contact
-    or a line contact, has no ellipse: all NaN.
+    Ellipse
+        Without contact the semi-axes are 0, centre and angle NaN. On a periodic grid positions are
+        relative to the circular mean of the contact along each axis. A contact that has none, such
+        as full contact or a line contact, has no ellipse, and all is NaN.
     """
     inside = np.asarray(contact, dtype=bool)
     if not inside.any():
         return Ellipse(nan, nan, 0.0, 0.0, nan)
-    x, y = (each.ravel() for each in grid.coordinates())
+    x, y = (points.ravel() for points in grid.coordinates())
     along = inside.sum(axis=1, dtype=np.float64), inside.sum(axis=0, dtype=np.float64)
     centre = [0.0, 0.0]
     if grid.boundary == "periodic":
-        centre = [_circular_mean(*each) for each in zip((x, y), along, grid.size, strict=True)]
+        centre = list(map(_circular_mean, (x, y), along, grid.size))
         if np.isnan(centre).any():
             return Ellipse(nan, nan, nan, nan, nan)
     x, y = (
@@ -80,7 +81,7 @@ def ellipse(contact: ArrayLike, grid: Grid) -> Ellipse:
 
 
 def _circular_mean(points: Array, weights: Array, length: float) -> float:
-    """Return the mean of positions on a circle of a length; NaN if there is none."""
+    """Return the circular mean of positions of a period; NaN if it is undefined."""
     if points.size == 1:
         return nan
     resultant = np.average(np.exp(2j * pi / length * points), weights=weights)
@@ -88,5 +89,5 @@ def _circular_mean(points: Array, weights: Array, length: float) -> float:
 
 
 def _wrapped(points: Array, length: float) -> Array:
-    """Return the images of points that lie within half a period of 0."""
+    """Return the periodic images of points within half a period of 0."""
     return points - length * np.round(points / length)

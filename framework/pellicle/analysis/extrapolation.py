@@ -1,4 +1,4 @@
-"""What a number becomes on ever finer grids."""
+"""Extrapolation of a number to vanishing cell size."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ class Extrapolation:
     """value(h) = limit + coefficient · h^exponent over the cell size h."""
 
     limit: float
-    """At h = 0."""
+    """The value at h = 0."""
     coefficient: float
     exponent: float
     lowest: float
-    """Lowest limit that comes out where one of the grids is left out."""
+    """Lowest of the limits without one of the grids."""
     highest: float
-    """Highest such limit."""
+    """Highest of these limits."""
 
     def __call__(self, spacing: ArrayLike) -> Array:
-        """Return the value on cells of a size."""
+        """Return the value on cells of a given size."""
         return self.limit + self.coefficient * np.asarray(spacing, dtype=float) ** self.exponent
 
 
 def extrapolate(spacing: ArrayLike, values: ArrayLike) -> Extrapolation:
-    """Return the power law through the values that nested grids give.
+    """Return the power law fitted to values on grids of different cell size.
 
-    The error that comes of the cells goes with a power of their size, as Prodanov, Dapp & Müser
-    (2014) take it to extrapolate the area of rough contact; here the exponent is fitted, by least
-    squares, for it depends on the quantity, the surface and the kernel.
+    The discretisation error is taken to be a power of the cell size, as in the extrapolation of
+    rough contact area by Prodanov, Dapp & Müser (2014). The exponent is fitted, too, by least
+    squares: it depends on the quantity, the surface and the kernel.
 
     Parameters
     ----------
@@ -47,23 +47,24 @@ def extrapolate(spacing: ArrayLike, values: ArrayLike) -> Extrapolation:
 
     Returns
     -------
-    All NaN where no exponent from 0.1 to 8 fits best: the values do not tend anywhere yet. The
-    range of limits is NaN where that is so of the grids without one of them, or where these are
-    fewer than three.
+    Extrapolation
+        All NaN if no exponent between 0.1 and 8 fits best: the values do not converge yet. The
+        range of limits is NaN if that holds without one of the grids, or if fewer than three cell
+        sizes remain.
 
     Raises
     ------
     ValueError
         Fewer than three different spacings.
     """
-    h, v = (np.asarray(each, dtype=np.float64).ravel() for each in (spacing, values))
+    h, v = (np.asarray(array, dtype=np.float64).ravel() for array in (spacing, values))
     if np.unique(h).size < 3:
         raise ValueError(
             f"{np.unique(h).size} cell sizes do not fix a limit, a coefficient and an exponent; "
             "give at least three"
         )
     limit, coefficient, exponent = _fit(h, v)
-    others = [_fit(h[h != each], v[h != each])[0] for each in np.unique(h)]
+    others = [_fit(h[h != size], v[h != size])[0] for size in np.unique(h)]
     return Extrapolation(limit, coefficient, exponent, float(np.min(others)), float(np.max(others)))
 
 
@@ -86,25 +87,23 @@ def _fit(h: Array, v: Array) -> tuple[float, float, float]:
 
 
 def _best(h: Array, v: Array) -> float | None:
-    """Return the exponent of the least squares, None if it is at an end of the range."""
+    """Return the exponent of least squares, None if it is at an end of the range."""
     from scipy.optimize import minimize_scalar
 
-    tried = np.log(np.geomspace(*_EXPONENTS, 200))
-    missed = [_line(h ** np.exp(each), v)[1] for each in tried]
-    at = int(np.argmin(missed))
-    if at in (0, tried.size - 1):
+    def squares(log_exponent: float) -> float:
+        return _line(h ** np.exp(log_exponent), v)[1]
+
+    trials = np.log(np.geomspace(*_EXPONENTS, 200))
+    best = int(np.argmin([squares(trial) for trial in trials]))
+    if best in (0, trials.size - 1):
         return None
-    found = minimize_scalar(
-        lambda each: _line(h ** np.exp(each), v)[1],
-        bounds=(tried[at - 1], tried[at + 1]),
-        method="bounded",
-        options={"xatol": 1e-12},
-    )
-    return float(np.exp(found.x))
+    bounds = trials[best - 1], trials[best + 1]
+    result = minimize_scalar(squares, bounds=bounds, method="bounded", options={"xatol": 1e-12})
+    return float(np.exp(result.x))
 
 
 def _line(x: Array, y: Array) -> tuple[Array, float]:
-    """Return the intercept and the slope of least squares, and the sum of the squares left."""
+    """Return intercept and slope of the least-squares line, and the remaining sum of squares."""
     matrix = np.stack([np.ones_like(x), x], axis=1)
     fit = np.linalg.lstsq(matrix, y)[0]
     return np.asarray(fit), float(np.sum((matrix @ fit - y) ** 2))

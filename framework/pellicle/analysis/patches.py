@@ -1,4 +1,4 @@
-"""The patches that a contact falls into."""
+"""The connected patches of a contact."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class Patches:
     """The connected parts of a contact, the largest first."""
 
     labels: Labels
-    """Number of the patch of each cell, of the grid's shape; 0 where there is no contact."""
+    """The patch of each cell, counted from 1, of the grid's shape; 0 where there is no contact."""
     area: Array
-    """[m²], one for each patch."""
+    """Area of each patch [m²]."""
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Number of patches."""
         return self.area.size
 
 
@@ -41,7 +41,7 @@ def patches(contact: ArrayLike, grid: Grid, connectivity: Literal[4, 8] = 4) -> 
     grid
         The cells.
     connectivity
-        4: cells that share an edge are of one patch; 8: those that share a corner are too.
+        4: cells that share an edge belong to one patch; 8: those that share a corner do, too.
     """
     labels, count = _label(np.asarray(contact, dtype=bool), grid.boundary, connectivity)
     cells = np.bincount(labels.ravel(), minlength=count + 1)[1:]
@@ -54,16 +54,16 @@ def patches(contact: ArrayLike, grid: Grid, connectivity: Literal[4, 8] = 4) -> 
 def coordination(labels: Labels, grid: Grid) -> NDArray[np.int64]:
     """Return the number of neighbours of each patch, shape (patches,).
 
-    The surface is shared out among the patches, each cell to the nearest; those whose shares have
-    a cell edge in common are neighbours. On a periodic grid the shares meet across the edge of the
-    domain too; on a free one they end there, so that patches near it have fewer neighbours. A
-    patch is not counted as a neighbour of its own images. Where many patches fill a plane the mean
+    Each cell of the surface is assigned to the nearest patch; patches whose regions have a cell
+    edge in common are neighbours. On a periodic grid the regions meet across the edge of the
+    domain, too; on a free one they end there, so that patches near the edge have fewer neighbours.
+    A patch is not a neighbour of its own images. Where many patches fill a plane the mean number
     is close to 6 (Euler).
 
     Parameters
     ----------
     labels
-        As `Patches.labels` has them.
+        See `Patches.labels`.
     grid
         The cells.
     """
@@ -74,7 +74,7 @@ def coordination(labels: Labels, grid: Grid) -> NDArray[np.int64]:
         return np.zeros(0, dtype=np.int64)
     nx, ny = grid.shape
     periodic = grid.boundary == "periodic"
-    # Within half a period each way lies the nearest image of every patch.
+    # Padding by half a period each way includes the nearest image of every patch.
     mx, my = (nx // 2, ny // 2) if periodic else (0, 0)
     empty = np.pad(labels == 0, ((mx, mx), (my, my)), mode="wrap" if periodic else "constant")
     i, j = ndimage.distance_transform_edt(
@@ -84,21 +84,20 @@ def coordination(labels: Labels, grid: Grid) -> NDArray[np.int64]:
     i %= nx
     j -= my
     j %= ny
-    shares = labels[i, j]
-    # Of a periodic grid they are as large as four of its fields.
+    regions = labels[i, j]
+    # On a periodic grid these are as large as four of its fields.
     del empty, i, j
-    pairs = np.concatenate([_pairs(shares, axis, periodic) for axis in (0, 1)], axis=1)
+    pairs = np.concatenate([_pairs(regions, axis, periodic) for axis in (0, 1)], axis=1)
     pairs = np.unique(np.sort(pairs, axis=0), axis=1)
     return np.bincount(pairs.ravel(), minlength=count + 1)[1:]
 
 
 def _pairs(labels: Labels, axis: int, periodic: bool) -> Labels:
-    """Return the two labels at cell edges across an axis where they differ, shape (2, edges)."""
-    here, there = labels, np.roll(labels, -1, axis)
+    """Return pairs of different labels on both sides of a cell edge along an axis, (2, edges)."""
+    pairs = np.stack([labels, np.roll(labels, -1, axis)])
     if not periodic:
-        here, there = (np.delete(each, -1, axis) for each in (here, there))
-    differ = here != there
-    return np.stack([here[differ], there[differ]])
+        pairs = np.delete(pairs, -1, axis + 1)
+    return np.asarray(pairs[:, pairs[0] != pairs[1]])
 
 
 def _label(contact: Mask, boundary: Boundary, connectivity: Literal[4, 8]) -> tuple[Labels, int]:
@@ -110,17 +109,17 @@ def _label(contact: Mask, boundary: Boundary, connectivity: Literal[4, 8]) -> tu
 
 
 def _joined(labels: Labels, count: int, connectivity: Literal[4, 8]) -> tuple[Labels, int]:
-    """Return labels of which those that meet across the edges of the domain are one."""
+    """Return labels in which patches that meet across the edges of the domain are one."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
     shifts = (0,) if connectivity == 4 else (-1, 0, 1)
     edges: list[Any] = []
-    for each in (labels, labels.T):
-        edges += [np.stack([each[0], np.roll(each[-1], shift)]) for shift in shifts]
+    for lines in (labels, labels.T):
+        edges += [np.stack([lines[0], np.roll(lines[-1], shift)]) for shift in shifts]
     pairs = np.concatenate(edges, axis=1)
     pairs = pairs[:, (pairs > 0).all(axis=0)]
     graph = coo_array((np.ones(pairs.shape[1], dtype=bool), tuple(pairs)), (count + 1, count + 1))
-    # Label 0 is on its own, and the first node, so it stays 0.
+    # Label 0 is the first node and isolated, so it stays 0.
     joined, merged = connected_components(graph, directed=False)
     return merged.astype(np.int64)[labels], int(joined) - 1

@@ -14,15 +14,15 @@ from pellicle.grid import Grid
 def perimeter(contact: ArrayLike, grid: Grid) -> float:
     """Return the length of the border of a contact [m].
 
-    It is counted from the switches between contact and no contact along the two axes and the two
-    diagonals of the cells (Cauchy–Crofton; Legland, Kiêu & Devaux 2007). A border that runs in all
-    directions alike, as that of a disc, is right in the mean; a straight one comes out at most
-    5.2 % short (along an axis) or 2.6 % long, on square cells. The length of the cell edges
+    It is computed from the number of switches between contact and no contact along the two axes and
+    the two diagonals of the cells (Cauchy–Crofton; Legland, Kiêu & Devaux 2007). For an isotropic
+    border, such as that of a disc, it is right on average; for a straight one it is at most 5.2 %
+    too short (along an axis) or 2.6 % too long, on square cells. The length of the cell edges
     between contact and no contact would be 27 % too long for a disc. On a grid one cell across,
-    where borders run along the axes only, it is just that length.
+    where borders run along the axes only, that length is returned.
 
-    On a free boundary the edge of the domain is border where there is contact; on a periodic one
-    it is not.
+    On a free boundary the edge of the domain counts as border where there is contact; on a periodic
+    one it does not.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
         return sum(length * _switches(inside, step) for step, length in edges)
     slope = atan2(dy, dx)
     across = dx * dy / hypot(dx, dy)
-    # Step to the next cell; distance between parallel lines; angle that the direction stands for.
+    # Step to the next cell; distance between parallel lines; angle represented by the direction.
     directions = (
         ((1, 0), dy, slope),
         ((0, 1), dx, pi / 2 - slope),
@@ -54,6 +54,6 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
 
 
 def _switches(inside: Mask, step: tuple[int, int]) -> int:
-    """Return how often contact begins or ends from a cell to the one that is a step away."""
-    # What has no contact around it may be taken as periodic too.
+    """Return how often contact begins or ends between a cell and the one that is a step away."""
+    # A free contact was padded, so that it may be treated as periodic.
     return int(np.count_nonzero(inside != np.roll(inside, step, (0, 1))))

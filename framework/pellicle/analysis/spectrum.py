@@ -21,7 +21,7 @@ class Spectrum:
     density: Array
     """Mean C(q) over each ring [m⁴]."""
     count: NDArray[np.int64]
-    """Wave vectors in each ring."""
+    """Number of wave vectors in each ring."""
     area: float
     """Area of the domain [m²]."""
 
@@ -35,18 +35,18 @@ def spectrum(heights: ArrayLike, grid: Grid) -> Spectrum:
     """Return the radially averaged power spectral density of heights.
 
     C(q) = |ĥ(q)|² / A with ĥ(q) = Σ h e^{−iq·x} dx dy over the domain of area A, as C^2D in Jacobs,
-    Junge & Pastewka (2017). Rings are one 2π/L wide, L the longer edge of the domain; q = 0 is left
-    out, and the corners of the Fourier plane are not.
+    Junge & Pastewka (2017). Rings are 2π/L wide, L being the longer edge of the domain. q = 0 is
+    left out; the corners of the Fourier plane are included.
 
-    On a periodic grid the heights are taken as they are. On a free one they do not go on across the
-    edge: they are multiplied by the window sin²(πx/L_x) sin²(πy/L_y) (Hann), after the mean under
-    it has been taken off, and C is divided by the mean square of the window, so that
+    On a periodic grid the heights are used unchanged. On a free one they are not continuous across
+    the edge: their mean weighted by the window sin²(πx/L_x) sin²(πy/L_y) (Hann) is subtracted, they
+    are multiplied by the window, and C is divided by the mean square of the window. So
     `Spectrum.mean_square` is the mean square of the heights weighted by the window's square.
 
     Parameters
     ----------
     heights
-        [m], shape (nx, ny); finite.
+        Finite heights [m], shape (nx, ny).
     grid
         The cells.
 
@@ -66,8 +66,8 @@ def spectrum(heights: ArrayLike, grid: Grid) -> Spectrum:
         h /= np.sqrt(np.mean(window**2))
     density = np.abs(scipy.fft.rfft2(h) * grid.cell_area) ** 2 / grid.area
     q = np.hypot(*grid.wavenumbers())
-    # Of each pair ±q, rfft2 gives one; but where q_y = 0, or at the end of an even number of cells,
-    # it gives both.
+    # rfft2 returns one of each pair ±q, but both where q_y = 0 and, for an even number of cells,
+    # in the last column.
     times = np.full(q.shape, 2)
     times[:, 0] = 1
     if grid.shape[1] % 2 == 0:
@@ -75,14 +75,14 @@ def spectrum(heights: ArrayLike, grid: Grid) -> Spectrum:
     ring = np.rint(q * max(grid.size) / (2 * pi)).astype(np.int64).ravel()
     count = np.bincount(ring, times.ravel())
     count[0] = 0
-    there = count > 0
+    filled = count > 0
 
     def mean(values: Array) -> Array:
-        return np.asarray(np.bincount(ring, (times * values).ravel())[there] / count[there])
+        return np.asarray(np.bincount(ring, (times * values).ravel())[filled] / count[filled])
 
-    return Spectrum(mean(q), mean(density), count[there].astype(np.int64), grid.area)
+    return Spectrum(mean(q), mean(density), count[filled].astype(np.int64), grid.area)
 
 
 def _hann(points: int) -> Array:
-    """Return sin² over the centres of as many cells."""
+    """Return the Hann window sin² at the cell centres."""
     return np.asarray(np.sin(pi * (np.arange(points) + 0.5) / points) ** 2)

@@ -1,4 +1,4 @@
-"""What a terminal or a file cannot encode is written in letters that it can."""
+"""Replace characters that a terminal or a file cannot encode by similar ASCII."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _SIGNS = (
 
 
 def encode_readably(stream: TextIO) -> None:
-    """Have a stream replace what its encoding lacks: µ by u, τ by tau, ≤ by <=.
+    """Let a stream replace characters that its encoding lacks: µ by u, τ by tau, ≤ by <=.
 
-    Windows encodes what is redirected to a file in a code page of 256 characters.
+    Windows writes redirected output in a code page of 256 characters.
     """
     if isinstance(stream, io.TextIOWrapper):
         stream.reconfigure(errors=_HANDLER)
@@ -31,7 +31,7 @@ def _replace(error: UnicodeError) -> tuple[str, int]:
 
 
 def _ascii(character: str) -> str:
-    """Return ASCII that reads like a character; a question mark for letters of other scripts."""
+    """Return ASCII similar to a character, or a question mark."""
     if character in _SIGNS:
         return _SIGNS[character]
     name = unicodedata.name(character, "")

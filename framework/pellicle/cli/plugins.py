@@ -9,13 +9,11 @@ import typer
 from .printing import print_json, print_table
 
 
-def plugins(
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
-) -> None:
+def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False) -> None:
     """List the components that are installed, and what is broken and why."""
     from pellicle.plugins import registry
 
-    found = registry()
+    known = registry()
     rows = [
         {
             "family": family,
@@ -24,7 +22,7 @@ def plugins(
             "version": registered.origin.version,
             "description": registered.summary,
         }
-        for family, members in found.components.items()
+        for family, members in known.components.items()
         for registered in members.values()
     ]
     broken = [
@@ -34,7 +32,7 @@ def plugins(
             "version": broken.origin.version,
             "error": broken.error,
         }
-        for broken in found.broken
+        for broken in known.broken
     ] + [
         {
             "entry_point": f"{family}.{type_}",
@@ -42,9 +40,9 @@ def plugins(
             "version": ", ".join(owner.version for owner in owners),
             "error": f"claimed by {' and by '.join(map(str, owners))}",
         }
-        for (family, type_), owners in found.clashes.items()
+        for (family, type_), owners in known.clashes.items()
     ]
-    disabled = [str(origin) for origin in found.disabled]
+    disabled = [str(origin) for origin in known.disabled]
     if json:
         print_json({"components": rows, "broken": broken, "disabled": disabled})
         return

@@ -15,14 +15,14 @@ from pellicle.files import for_document
 def print_table(
     names: list[str], rows: list[dict[str, str]], heads: dict[str, str] | None = None
 ) -> None:
-    """Print rows under names, or under what ``heads`` has in their place."""
+    """Print rows under the names of their columns, or the ``heads`` that replace them."""
     table = Table(box=None, pad_edge=False, header_style="bold")
     for name in names:
         table.add_column((heads or {}).get(name, name), overflow="fold")
     for row in rows:
-        # A terminal obeys some control characters.
+        # A terminal obeys control characters.
         table.add_row(*(for_document(row[name]) for name in names))
-    # Into a pipe nothing is cut or folded.
+    # Output into a pipe is neither cut nor folded.
     console = Console(markup=False, highlight=False)
     if not console.is_terminal:
         console.width = 1000
@@ -31,12 +31,12 @@ def print_table(
 
 
 def print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    """Print a warning; what else `warnings.showwarning` is given is left out."""
+    """Print a warning; further arguments of `warnings.showwarning` are ignored."""
     typer.echo(f"warning: {message}", err=True)
 
 
 def print_json(value: object) -> None:
-    """Print JSON in ASCII, which any code page of a terminal or of a pipe has."""
+    """Print JSON in ASCII, which every code page contains."""
     import json
 
     json.dump(value, sys.stdout, indent=2)

@@ -1,4 +1,4 @@
-"""What is printed of results and of studies, and the exit code that they deserve."""
+"""Print results and tables of studies, and exit by how they converged."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def print_origin(data: xr.Dataset) -> None:
-    """Print where a result comes from."""
+    """Print title, date and versions of a result."""
     for name in ("title", "date", "versions"):
         typer.echo(f"{name + ':':10}{for_document(str(data.attrs.get(name, '')))}")
 
@@ -29,42 +29,40 @@ def print_steps(result: Result) -> None:
 
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    requested = [name for name in names_of("requested") if name in data]
-    if "contact_radius" in result.configuration["loading"]:
-        requested.insert(0, "contact_radius")
+    shown = {"depth", "force", *areas, *names_of("other")}
+    loading = [name for name in result.configuration["loading"] if name in data]
+    requested = [name for name in (*loading, "stiffness") if name in {*data} - shown]
+    requested = [*dict.fromkeys(reversed(requested))][::-1]
     names = ["depth", "force", *areas, *requested, "iterations"]
     coarse = dict(result.coarse())
-    rows = []
-    for number in data["step"].values.tolist():
-        step = data.sel(step=number)
-        row = {name: f"{step[name].item():.6g}" for name in names}
-        status = "converged" if step["converged"].item() else "NOT CONVERGED"
-        if number in coarse:
-            status = "too coarse"
-        rows.append({"step": str(number), **row, "status": status})
-    print_table(["step", *names, "status"], rows, _heads(data, names))
-    for number, converged, status in zip(
-        data["step"].values.tolist(), data["converged"], data["status"], strict=True
-    ):
-        if converged and status != "converged" and number not in coarse:
-            typer.echo(f"step {number}: {for_document(str(status.item()))}", err=True)
+    numbers = data["step"].values.tolist()
+    converged = dict(zip(numbers, data["converged"].values.tolist(), strict=True))
+    verdicts = [
+        "too coarse" if n in coarse else "converged" if converged[n] else "NOT CONVERGED"
+        for n in numbers
+    ]
+    _print_steps(data, names, {"status": verdicts})
+    for number, status in zip(numbers, data["status"].values.tolist(), strict=True):
+        if converged[number] and status != "converged" and number not in coarse:
+            typer.echo(f"step {number}: {for_document(status)}", err=True)
 
 
 def print_contact(result: Result) -> None:
-    """Print a second table, of the shape of the contact."""
+    """Print the shape of the contact at each step."""
     from pellicle.results.variables import names_of
 
-    data = result.dataset
-    # Files of earlier versions do not say it.
-    names = [name for name in names_of("contact") if name in data]
-    if not names:
-        return
-    typer.echo("contact:")
-    rows = [
-        {"step": str(number), **{name: f"{data[name].values[index]:.6g}" for name in names}}
-        for index, number in enumerate(data["step"].values.tolist())
-    ]
-    print_table(["step", *names], rows, _heads(data, names))
+    # Files of earlier versions lack them.
+    if names := [name for name in names_of("contact") if name in result.dataset]:
+        typer.echo("contact:")
+        _print_steps(result.dataset, names, {})
+
+
+def _print_steps(data: xr.Dataset, names: list[str], texts: dict[str, list[str]]) -> None:
+    """Print a row for each step: numbers by their names, and further columns of texts."""
+    columns = {"step": [str(number) for number in data["step"].values.tolist()]}
+    columns |= {name: [f"{value:.6g}" for value in data[name].values] for name in names} | texts
+    rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+    print_table(list(columns), rows, _heads(data, names))
 
 
 def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
@@ -74,18 +72,16 @@ def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
 
 
 def print_runs(table: xr.Dataset) -> None:
-    """Print a row for each run of a study: its parameters, its last step and how it ended."""
+    """Print parameters, last step and verdict of each run of a study."""
     from pellicle.studies.summary import rows
 
-    found = rows(table)
-    names = list(found[0])
-    units = {name: table[name].attrs.get("units", "1") for name in names if name in table}
-    heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
-    print_table(names, found, heads)
+    lines = rows(table)
+    names = list(lines[0])
+    print_table(names, lines, _heads(table, [name for name in names if name in table]))
 
 
 def exit_by_convergence(result: Result) -> None:
-    """Exit unless all steps of a run converged, and say which did not or are too coarse."""
+    """Print which steps did not converge or are too coarse; exit unless all converged."""
     from pellicle.results.result import said_of_steps
 
     for step, message in result.failures():
@@ -97,7 +93,7 @@ def exit_by_convergence(result: Result) -> None:
 
 
 def exit_by_status(table: xr.Dataset) -> None:
-    """Exit unless all runs of a study converged, and say which did not."""
+    """Print which runs of a study did not converge; exit unless all did."""
     from pellicle.studies.summary import failures, reasons
 
     if message := failures(table):

@@ -36,102 +36,100 @@ def run(
         ),
     ] = None,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Begin anew, in place of whatever result is there.")
+        bool, typer.Option("--overwrite", help="Start over, in place of whatever result there is.")
     ] = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Print what would be run, and run nothing.")
     ] = False,
 ) -> None:
-    """Solve a run, or all runs of a study, and leave the results; go on where it was interrupted.
+    """Solve a run, or all runs of a study, and write the results; go on where it was interrupted.
 
     Exit code 0 only if every step converged.
     """
     from pellicle.config.study import Study, from_toml
 
-    made = from_toml(file, set_ or ())
+    configuration = from_toml(file, set_ or ())
     folder = directory or Path(file.stem)
     if dry_run:
-        _print_plan(made, folder, file.stem, overwrite)
-    elif isinstance(made, Study):
-        _run_study(made, folder, quiet=quiet, threads=threads, overwrite=overwrite)
+        _print_plan(configuration, folder / file.stem, overwrite)
+    elif isinstance(configuration, Study):
+        _run_study(configuration, folder, quiet=quiet, threads=threads, overwrite=overwrite)
     else:
-        _run_one(made, folder, file.stem, quiet=quiet, threads=threads, overwrite=overwrite)
+        stem = folder / file.stem
+        _run_one(configuration, stem, quiet=quiet, threads=threads, overwrite=overwrite)
 
 
-def _print_plan(made: Run | Study, folder: Path, name: str, overwrite: bool) -> None:
-    from pellicle.components import Place
+def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool) -> None:
     from pellicle.config.study import Study
+    from pellicle.runs.journal import Journal
     from pellicle.studies.runner import RunTask, plan, tasks
 
-    if isinstance(made, Study):
-        planned = list(plan(tasks(made, folder, overwrite=overwrite)))
+    if isinstance(configuration, Study):
+        planned = list(plan(tasks(configuration, stem.parent, overwrite=overwrite)))
     else:
-        place = Place(folder, name, made.to_json(as_given=True), made.identity, overwrite)
-        planned = list(plan([RunTask(made.title or name, made, place)]))
+        journal = Journal(stem, configuration.identity, overwrite)
+        planned = list(plan([RunTask(configuration.title or stem.name, configuration, journal)]))
     rows = []
-    for task, done, problem in planned:
+    for task, finished, problem in planned:
         nx, ny = task.run.grid.points
-        state = f"{done} of {task.steps} steps done" if done < task.steps else "done"
+        state = f"{finished} of {task.steps} steps done" if finished < task.steps else "done"
         rows.append(
             {
                 "run": task.name,
-                "file": str(task.place.file(".h5")),
+                "file": str(task.journal.path),
                 "points": f"{nx} × {ny}",
                 "steps": str(task.steps),
                 "memory": f"{task.memory / 1e6:.3g} MB",
-                "state": problem or (state if done else "to do"),
+                "state": problem or (state if finished else "to do"),
             }
         )
     print_table(["run", "file", "points", "steps", "memory", "state"], rows)
-    finished = sum(done >= task.steps for task, done, _ in planned)
+    done = sum(finished >= task.steps for task, finished, _ in planned)
     most = max(task.memory for task, *_ in planned) / 1e6
     typer.echo(
-        f"{len(planned)} run{'s' * (len(planned) > 1)}, {finished} done, "
-        f"{len(planned) - finished} to do; at most {most:.3g} MB each"
+        f"{len(planned)} run{'s' * (len(planned) > 1)}, {done} done, "
+        f"{len(planned) - done} to do; at most {most:.3g} MB each"
     )
 
 
-def _run_one(
-    made: Run, folder: Path, name: str, *, quiet: bool, threads: int | None, overwrite: bool
-) -> None:
-    from pellicle.components import Place
+def _run_one(run: Run, stem: Path, *, quiet: bool, threads: int | None, overwrite: bool) -> None:
+    from pellicle.runs.journal import Journal
     from pellicle.runs.progress import Progress
     from pellicle.runs.runner import execute, standard_outputs
 
-    place = Place(folder, name, made.to_json(as_given=True), made.identity, overwrite)
-    bar = Progress(len(made.loading.values), not quiet)
+    steps = len(run.loading.values)
+    journal, bar = Journal(stem, run.identity, overwrite), Progress(steps, not quiet)
     try:
-        done = execute(made, place, standard_outputs(made.outputs), bar, threads=threads)
+        executed = execute(run, journal, standard_outputs(run.outputs), bar, threads=threads)
     except KeyboardInterrupt:
-        typer.echo(f"interrupted; what steps were finished are in {folder}", err=True)
+        typer.echo(f"interrupted; finished steps are in {stem.parent}", err=True)
         raise typer.Exit(INTERRUPTED) from None
     if not quiet:
-        print_steps(done.result)
-        if done.taken:
-            all_ = len(made.loading.values)
-            typer.echo(f"{done.taken} of {all_} steps were done before (--overwrite begins anew)")
-        for path in done.files:
-            typer.echo(f"wrote {path}")
-    exit_by_convergence(done.result)
+        print_steps(executed.result)
+        _print_files(executed.files, executed.resumed, f"{steps} steps")
+    exit_by_convergence(executed.result)
 
 
 def _run_study(
-    made: Study, folder: Path, *, quiet: bool, threads: int | None, overwrite: bool
+    study: Study, folder: Path, *, quiet: bool, threads: int | None, overwrite: bool
 ) -> None:
-    from pellicle.studies.runner import carry_out
+    from pellicle.studies.runner import execute
 
     try:
-        done = carry_out(made, folder, progress=not quiet, overwrite=overwrite, threads=threads)
+        result = execute(study, folder, progress=not quiet, overwrite=overwrite, threads=threads)
     except KeyboardInterrupt:
         typer.echo(
-            f"interrupted; what was finished is in {folder}, and the same command goes on", err=True
+            f"interrupted; finished runs are in {folder}, and the same command goes on", err=True
         )
         raise typer.Exit(INTERRUPTED) from None
     if not quiet:
-        print_runs(done.table)
-        if done.taken:
-            all_ = len(made.points)
-            typer.echo(f"{done.taken} of {all_} runs were done before (--overwrite begins anew)")
-        for path in done.files:
-            typer.echo(f"wrote {path}")
-    exit_by_status(done.table)
+        print_runs(result.table)
+        _print_files(result.files, result.resumed, f"{len(study.points)} runs")
+    exit_by_status(result.table)
+
+
+def _print_files(files: tuple[Path, ...], resumed: int, whole: str) -> None:
+    if resumed:
+        typer.echo(f"{resumed} of {whole} were done before (--overwrite starts over)")
+    for path in files:
+        typer.echo(f"wrote {path}")

@@ -18,7 +18,7 @@ from .results import (
 )
 
 if TYPE_CHECKING:
-    from pellicle.results.result import Result
+    pass
 
 
 def show(
@@ -26,7 +26,7 @@ def show(
         Path, typer.Argument(help="Result file (.h5), or the folder or study.h5 of a study.")
     ],
 ) -> None:
-    """Print the steps of a result, or the runs of a study, and where it comes from."""
+    """Print the steps of a result, or the runs of a study, and its origin."""
     from pellicle.results.result import load
     from pellicle.studies.runner import is_table, read
 
@@ -38,16 +38,10 @@ def show(
         return
     result = load(results)
     print_origin(result.dataset)
-    wanted, done = _steps_wanted(result), result.dataset.sizes["step"]
+    wanted, done = result.planned_steps, result.dataset.sizes["step"]
     print_steps(result)
     print_contact(result)
     exit_by_convergence(result)
     if done < wanted:
         typer.echo(f"interrupted: {done} of {wanted} steps are there; run it again", err=True)
         raise typer.Exit(NOT_CONVERGED)
-
-
-def _steps_wanted(result: Result) -> int:
-    from pellicle.loading import Loading
-
-    return len(Loading(**result.configuration["loading"]).values)

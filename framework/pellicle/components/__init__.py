@@ -5,6 +5,12 @@ methods are pure. The same object is configuration, code, JSON schema and proven
 pickles to workers. A concrete component declares ``type: Literal["name"] = "name"``.
 """
 
+from typing import TYPE_CHECKING
+
+from pellicle.errors import PluginError
+from pellicle.numerics.problem import Depth as Depth
+from pellicle.numerics.problem import Force as Force
+
 from .base import Component as Component
 from .correction import AreaCorrection as AreaCorrection
 from .executor import AnyTask as AnyTask
@@ -24,7 +30,10 @@ from .indenter import Indenter as Indenter
 from .indenter import IsShallowLimit as IsShallowLimit
 from .kernel import Kernel as Kernel
 from .output import Output as Output
-from .output import Place as Place
+from .output import Runs as Runs
+from .prescription import Prescription as Prescription
+from .prescription import Search as Search
+from .prescription import Setting as Setting
 from .solver import HasMemory as HasMemory
 from .solver import IterativeSolver as IterativeSolver
 from .solver import Monitor as Monitor
@@ -33,6 +42,17 @@ from .validation import Case as Case
 from .validation import Suite as Suite
 
 FAMILIES: dict[str, type[Component]] = {
-    family.family: family for family in (Kernel, Indenter, Solver, AreaCorrection, Output, Executor)
+    family.family: family
+    for family in (Kernel, Indenter, Solver, AreaCorrection, Output, Executor, Prescription)
 }
 """The base class of each family, by name."""
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> object:
+        if name == "Place":
+            raise PluginError(
+                "Place belongs to the contract of outputs of an earlier version; write "
+                "write(runs, stem), where stem is the path that its files begin with"
+            )
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
+from pellicle.errors import PluginError
 from pellicle.model.base import Model
 
 
@@ -13,9 +15,22 @@ class Component(Model):
     family: ClassVar[str]
     libraries: ClassVar[tuple[str, ...]] = ()
     """Distributions that it computes with, beside numpy and scipy; results state their versions."""
+    replaced_methods: ClassVar[Mapping[str, str]] = {}
+    """Methods of an earlier contract, and what replaces each; a class that has one is refused."""
 
     @property
     def type_name(self) -> str:
         """The component's type, such as ``half_space``."""
         # A base class with a field ``type: str`` would not let components narrow it to a literal.
         return str(getattr(self, "type", type(self).__name__))
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        """Refuse a class that was written for the contract of an earlier version."""
+        super().__pydantic_init_subclass__(**options)
+        for name, replacement in cls.replaced_methods.items():
+            if name in vars(cls):
+                raise PluginError(
+                    f"{cls.__name__}.{name}() belongs to the contract of an earlier version, and "
+                    f"nothing calls it any more; write {replacement}"
+                )

@@ -12,7 +12,7 @@ from contextlib import closing
 from dataclasses import replace
 from numbers import Integral
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast, get_args
+from typing import Any, cast, get_args
 
 import numpy as np
 
@@ -21,23 +21,20 @@ from pellicle.checks import (
     blamed,
     component_name,
     read_only,
-    read_only_dataset,
     real_array,
     real_number,
 )
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import LARGEST, Grid
-from pellicle.numerics.problem import Problem
+from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
 from pellicle.numerics.solution import Solution, State, Stop
 
 from .correction import AreaCorrection
 from .executor import AnyTask, Executor, Outcome, Report, Say
 from .indenter import Footprint, ForceCurve, HasForceCurve, Indenter
-from .output import Output, Place
+from .output import Output, Runs, stem_of
+from .prescription import Prescription, Search, Setting
 from .solver import Monitor, Solver
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # Rounding of heights over the size of the domain, and of areas over their own size.
 _ROUNDING = 1e-12
@@ -160,6 +157,8 @@ def solution_of(
         It is not a `Solution` of the grid's shape, the solver changed the problem, or it takes
         ``start`` for an array, which it was in earlier versions.
     """
+    if not problem.touches:
+        return Solution(np.zeros(problem.grid.shape), 0)
     name = component_name(solver)
     view = _read_only_problem(problem)
     fields, parts = dict(vars(view)), problem.operator.parts()
@@ -231,6 +230,86 @@ def _require_unchanged(
         )
 
 
+def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
+    """Refuse a prescribed value that its prescription refuses, as an error of ``field``.
+
+    An error of the prescription that names a field of its own keeps it.
+
+    Raises
+    ------
+    ConfigError
+        The value is not allowed in this setting.
+    """
+    try:
+        with blamed(prescription):
+            prescription.check(setting, value)
+    except ConfigError as error:
+        named = any(problem.field for problem in error.problems)
+        raise (error if named else error.within(field)) from None
+
+
+def target_of(prescription: Prescription, setting: Setting, value: float) -> Depth | Force | Search:
+    """Return the depth, the force or the search for a prescribed value.
+
+    Raises
+    ------
+    PluginError
+        It is none of these, or not of finite numbers.
+    """
+    with blamed(prescription):
+        target = prescription.target(setting, value)
+    call, name = f"target(setting, {value:g})", component_name(prescription)
+    if not isinstance(target, (Depth, Force, Search)):
+        raise PluginError(
+            f"{name}: {call} returned {shown(target)}; it has to return a pellicle.Depth, Force "
+            "or Search"
+        )
+    for field in ("value", "compliance", "goal", "resolution", "width", "guess"):
+        number = getattr(target, field, None)
+        if number is None:
+            continue
+        number = real_number(prescription, f"{call}.{field}", number)
+        signed = field in ("goal", "guess") or (field == "value" and isinstance(target, Depth))
+        if not np.isfinite(number) or (number < 0 and not signed):
+            allowed = "finite" if signed else "finite and ≥ 0"
+            raise PluginError(f"{name}: {call}.{field} is {number:g}; it has to be {allowed}")
+    if not isinstance(target, Search):
+        return target
+    quantity = target.measure
+    if target.control not in (Depth, Force) or not callable(quantity):
+        raise PluginError(
+            f"{name}: {call} has to search by control = Depth or Force, with a function as measure"
+        )
+
+    def measure(step: Equilibrium) -> float:
+        with blamed(prescription):
+            return real_number(prescription, f"{call}.measure(step)", quantity(step))
+
+    return replace(target, measure=measure)
+
+
+def report_of(prescription: Prescription, setting: Setting, step: Equilibrium) -> dict[str, float]:
+    """Return the variables that a prescription adds to a step.
+
+    Raises
+    ------
+    PluginError
+        They are not numbers, or not those that it declares.
+    """
+    with blamed(prescription):
+        report = prescription.report(setting, step)
+    declared = {v.name for v in prescription.variables if v.kind != "residual"}
+    if not isinstance(report, dict) or report.keys() != declared:
+        raise PluginError(
+            f"{component_name(prescription)}: report() returned {shown(report)}; it has to return "
+            f"a dict of {', '.join(sorted(declared)) or 'nothing'}, as its variables declare"
+        )
+    return {
+        name: real_number(prescription, f"report()[{name!r}]", value)
+        for name, value in report.items()
+    }
+
+
 def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> float:
     """Return the corrected area of contact [m²].
 
@@ -253,82 +332,38 @@ def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> flo
     return area
 
 
-def endings_of(output: Output) -> tuple[str, ...]:
-    """Return the endings of the files that an output leaves.
+def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
+    """Return the files that an output writes of a run or study whose stem is ``stem``.
 
     Raises
     ------
     PluginError
-        They are not a tuple of text: the letters of one text would stand for endings of their own.
+        As for `require_files`.
     """
     with blamed(output):
-        value = output.endings()
-    if not isinstance(value, (tuple, list)) or not all(isinstance(e, str) for e in value):
-        raise PluginError(
-            f"{component_name(output)}: endings() returned {shown(value)}; it has to return a "
-            'tuple of text, such as (".txt",)'
-        )
-    return tuple(value)
+        files = output.write(runs, stem_of(output, stem))
+    require_files(output, files, stem)
+    return tuple(files)
 
 
-def earlier_steps(output: Output, place: Place, steps: int) -> xr.Dataset | None:
-    """Return the steps that an output has from an earlier process, if any.
+def require_files(output: Output, files: object, stem: Path) -> None:
+    """Refuse what write() of an output returned unless it is files of its own stem.
 
     Raises
     ------
     PluginError
-        It is not a dataset of at most so many steps.
+        It is not a tuple of paths that begin with the stem.
     """
-    import xarray as xr
-
-    with blamed(output):
-        value = output.resume(place)
-    if value is None:
-        return None
-    number = value.sizes.get("step", 0) if isinstance(value, xr.Dataset) else 0
-    if not 0 < number <= steps:
+    own = stem_of(output, stem)
+    call = f"{component_name(output)}: write(runs, stem) returned"
+    if not isinstance(files, (tuple, list)) or not all(isinstance(path, Path) for path in files):
         raise PluginError(
-            f"{component_name(output)}: resume() returned {type(value).__name__} of {number} "
-            f"steps; it has to return None, or an xarray.Dataset of 1 to {steps} steps"
+            f"{call} {shown(files)}; it has to return a tuple of pathlib.Path, empty if there is "
+            "none"
         )
-    return value
-
-
-def hand_over(outputs: Sequence[Output], place: Place, step: xr.Dataset) -> None:
-    """Give a finished step to every output, even where one of them fails; none can change it.
-
-    Raises
-    ------
-    Exception
-        What the first that failed raised.
-    """
-    errors: list[Exception] = []
-    for output in outputs:
-        try:
-            with blamed(output):
-                output.step(place, read_only_dataset(step))
-        except Exception as error:
-            errors.append(error)
-    if errors:
-        raise errors[0]
-
-
-def files_of(output: Output, call: str, leave: Callable[[Output], object]) -> tuple[Path, ...]:
-    """Return the files that an output left behind.
-
-    Raises
-    ------
-    PluginError
-        They are not a tuple of paths.
-    """
-    with blamed(output):
-        value = leave(output)
-    if not isinstance(value, (tuple, list)) or not all(isinstance(path, Path) for path in value):
-        raise PluginError(
-            f"{component_name(output)}: {call} returned {shown(value)}; it has to return a "
-            "tuple of pathlib.Path, empty if there is none"
-        )
-    return tuple(value)
+    for path in files:
+        if not str(path).startswith(str(own)):
+            raise PluginError(f"{call} {path}; its files have to begin with the stem, {own}")
 
 
 def outcomes_of(

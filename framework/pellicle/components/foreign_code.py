@@ -1,6 +1,6 @@
-"""Guards around code of plugins: it cannot print to standard output or pass for Ctrl-C.
+"""Guards around the import of plugins against output to standard output and false Ctrl-C.
 
-Commands print JSON to standard output, which one line of a plugin would spoil.
+Commands print JSON to standard output, which a single line of a plugin would spoil.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ _OUT, _ERR = 1, 2
 
 @contextmanager
 def diverted_output() -> Iterator[None]:
-    """Send to standard error what is written to standard output meanwhile.
+    """Redirect standard output to standard error.
 
     Raises
     ------
     PluginError
-        Standard output was closed. It is open again.
+        The code closed standard output, which is open again.
     """
     stream = sys.stdout
     was_closed = _is_closed(stream)
@@ -56,9 +56,9 @@ def diverted_output() -> Iterator[None]:
 
 @contextmanager
 def noted_interrupts() -> Iterator[threading.Event]:
-    """Yield an event that is set when the user presses Ctrl-C, whatever becomes of the exception.
+    """Yield an event that is set when the user presses Ctrl-C, even if the exception is caught.
 
-    Handlers are as before afterwards. In threads other than the main one there is no Ctrl-C.
+    The previous handler is restored. Threads other than the main one get no Ctrl-C.
     """
     interrupt = threading.Event()
     before = signal.getsignal(signal.SIGINT)
@@ -89,7 +89,7 @@ def _stand_in() -> TextIO:
 
 
 def _divert_descriptor() -> int | None:
-    """Let the descriptor of standard output be that of standard error; return a copy of it."""
+    """Point the descriptor of standard output to standard error; return a copy of the old one."""
     try:
         copy = os.dup(_OUT)
     except OSError:
@@ -118,6 +118,6 @@ def _flush(*streams: TextIO | None) -> None:
         with suppress(OSError, ValueError):
             if stream is not None:
                 stream.flush()
-    # What C libraries have printed waits in a buffer of their own.
+    # C libraries buffer their output themselves.
     with suppress(OSError, AttributeError, TypeError):
         ctypes.CDLL(None).fflush(None)

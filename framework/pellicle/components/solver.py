@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 from pydantic import Field
 
 from pellicle.arrays import Array
-from pellicle.errors import PluginError
 from pellicle.grid import Grid
 from pellicle.numerics.problem import Problem, round_off
 from pellicle.numerics.solution import Progress, Solution, State, Stop
@@ -23,12 +22,6 @@ Monitor = Callable[[int, float], None]
 
 # A residual up to this multiple of the rounding of one operator application is put down to it.
 _ROUNDINGS = 30.0
-# Methods of earlier versions, and what took their place.
-_REPLACED = {
-    "punch_pressure": "response(problem, state, monitor), for the contact state.pressure > 0",
-    "patience": "terminate(problem, state), which returns Stop.STALLED to end the iteration",
-    "merits": "terminate(problem, state), which returns Stop.STALLED to end the iteration",
-}
 
 
 @runtime_checkable
@@ -47,23 +40,17 @@ class Solver(Component):
     """Finds the pressure of one load step."""
 
     family: ClassVar[str] = "solver"
+    replaced_methods: ClassVar[Mapping[str, str]] = {
+        "punch_pressure": "response(problem, state, monitor), for the contact state.pressure > 0",
+        "patience": "terminate(problem, state), which returns Stop.STALLED to end the iteration",
+        "merits": "terminate(problem, state), which returns Stop.STALLED to end the iteration",
+    }
 
     tolerance: Annotated[
         float,
         Quantity("1", at_least=1e-13, below=1),
         Field(description="bound on every residual, relative to the indenter's height range"),
     ] = 1e-8
-
-    @classmethod
-    def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        """Refuse a class that was written for the contract of an earlier version."""
-        super().__pydantic_init_subclass__(**options)
-        for name, replacement in _REPLACED.items():
-            if name in vars(cls):
-                raise PluginError(
-                    f"{cls.__name__}.{name}() belongs to the contract of an earlier version, and "
-                    f"nothing calls it any more; write {replacement}"
-                )
 
     @abstractmethod
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
@@ -84,21 +71,23 @@ class Solver(Component):
         """
         from scipy.sparse.linalg import LinearOperator, cg
 
+        # A spring that holds the indenter has no part in it.
+        operator = problem.operator.held(0.0)
         cells = np.flatnonzero(state.contact)
         pressure = np.zeros(problem.grid.shape)
         iteration = 0
 
         def displacement(on_contact: Array) -> Array:
             pressure.ravel()[cells] = on_contact
-            return problem.operator(pressure).ravel()[cells]
+            return operator(pressure).ravel()[cells]
 
         def count(_: Array) -> None:
             nonlocal iteration
             iteration += 1
             monitor(iteration, 1.0)
 
-        operator = LinearOperator((cells.size, cells.size), matvec=displacement, dtype=np.float64)
-        on_contact, _ = cg(operator, np.ones(cells.size), rtol=self.tolerance / 2, callback=count)
+        matrix = LinearOperator((cells.size, cells.size), matvec=displacement, dtype=np.float64)
+        on_contact, _ = cg(matrix, np.ones(cells.size), rtol=self.tolerance / 2, callback=count)
         pressure.ravel()[cells] = on_contact
         return pressure
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple, get_args
 
 from pydantic import BaseModel
 
 from pellicle.components import Component
+from pellicle.errors import ConfigError, PluginError
 from pellicle.plugins import Origin, Registered, registry
 from pellicle.units import quantity_of, readable
 
+from .loading import Loading, model_of
 from .run import Run
 
 
@@ -54,6 +57,9 @@ def _one(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[Input
     """Yield the values in the table of a component or of another part of the run."""
     model = _model(annotation)
     if "type" not in table:
+        if model is Loading:
+            with suppress(ConfigError, PluginError):
+                model = model_of(table)
         yield from _table(table, model, f"{name}.")
         return
     known = _registered(model, table["type"])

@@ -1,7 +1,8 @@
-"""The JSON schema of models whose fields hold components."""
+"""The JSON schema of run and study files, and of models whose fields hold components."""
 
 from __future__ import annotations
 
+import inspect
 from typing import Any
 
 from pydantic import BaseModel
@@ -10,6 +11,7 @@ from pydantic.json_schema import models_json_schema
 from pellicle.plugins import registry
 
 from .component_field import _FAMILY
+from .loading import Loading, loading_model
 from .run import Run
 from .study import Study
 
@@ -20,14 +22,19 @@ def json_schema(model: type[BaseModel]) -> dict[str, Any]:
     """Return the JSON schema of a model whose fields take any component that is installed.
 
     Where such a field is the model's own the components are written out; within components, which
-    may hold others of their own family without end, they are referred to.
+    may hold others of their own family without end, they are referred to. The loading is one table
+    for each prescription.
     """
     families = registry().components
     installed = [each for found in families.values() for each in found.values()]
-    models = [model, *(registered.component for registered in installed)]
+    loadings = [loading_model(type_) for type_ in families["prescription"]]
+    models = [model, *(registered.component for registered in installed), *loadings]
     refs, made = models_json_schema([(each, "validation") for each in models])
     names = {each: refs[each, "validation"]["$ref"].rpartition("/")[2] for each in models}
     definitions: dict[str, Any] = made["$defs"]
+    if Loading.__name__ in definitions:
+        choices = [definitions.pop(names[loading]) for loading in loadings]
+        definitions[Loading.__name__] = {"description": inspect.getdoc(Loading), "oneOf": choices}
     referred: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
     written: dict[str, list[dict[str, Any]]] = {family: [] for family in families}
     for registered in installed:
@@ -40,12 +47,12 @@ def json_schema(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
-    """Return ``schema`` with the choices of a family wherever a field holds one of them."""
+    """Return ``schema`` with the choices of a family where a field holds one of them."""
     if isinstance(schema, list):
-        return [_filled(each, choices) for each in schema]
+        return [_filled(inner, choices) for inner in schema]
     if not isinstance(schema, dict):
         return schema
-    filled = {name: _filled(each, choices) for name, each in schema.items() if name != _FAMILY}
+    filled = {name: _filled(inner, choices) for name, inner in schema.items() if name != _FAMILY}
     return filled | {"oneOf": choices[schema[_FAMILY]]} if _FAMILY in schema else filled
 
 
@@ -56,7 +63,7 @@ def _required(model: type[BaseModel]) -> list[str]:
 def schema() -> dict[str, Any]:
     """Return the JSON schema of a run or study file, with every component that is installed.
 
-    In a study what varies may be left out, so that nothing but the type of a component is required.
+    In a study file varied fields may be left out, so only the type of a component is required.
     """
     run, study = json_schema(Run), json_schema(Study)
     definitions = run.pop("$defs") | study.pop("$defs")
@@ -70,28 +77,28 @@ def schema() -> dict[str, Any]:
         "if": {"required": ["study"]},
         "else": run,
         "$defs": definitions
-        | {f"{name}{_IN_PART}": _in_part(each) for name, each in definitions.items()},
+        | {f"{name}{_IN_PART}": _in_part(inner) for name, inner in definitions.items()},
     }
 
 
 def _in_part(schema: Any) -> Any:
-    """Return a schema that also accepts what lacks fields."""
+    """Return a schema that accepts objects with missing fields too."""
     if isinstance(schema, list):
-        return [_in_part(each) for each in schema]
+        return [_in_part(inner) for inner in schema]
     if not isinstance(schema, dict):
         return schema
-    made = {name: _in_part(each) for name, each in schema.items() if not _of_presence(each)}
+    part = {n: _in_part(inner) for n, inner in schema.items() if not _requires_any(inner)}
     if isinstance(required := schema.get("required"), list):
-        made["required"] = [name for name in required if name == "type"]
+        part["required"] = [name for name in required if name == "type"]
     if isinstance(ref := schema.get("$ref"), str):
-        made["$ref"] = f"{ref}{_IN_PART}"
-    return made
+        part["$ref"] = f"{ref}{_IN_PART}"
+    return part
 
 
-def _of_presence(choices: Any) -> bool:
-    """Whether these are the choices of fields of which one must be there, as of moduli."""
+def _requires_any(choices: Any) -> bool:
+    """Whether these are choices of which fields are required, as for elastic moduli."""
     return (
         isinstance(choices, list)
         and bool(choices)
-        and all(isinstance(each, dict) and each.keys() == {"required"} for each in choices)
+        and all(isinstance(c, dict) and c.keys() == {"required"} for c in choices)
     )

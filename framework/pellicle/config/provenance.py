@@ -1,4 +1,4 @@
-"""Where a result comes from: its run, the versions of what solved it, and the date."""
+"""The origin of a result: its run, the versions of all packages used, and the date."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .run import Run
 
 
 def provenance(run: Run) -> dict[str, str]:
-    """Return the attributes that say where a result comes from."""
+    """Return the origin of a result as attributes of its dataset."""
     return {
         "title": for_document(run.title),
         "configuration": run.to_json(),
@@ -26,9 +26,12 @@ def provenance(run: Run) -> dict[str, str]:
 
 
 def now_with(runs: Iterable[Run]) -> dict[str, str]:
-    """Return the date, and the versions of what solves ``runs``, as attributes of a result."""
+    """Return the date, and the versions of the packages that solve ``runs``, as attributes."""
     used = {
-        type(value) for run in runs for _, value, _ in walk(run) if isinstance(value, Component)
+        type(value)
+        for run in runs
+        for value in (run.loading.prescription, *(value for _, value, _ in walk(run)))
+        if isinstance(value, Component)
     }
     owners = {
         registered.origin.distribution: registered.origin.version
@@ -39,7 +42,7 @@ def now_with(runs: Iterable[Run]) -> dict[str, str]:
     libraries = sorted({name for component in used for name in component.libraries})
     versions = {name: version(name) for name in ("pellicle", "numpy", "scipy")} | owners
     for name in libraries:
-        # A worker that is handed what a library read may be without it.
+        # A worker that gets data which a library has read need not have the library.
         with suppress(PackageNotFoundError):
             versions[name] = version(name)
     return {

@@ -1,7 +1,7 @@
-"""The configuration of a run: frozen models whose components come from the registry.
+"""The configuration of a run: a frozen model whose components come from the registry.
 
-The configuration *is* the objects that compute; TOML, JSON and keyword arguments all make the
-same `Run`.
+The configuration *is* the objects that compute; TOML, JSON and keyword arguments all make the same
+`Run`.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from pydantic import (
 )
 
 from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
+from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid, grid_of_run
-from pellicle.loading import Loading
 from pellicle.model.from_file import FromFile
 from pellicle.model.paths import get, replaced, walk
 from pellicle.plugins import registry
 
 from .component_field import FromRegistry
-from .output_conflicts import refuse_clashes
+from .loading import Loading
 
 DEFAULT_SOLVER = "active_set"
-# Raised when equal configurations begin to give other numbers, not with the layout of files.
+# To be raised when an equal configuration gives other numbers, not with the layout of files.
 _NUMBERS_VERSION = 1
 
 
@@ -45,35 +45,33 @@ class Run(FromFile):
     kernel: Annotated[Kernel, FromRegistry(), Field(description="how the surface yields")]
     indenter: Annotated[Indenter, FromRegistry(), Field(description="what is pressed in")]
     loading: Annotated[Loading, Field(description="the load steps")]
-    solver: Annotated[
-        Solver,
-        FromRegistry(),
-        Field(description="how it is solved"),
-    ] = Field(default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER}))
+    solver: Annotated[Solver, FromRegistry(), Field(description="how it is solved")] = Field(
+        default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER})
+    )
     corrections: Annotated[
         tuple[Annotated[AreaCorrection, FromRegistry()], ...],
         Field(description="corrections of the contact area"),
     ] = ()
     outputs: Annotated[
         tuple[Annotated[Output, FromRegistry()], ...] | None,
-        Field(description="what the run leaves behind; all the standard outputs if not given"),
+        Field(description="what is written besides the result file; csv and figures if not given"),
     ] = None
 
     @field_validator("indenter", mode="wrap")
     @classmethod
-    def _made_for_the_grid(
-        cls, given: object, make: ValidatorFunctionWrapHandler, info: ValidationInfo
+    def _for_the_grid(
+        cls, value: object, make: ValidatorFunctionWrapHandler, info: ValidationInfo
     ) -> Any:
         with grid_of_run(info.data.get("grid")):
-            return make(given)
+            return make(value)
 
     @model_validator(mode="after")
-    def _pressure_needs_period(self) -> Self:
-        if self.loading.prescribed == "mean_pressure" and self.grid.boundary == "free":
+    def _prescription_has_a_period(self) -> Self:
+        if self.loading.prescription.needs_period and self.grid.boundary == "free":
             raise ConfigError(
                 'is not defined on an infinite surface (grid.boundary = "free"); prescribe force '
                 'or depth, or set grid.boundary = "periodic"',
-                "loading.mean_pressure",
+                f"loading.{self.loading.prescribed}",
             )
         return self
 
@@ -83,7 +81,7 @@ class Run(FromFile):
         for index, type_ in enumerate(types):
             if type_ in types[:index]:
                 raise ConfigError(
-                    f"{type_!r} is there already, and both would be contact_area_{type_}; leave "
+                    f"{type_!r} is given already, and both would be contact_area_{type_}; leave "
                     "one out",
                     f"corrections.{index}.type",
                 )
@@ -91,7 +89,7 @@ class Run(FromFile):
 
     @model_validator(mode="after")
     def _each_file_once(self) -> Self:
-        refuse_clashes(self.outputs or ())
+        refuse_shared_files(self.outputs or ())
         return self
 
     @classmethod
@@ -113,10 +111,10 @@ class Run(FromFile):
 
     @property
     def identity(self) -> str:
-        """Hash of all that decides the numbers: equal for runs whose results are equal.
+        """Hash of everything that decides the numbers of the result.
 
-        Of the configuration, defaults included, `title` and `outputs` are left out; a file that it
-        names counts by its content.
+        It is that of the configuration with its defaults, but without `title` and `outputs`; an
+        input file counts by its content.
         """
         identifying = self.model_dump(
             mode="json", exclude_none=True, exclude={"title", "outputs"}
@@ -137,5 +135,5 @@ def _digest_of(path: Path) -> str:
 
 @cache
 def _digest(path: Path, changed: int, size: int) -> str:
-    """Return the hash of a file; the runs of a study may all name the same large one."""
+    """Return the hash of a file; cached, since the runs of a study may share a large file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,4 +1,4 @@
-"""The configuration of a study: a run, the parameters that vary, and how it is carried out."""
+"""The configuration of a study: a run, the parameters that vary, and the executor."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from pellicle import memory
 from pellicle.components import Executor
+from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, shown
-from pellicle.loading import ON_DEMAND
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate
 from pellicle.model.from_file import FromFile, read
 from pellicle.model.input_path import paths_relative_to
@@ -23,11 +23,10 @@ from pellicle.model.paths import get
 from pellicle.model.ranges import Axes, expand
 from pellicle.plugins import registry
 from pellicle.results.derived import constants
-from pellicle.results.variables import FIELDS, VARIABLES, corrected_area
+from pellicle.results.variables import FIELDS, VARIABLES, corrected_area, names_of
 
 from .component_field import FromRegistry
 from .coordinates import Coordinate, as_json, coordinate
-from .output_conflicts import refuse_clashes_with_study
 from .points import Point, points_of
 from .run import Run
 
@@ -36,7 +35,7 @@ _BYTES_PER_RUN = 40_000
 
 
 def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
-    """Return the study that a TOML file describes, or the run where it has no table ``study``.
+    """Return the study that a TOML file describes, or the run if it has no table ``study``.
 
     Raises
     ------
@@ -76,7 +75,7 @@ def _same_length(table: Axes) -> None:
 class Study(FromFile):
     """A run whose parameters vary: one run for each combination of values.
 
-    The runs are made, and so checked, at once; `points` has them.
+    All runs are made, and so checked, with the study; they are in `points`.
     """
 
     run: Annotated[
@@ -103,36 +102,33 @@ class Study(FromFile):
         Field(description="further numbers of the table: name → arithmetic expression"),
     ] = Field(default_factory=dict)
     executor: Annotated[
-        Executor,
-        FromRegistry(),
-        Field(description="what carries out the runs"),
+        Executor, FromRegistry(), Field(description="what carries out the runs")
     ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
     _points: tuple[Point, ...] = PrivateAttr()
 
     @model_validator(mode="after")
     def _expand(self) -> Self:
         self._check_axes()
-        # Workers may have another current folder.
+        # Workers may run in another current folder.
         with paths_relative_to(None):
             self._points = tuple(points_of(self.run, self.dimensions))
         self._check_derived()
         try:
-            refuse_clashes_with_study(self.points[0].run.outputs or ())
+            refuse_shared_files(self.points[0].run.outputs or (), of_study=True)
         except ConfigError as error:
             raise error.within("run") from None
         return self
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """The runs, those that differ in the last dimension next to each other."""
+        """The runs, with the last dimension varying fastest."""
         return self._points
 
     @property
     def dimensions(self) -> dict[str, Axes]:
         """The axes along each dimension of the table, by the dimension's name.
 
-        Each varied parameter is a dimension; parameters that are zipped share one, which has the
-        name of the first of them.
+        Each varied parameter is a dimension; zipped parameters share one, named after the first.
         """
         return {key: {key: values} for key, values in self.vary.items()} | {
             next(iter(table)): table for table in self.zip
@@ -144,7 +140,7 @@ class Study(FromFile):
         return tuple(len(next(iter(axes.values()))) for axes in self.dimensions.values())
 
     def coordinates(self) -> dict[str, tuple[str, Coordinate]]:
-        """Return the dimension and the values of each varied parameter, SI."""
+        """Return dimension and values [SI] of each varied parameter."""
         return {
             key: (dimension, coordinate(key, values, self._runs_along(number)))
             for number, (dimension, axes) in enumerate(self.dimensions.items())
@@ -189,7 +185,7 @@ class Study(FromFile):
     def to_json(self, *, as_given: bool = False) -> str:
         """Return the study as JSON of the form of a study file; ranges are lists.
 
-        Values are as they were given; paths of files to read are absolute, or as they were given.
+        Values are as they were given; paths of input files are absolute unless ``as_given``.
         """
         tables = []
         for number, axes in enumerate(self.dimensions.values()):
@@ -224,7 +220,7 @@ class Study(FromFile):
             if one == other or one.startswith(f"{other}.") or other.startswith(f"{one}."):
                 short, long = sorted((one, other), key=len)
                 raise ConfigError(
-                    f"would override the axis {short}, which sets the same; leave one out",
+                    f"would override the axis {short}, which sets the same value; leave one out",
                     f"vary.{long}",
                 )
         count, available = math.prod(self.shape), memory.available()
@@ -236,11 +232,12 @@ class Study(FromFile):
             )
 
     def _check_derived(self) -> None:
-        """Refuse expressions that name what a table will not have, before anything is run."""
+        """Refuse expressions with names that the table will not have, before anything runs."""
         run = self.points[0].run
         texts = {name for name, variable in VARIABLES.items() if variable.type == "text"}
         known = {*VARIABLES, *constants(json.loads(run.to_json()))}
-        known -= texts | (ON_DEMAND - run.loading.brings)
+        known -= texts | {*names_of("requested")}
+        known |= run.loading.variables
         known |= {corrected_area(correction.type_name).name for correction in run.corrections}
         known |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         reserved = {*FUNCTIONS, *CONSTANTS, *texts, "run", "step", "x", "y"}

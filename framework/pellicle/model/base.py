@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic.fields import FieldInfo
 
 from pellicle.errors import ConfigError
 
@@ -22,3 +24,8 @@ class Model(BaseModel):
             super().__init__(**data)
         except ValidationError as error:
             raise ConfigError(problems(type(self), error.errors(), data)) from None
+
+    @property
+    def described_fields(self) -> Mapping[str, FieldInfo]:
+        """The fields by name, with those that only this object has."""
+        return type(self).model_fields

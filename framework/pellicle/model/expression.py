@@ -48,9 +48,7 @@ def names_in(text: str) -> set[str]:
 
 
 def evaluate(
-    text: str,
-    names: Mapping[str, Any],
-    functions: Mapping[str, Callable[[Any], Any]] | None = None,
+    text: str, names: Mapping[str, Any], functions: Mapping[str, Callable[[Any], Any]] | None = None
 ) -> Any:
     """Return the value of ``text``: arithmetic over ``names``.
 

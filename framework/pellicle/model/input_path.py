@@ -8,12 +8,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-from pydantic import (
-    PlainSerializer,
-    SerializationInfo,
-    ValidatorFunctionWrapHandler,
-    WrapValidator,
-)
+from pydantic import PlainSerializer, SerializationInfo, ValidatorFunctionWrapHandler, WrapValidator
 
 _folder: ContextVar[Path | None] = ContextVar("folder", default=None)
 

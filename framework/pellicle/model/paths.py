@@ -38,8 +38,7 @@ def walk(
     """
     inner: list[tuple[str, Any, FieldInfo | None]]
     if isinstance(at, Model):
-        fields = type(at).model_fields.items()
-        inner = [(name, getattr(at, name), info) for name, info in fields]
+        inner = [(name, getattr(at, name), info) for name, info in at.described_fields.items()]
     elif isinstance(at, Mapping):
         inner = [(str(name), value, None) for name, value in at.items()]
     elif isinstance(at, (list, tuple)):
@@ -69,7 +68,7 @@ def _replaced(at: Any, names: list[str], value: object, path: str) -> Any:
         return value
     if isinstance(at, Model):
         set_ = at.model_fields_set | {"type"}
-        at = {name: getattr(at, name) for name in type(at).model_fields if name in set_}
+        at = {name: getattr(at, name) for name in at.described_fields if name in set_}
     name, rest = _head(at, names)
     if isinstance(at, Mapping):
         return {**at, name: _replaced(at.get(name, {}), rest, value, f"{path}{name}.")}

@@ -1,13 +1,13 @@
-"""Whether cells of a free boundary are narrow enough for a kernel, said before solving.
+"""Warnings about a grid before anything is solved: cells too wide, a surface that is not periodic.
 
-There the pressure is uniform in each cell and the displacement taken at its centre. A wave
-p = cos qx, sampled so, holds the waves q + 2πm/Δ too, and all of them look alike at the centres.
-Of the kernel G(q) the cells make
+On a free boundary the pressure is uniform in each cell and the displacement is taken at its centre.
+A wave p = cos qx represented so contains its aliases q + 2πm/Δ, which are the same at the centres.
+The cells replace the kernel G(q) by
 
     Σ_m (−1)^m sin(qΔ/2) / (qΔ/2 + πm) G(|q + 2πm/Δ|),
 
-which is G(q) to some per mille where G falls with q. An incompressible layer on a rigid base yields
-the less the longer the wave: cells wider than it is thick have it yield by what it does not.
+which is G(q) to some per mille where G falls with q. The compliance of an incompressible bonded
+layer vanishes for long waves; on cells wider than the layer, aliases of short waves dominate it.
 """
 
 from __future__ import annotations
@@ -22,24 +22,24 @@ from pellicle.arrays import Array
 from pellicle.grid import Grid
 
 _WAVE = 16  # cells
-_ALIASES = 200  # to either side; the sum is good to about 1e-5
+_ALIASES = 200  # on either side; the sum is accurate to about 1e-5
 _ALLOWED = 0.03
 _FINER = 1.25
-_FINEST = 100.0  # times as many points each way are tried before none is recommended
+_FINEST = 100.0  # largest factor on the points each way that is recommended
 
 
 def error_of_cells(compliance: Callable[[Array], Array], spacing: float) -> float:
-    """Return by what share cells of width ``spacing`` [m] yield too much to a wave of 16 cells.
+    """Return the relative error of the compliance for a wave of 16 cells of width ``spacing`` [m].
 
-    ``compliance`` is G(q) [m/Pa] for q > 0 [rad/m]. It is NaN if that has no finite values.
+    ``compliance`` is G(q) [m/Pa] for q > 0 [rad/m]. The error is NaN if G has no finite values.
     """
     orders = np.arange(-_ALIASES, _ALIASES + 1)
     phase = np.pi / _WAVE + np.pi * orders
     with np.errstate(all="ignore"):
         values = np.asarray(compliance(np.abs(2 * phase / spacing)), dtype=np.float64)
         weights = np.where(orders % 2, -1.0, 1.0) * np.sin(np.pi / _WAVE) / phase
-        made = (weights * values).sum() / np.broadcast_to(values, phase.shape)[_ALIASES]
-    return float(made) - 1.0
+        total = (weights * values).sum() / np.broadcast_to(values, phase.shape)[_ALIASES]
+    return float(total) - 1.0
 
 
 def warn_of_cells(compliance: Callable[[Array], Array], grid: Grid) -> None:
@@ -48,17 +48,17 @@ def warn_of_cells(compliance: Callable[[Array], Array], grid: Grid) -> None:
     Warns
     -----
     UserWarning
-        Says how wrong results are likely to be, and how many points it takes.
+        The message estimates the error of results, and the number of points that is enough.
     """
     if grid.boundary != "free":
         return
     errors = [error_of_cells(compliance, spacing) for spacing in grid.spacing]
-    error = max(errors, key=lambda each: abs(each) if math.isfinite(each) else 0.0)
+    error = max(errors, key=lambda value: abs(value) if math.isfinite(value) else 0.0)
     if not abs(error) > _ALLOWED:
         return
     warnings.warn(
         f"grid.points: cells of {grid.spacing[0]:.3g} × {grid.spacing[1]:.3g} m yield to long "
-        f"waves by {abs(error):.0%} {'more' if error > 0 else 'less'} than the kernel says, and "
+        f"waves by {abs(error):.0%} {'more' if error > 0 else 'less'} than the kernel does, and "
         "forces are likely to be as wrong; an incompressible layer needs cells no wider than it is "
         f"thick: use {_enough(compliance, grid)}",
         stacklevel=3,
@@ -66,7 +66,7 @@ def warn_of_cells(compliance: Callable[[Array], Array], grid: Grid) -> None:
 
 
 def _enough(compliance: Callable[[Array], Array], grid: Grid) -> str:
-    """Return in words how many points it takes."""
+    """Return the number of points that is enough, in words."""
     factor = 1.0
     while (factor := factor * _FINER) < _FINEST:
         if all(abs(error_of_cells(compliance, d / factor)) <= _ALLOWED for d in grid.spacing):
@@ -75,19 +75,20 @@ def _enough(compliance: Callable[[Array], Array], grid: Grid) -> str:
     return "more points"
 
 
+# A step between opposite edges above this multiple of those inside is not part of the surface.
 _STEEPER = 3.0
 
 
-def warn_of_seam(heights: Array, grid: Grid) -> None:
+def warn_of_period(heights: Array, grid: Grid) -> None:
     """Warn where opposite edges of a periodic surface meet in a step.
 
-    That is one whose rms is more than three times that between any two neighbouring lines of
-    cells.  ``heights`` [m] are of the grid's shape.
+    Its rms is then more than three times that of the step between any two neighbouring lines of
+    cells. ``heights`` [m] are of the grid's shape.
 
     Warns
     -----
     UserWarning
-        Says along which axis, and how high the step is.
+        The message names the axis and the height of the step.
     """
     if grid.boundary != "periodic" or not np.isfinite(heights).all():
         return
@@ -99,8 +100,8 @@ def warn_of_seam(heights: Array, grid: Grid) -> None:
         step = float(np.sqrt(((lines[0] - lines[-1]) ** 2).mean()))
         if step > _STEEPER * inside:
             warnings.warn(
-                f"the surface is no period along {name}: its edges meet in a step of {step:.2g} m "
-                f"(rms), where neighbouring cells differ by {inside:.2g} m at most; press it on "
+                f"the surface is not periodic along {name}: its edges meet in a step of {step:.2g} "
+                f"m (rms), where neighbouring cells differ by {inside:.2g} m at most; press it on "
                 'grid.boundary = "free", or make it periodic',
                 stacklevel=3,
             )

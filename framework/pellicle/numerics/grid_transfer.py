@@ -1,4 +1,4 @@
-"""Fields between a grid and a coarser one of the same domain, whatever their numbers of cells."""
+"""Transfer of fields between a grid and a coarser one of the same domain, of any two shapes."""
 
 from __future__ import annotations
 
@@ -9,34 +9,34 @@ from pellicle.arrays import Array
 
 
 def restrict(profile: Array, shape: tuple[int, int]) -> Array:
-    """Return a profile [m] on a coarser grid: the mean of the cells that fall into each.
+    """Return a profile [m] on a coarser grid: the mean over the fine cells within each cell.
 
-    A cell half of which has no indenter (−inf) has none.
+    A coarse cell has no indenter (−inf) if half of its fine cells or more have none.
     """
     finite = np.isfinite(profile)
-    total = _gather(np.where(finite, profile, 0.0), shape)
-    share = _gather(finite.astype(np.float64), shape)
-    cells = _gather(np.ones_like(profile), shape)
-    there = 2 * share > cells
-    return np.where(there, total / np.maximum(share, 1.0), -np.inf)
+    total = _sum(np.where(finite, profile, 0.0), shape)
+    share = _sum(finite.astype(np.float64), shape)
+    cells = _sum(np.ones_like(profile), shape)
+    has_indenter = 2 * share > cells
+    return np.where(has_indenter, total / np.maximum(share, 1.0), -np.inf)
 
 
 def highest(profile: Array, shape: tuple[int, int]) -> Array:
-    """Return a profile [m] on a coarser grid: the highest of the cells that fall into each."""
+    """Return a profile [m] on a coarser grid: the highest of the fine cells within each."""
     for axis, coarse in enumerate(shape):
         profile = np.maximum.reduceat(profile, _starts(profile.shape[axis], coarse), axis=axis)
     return profile
 
 
 def prolong(pressure: Array, shape: tuple[int, int]) -> Array:
-    """Return a pressure [Pa] on a finer grid: that of the cell in which each centre lies."""
+    """Return a pressure [Pa] on a finer grid: that of the coarse cell around each cell centre."""
     rows, columns = (
         _parents(fine, coarse) for fine, coarse in zip(shape, pressure.shape, strict=True)
     )
     return pressure[rows[:, None], columns]
 
 
-def _gather(field: Array, shape: tuple[int, int]) -> Array:
+def _sum(field: Array, shape: tuple[int, int]) -> Array:
     for axis, coarse in enumerate(shape):
         field = np.add.reduceat(field, _starts(field.shape[axis], coarse), axis=axis)
     return field

@@ -5,12 +5,12 @@
 Both are fast Hankel transforms (Hamilton 2000, Mon. Not. R. Astron. Soc. 312, 257) of samples that
 are uniform in log q:
 
-- If G(q) falls hardly faster at large q than at small q (a half-space, a Winkler foundation), the
-  power law that it ends with at large q is taken out and transformed in closed form.
-- Towards q = 0 the samples go on as the power law that they end with there: the far field.
-- At large q they are cut off smoothly, where no radius asked for can tell.
+- If G(q) falls hardly faster at large q than at small q (a half-space, a Winkler foundation), its
+  asymptotic power law at large q is subtracted and transformed in closed form.
+- Towards q = 0 the samples are continued by the power law at their lower end, the far field.
+- At large q they are cut off smoothly, where no tabulated radius is affected.
 
-A second transform, of every other sample and with an earlier start, gives the error.
+A second transform, of every other sample and with fewer small wavenumbers, estimates the error.
 """
 
 from __future__ import annotations
@@ -34,22 +34,22 @@ Symbol = Callable[[Array], Array]
 ACCURACY = 1e-7
 """Bound on the errors of P(r) and r² G(r), relative to the largest |P| up to r."""
 
-_STEP = 1 / 128  # of log q and log r; splines between cost about 1e-10
+_STEP = 1 / 128  # of log q and log r; interpolating with splines costs about 1e-10
 _CUT_OFF = 4e3  # q · shortest; the cut-off e^(−(q/cut-off)⁴) changes G(r) by about its 4th power
-_TOP = 2.5  # of the samples over the cut-off, where that is below rounding
-_DECADES = 10  # of samples below 1/longest, less if G q² vanishes before
+_TOP = 2.5  # highest sample over the cut-off wavenumber, where the cut-off is below rounding
+_DECADES = 10  # of samples below 1/longest, fewer if G q² vanishes before
 _VANISHING = 1e-11
-_NOISE = 1e-11  # of G(q), and of what is left of it without its power law
-_SMALLEST_FALL = 0.5  # by which the powers of 1/q at large and small q have to differ
+_NOISE = 1e-11  # relative, of G(q) and of its remainder without the power law
+_SMALLEST_FALL = 0.5  # least difference of the powers of 1/q at large and small q
 _SAME_POWER = 0.25
-_HIGHEST_POWER = 1.9  # of a power law taken out; that of q⁻² is not finite
+_HIGHEST_POWER = 1.9  # of a power law subtracted; the transform of q⁻² is not finite
 _FALL_OF_WEIGHTED = 30.0  # natural logarithm
-_MARGIN = 12  # of nodes around the radii asked for, against the ends of the splines
-_STEEPEST = 1.5  # power of 1/q towards q = 0; from 2 on no displacement is finite
+_MARGIN = 12  # nodes beyond the tabulated radii, which keep the ends of the splines away
+_STEEPEST = 1.5  # power of 1/q towards q = 0; from 2 on displacements are not finite
 
 
 class Tabulated:
-    """A kernel known by G(q) [m/Pa] alone, with its closed form between two radii [m].
+    """A kernel given by G(q) [m/Pa] alone, tabulated in real space between two radii [m].
 
     Raises
     ------
@@ -82,19 +82,19 @@ class Tabulated:
             )
 
     def covers(self, shortest: float, longest: float) -> bool:
-        """Tell whether all radii between these are tabulated."""
+        """Return whether all radii between these two [m] are tabulated."""
         return self.shortest <= shortest and longest <= self.longest
 
     def greens_function(self, r: Array) -> Array:
-        """Return G(r) [m/N]; that of a constant part of G(q) is zero beside the point force."""
+        """Return G(r) [m/N]; a constant part of G(q) contributes only at r = 0."""
         return self._power_law.greens_function(r) + _real(self._rg(np.log(r))) / r
 
     def radial_primitive(self, r: Array) -> Array:
-        """Return P(r) [m²/N]."""
+        """Return P(r) [m³/N]."""
         return self._power_law.radial_primitive(r) + _real(self._p_over_r(np.log(r))) * r
 
     def _apart(self, reach: Array, rg: CubicSpline, p_over_r: CubicSpline) -> float:
-        """Return how far a coarser table is away, at nodes and between."""
+        """Return the largest relative difference from a coarser table, at nodes and between."""
         log_r = np.linspace(reach[0], reach[1], math.ceil((reach[1] - reach[0]) / _STEP))
         r = np.exp(log_r)
         largest = np.maximum.accumulate(np.abs(self.radial_primitive(r)))
@@ -122,11 +122,11 @@ class _PowerLaw(NamedTuple):
 
 
 def _samples(compliance: Symbol, shortest: float, longest: float) -> tuple[Array, Array]:
-    """Return log q, ascending by `_STEP`, and G(q), down to where it does not count."""
+    """Return log q, ascending by `_STEP`, and G(q), from where it begins to matter."""
 
     def values(x: Array) -> Array:
         q = np.exp(x)
-        # What comes of it is looked at, and said in words.
+        # The values are checked below.
         with np.errstate(all="ignore"):
             sampled = np.broadcast_to(np.asarray(compliance(q), dtype=np.float64), q.shape)
         wrong = np.flatnonzero(~(np.isfinite(sampled) & (sampled > 0)))
@@ -158,7 +158,7 @@ def _wavenumbers(shortest: float, longest: float) -> str:
 
 
 def _without_power_law(x: Array, g: Array) -> tuple[_PowerLaw, Array]:
-    """Return the power law that G(q) ends with at large q, if it has to go, and what is left."""
+    """Return the power law to be subtracted, that of G(q) at large q, and the remainder."""
     one = round(1 / _STEP)
     low, high = np.log(g[0] / g[one]), np.log(g[-1 - one] / g[-1])
     if high < -_SAME_POWER / 10:
@@ -170,7 +170,7 @@ def _without_power_law(x: Array, g: Array) -> tuple[_PowerLaw, Array]:
         )
     if not low + _SMALLEST_FALL > high < _HIGHEST_POWER:
         return _PowerLaw(0.0, 0.0), g
-    # Where both ends have one power, taking it exactly leaves a clean far field.
+    # Where both ends have the same power, subtracting exactly that leaves a clean far field.
     power = max(0.0, float(low if abs(high - low) < _SAME_POWER else high))
     law = _PowerLaw(float(g[-1] * np.exp(power * x[-1])), power)
     rest = g - law.factor * np.exp(-power * x)
@@ -180,12 +180,12 @@ def _without_power_law(x: Array, g: Array) -> tuple[_PowerLaw, Array]:
 
 def _transform(x: Array, g: Array, f: Array, reach: Array) -> tuple[CubicSpline, CubicSpline]:
     """Return r G(r) and P(r)/r of the part f of the samples g, as splines of log r."""
-    # Its import takes as long as all the others of a worker, most kernels have a closed form.
+    # This import takes as long as all others of a worker, and most kernels have a closed form.
     from scipy.interpolate import CubicSpline
 
     step = (x[-1] - x[0]) / (x.size - 1)
     one = round(1 / step)
-    # What is left without a power law may be nothing, at small q or everywhere.
+    # The remainder without a power law may vanish, at small q or everywhere.
     first = min(int(np.argmax(f != 0)), x.size - 1 - one)
     x, g, f = x[first:], g[first:], f[first:]
     power = float(np.log(np.abs(f[0] / f[one]))) if f[0] and f[one] else 0.0
@@ -197,7 +197,7 @@ def _transform(x: Array, g: Array, f: Array, reach: Array) -> tuple[CubicSpline,
             "grid.boundary",
         )
     weight = _weight(x, g, f, power, reach)
-    # The samples weighted, and what they become, have to vanish at both ends.
+    # The weighted samples and their transform have to vanish at both ends.
     more = int(_FALL_OF_WEIGHTED / min(weight - power, 2 - weight) / step)
     size = 2 * scipy.fft.next_fast_len((x.size + more) // 2)
     log_q = x[-1] - step * np.arange(size)[::-1]
@@ -209,7 +209,7 @@ def _transform(x: Array, g: Array, f: Array, reach: Array) -> tuple[CubicSpline,
     p = scipy.fft.fht(full, step, 1, bias=-weight)
     first, last = np.searchsorted(log_r, reach)
     near = slice(first - _MARGIN, last + _MARGIN)
-    # Of G r and P/r, which vary least: for a half-space both are constant.
+    # G r and P/r vary least: for a half-space both are constant.
     return (
         CubicSpline(log_r[near], rg[near] / (2 * np.pi), extrapolate=False),
         CubicSpline(log_r[near], (p / (2 * np.pi * r))[near], extrapolate=False),
@@ -219,21 +219,21 @@ def _transform(x: Array, g: Array, f: Array, reach: Array) -> tuple[CubicSpline,
 def _weight(x: Array, g: Array, f: Array, power: float, reach: Array) -> float:
     """Return the b, between the power at small q and 2, for which rounding matters least.
 
-    The transform of q^b f is everywhere as accurate as rounding at its peak. What is wanted of it
-    at r goes as the largest g at q > 1/r.
+    The absolute error of the transform of q^b f is everywhere the rounding of its peak, while its
+    value at r scales with the largest g at q > 1/r.
     """
-    there, inside = f != 0, (x > -reach[1]) & (x < -reach[0])
+    nonzero, inside = f != 0, (x > -reach[1]) & (x < -reach[0])
     wanted = np.log(np.maximum.accumulate(g[::-1])[::-1][inside])
-    part = np.log(np.abs(f[there]))
+    part = np.log(np.abs(f[nonzero]))
 
     def decades(b: float) -> float:
-        return float((b * x[there] + part).max(initial=-np.inf) - (b * x[inside] + wanted).min())
+        return float((b * x[nonzero] + part).max(initial=-np.inf) - (b * x[inside] + wanted).min())
 
     return min((power + share * (2 - power) for share in (0.25, 0.5, 0.75)), key=decades)
 
 
 def _every_other(size: int) -> slice:
-    """Return every other sample, the last one included, from a decade later on."""
+    """Return every other sample, the last one included, without the first decade."""
     later = round(np.log(10) / _STEP)
     return slice(later + (size - 1 - later) % 2, None, 2)
 

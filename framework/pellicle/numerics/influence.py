@@ -1,12 +1,12 @@
 """Influence coefficients: integrals of a radial Green's function over rectangular cells.
 
-Three ways of integrating meet, by the distance from the loaded cell in units of the longer
-side D of a cell:
+The integration depends on the distance from the loaded cell in units of the longer side D of a
+cell:
 
 - up to 8 D in x and in y: exact, as a signed sum of corner integrals of the radial primitive;
-- up to a radius of about 32 D: 4 x 4 Gauss-Legendre points of the Green's function in each cell;
-- beyond: the mean over a cell from the Green's function at the centres of the cell and of its
-  neighbours, by central differences, so that each cell costs one evaluation.
+- up to a radius of about 32 D: 4 × 4 Gauss–Legendre points of the Green's function per cell;
+- beyond: the mean over a cell by central differences, from the Green's function at the centres of
+  the cell and of its neighbours, so that a cell costs one evaluation.
 
 Each keeps the relative error of a coefficient below 1e-10 (typically 3e-12) for kernels that vary
 on the scale of r itself, between log(1/r) and 1/r, such as the half-space (Love 1929, Phil. Trans.
@@ -25,12 +25,12 @@ Spacing = tuple[float, float]
 Shape = tuple[int, int]
 
 _EXACT_REACH = 8
-_GAUSS_REACH = 32.1  # no whole number, so that rounding decides no cell's way of integrating
+_GAUSS_REACH = 32.1  # not a whole number, so that rounding never decides which rule a cell gets
 _GAUSS_POINTS = 4
 _BLOCK_ELEMENTS = 32768  # keeps the temporaries of a block of rows in the cache
 
-# Mean over a unit cell = f + d2/24 - 17 d4/5760 + 367 d6/967680 with central differences d2,
-# d4, d6, from the operator delta / (2 asinh(delta/2)); written out per neighbour 0, 1, 2, 3.
+# The mean over a unit cell is f + d2/24 − 17 d4/5760 + 367 d6/967680 with central differences d2,
+# d4, d6, from the operator δ / (2 asinh(δ/2)); here as weights of the neighbours 0, 1, 2, 3.
 _D2, _D4, _D6 = 1 / 24, -17 / 5760, 367 / 967680
 _MEAN_WEIGHTS = (
     1 - 2 * _D2 + 6 * _D4 - 20 * _D6,
@@ -44,14 +44,14 @@ _HALO = len(_MEAN_WEIGHTS) - 1
 def cell_coefficients(
     greens_function: Radial, radial_primitive: Radial, shape: Shape, spacing: Spacing
 ) -> Array:
-    """Integrals of the Green's function over cells at all offsets (i, j) of a grid.
+    """Return integrals of the Green's function over cells at all offsets (i, j) of a grid.
 
     Parameters
     ----------
     greens_function:
         G(r) in m/N for an array of distances r > 0 in m.
     radial_primitive:
-        P(R) = int_0^R G(r) r dr in m/Pa for an array of distances R >= 0 in m.
+        P(R) = ∫₀^R G(r) r dr in m³/N for an array of distances R ≥ 0 in m.
     shape:
         (nx, ny), the number of offsets i = 0..nx-1 and j = 0..ny-1.
     spacing:
@@ -78,7 +78,7 @@ def cell_coefficients(
 
 
 def _far_cells(greens_function: Radial, shape: Shape, spacing: Spacing) -> Array:
-    """Coefficients from lattice values, valid far from the origin; square cells use i >= j only."""
+    """Return coefficients valid far from the origin; for square cells only i ≥ j is computed."""
     nx, ny = shape
     symmetric = spacing[0] == spacing[1]
     result = np.empty(shape)
@@ -97,17 +97,17 @@ def _far_cells(greens_function: Radial, shape: Shape, spacing: Spacing) -> Array
 def _lattice_values(
     greens_function: Radial, rows: tuple[int, int], columns: int, spacing: Spacing
 ) -> Array:
-    """G at the centres of the given rows and columns and of a margin of neighbours around them."""
+    """Return G at the cell centres of the rows and columns and of a margin around them."""
     x = np.arange(rows[0] - _HALO, rows[1] + _HALO) * spacing[0]
     y = np.arange(-_HALO, columns + _HALO) * spacing[1]
     square = (x * x)[:, None] + y * y
-    # The centre itself is singular; any finite value does, as near cells are overwritten.
+    # The origin is singular; any finite value will do, as near cells are overwritten.
     np.maximum(square, min(spacing) ** 2, out=square)
     return greens_function(np.sqrt(square, out=square))
 
 
 def _mean_along_rows(values: Array) -> Array:
-    """Cell means along the first axis, (n + 2 halo, m) -> (n, m), exact for degree 7."""
+    """Return cell means along the first axis, (n + 2 halo, m) → (n, m), exact for degree 7."""
     size = values.shape[0] - 2 * _HALO
     mean = values[_HALO : _HALO + size] * _MEAN_WEIGHTS[0]
     for k, weight in enumerate(_MEAN_WEIGHTS[1:], start=1):
@@ -147,18 +147,18 @@ def _overwrite_near(coefficients: Array, radial_primitive: Radial, spacing: Spac
 
 
 def _corner_integrals(radial_primitive: Radial, x: Array, y: Array) -> Array:
-    """F(x, y) = int_0^x int_0^y G for broadcastable x, y > 0: two triangles make the rectangle."""
+    """Return F(x, y) = ∫₀^x ∫₀^y G for broadcastable x, y > 0, the sum over two triangles."""
     return _triangle(radial_primitive, x, y) + _triangle(radial_primitive, y, x)
 
 
 def _triangle(radial_primitive: Radial, x: Array, y: Array) -> Array:
-    """Integral of G over the triangle (0, 0), (x, 0), (x, y).
+    """Return the integral of G over the triangle (0, 0), (x, 0), (x, y).
 
-    In polar co-ordinates it is int P(x / cos t) dt over 0 < t < atan(y/x); tan t = sinh u gives
-    int P(x cosh u) / cosh u du over 0 < u < asinh(y/x), smooth even for slender triangles.
+    In polar coordinates it is ∫ P(x / cos t) dt over 0 < t < atan(y/x). With tan t = sinh u it is
+    ∫ P(x cosh u) / cosh u du over 0 < u < asinh(y/x), smooth even for slender triangles.
     """
     length = np.arcsinh(y / x)
-    # The strip of analyticity |Im u| < pi/2 is fixed, so the order grows with the length.
+    # The strip of analyticity |Im u| < π/2 is fixed, so the order has to grow with the length.
     nodes, weights = np.polynomial.legendre.leggauss(16 + int(6 * length.max()))
     cosh = np.cosh(length[..., None] * (nodes + 1) / 2)
     values = radial_primitive(x[..., None] * cosh) / cosh

@@ -27,18 +27,18 @@ from .influence import cell_coefficients
 
 Float = TypeVar("Float", np.float32, np.float64)
 
-# Padded cells whose rows are transformed at a time: a block of them stays in the cache.
+# Padded cells in a block of rows that is transformed at a time: a block stays in the cache.
 _BLOCK = 2**17
 
-# A cell's displacement under its own pressure over that of the finest wave, at least.
+# Least ratio of a cell's displacement under its own pressure to that of the finest wave.
 _LEAST_OWN = 0.25
-# Waves up to this many times shorter than the grid's shortest tell whether G(q) grows for good.
+# Waves shorter than the grid's shortest by these factors show whether G(q) keeps growing.
 _SHORTER = np.geomspace(1.0, 1e12, 13)
 _GROWTH = 1e-6  # relative; less is rounding
 
 
 class HasCompliance(Protocol):
-    """What an operator needs of a kernel."""
+    """The part of a kernel that every operator needs."""
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] for wavenumbers q > 0 [rad/m]."""
@@ -47,32 +47,32 @@ class HasCompliance(Protocol):
 
 @runtime_checkable
 class HasClosedForm(HasCompliance, Protocol):
-    """What an operator on a free boundary uses, and tabulates for a kernel that lacks it."""
+    """A kernel known in real space too; of others an operator on a free boundary makes a table."""
 
     def greens_function(self, r: Array) -> Array:
         """Return the displacement at distances r > 0 [m] from a unit force [m/N]."""
         ...
 
     def radial_primitive(self, r: Array) -> Array:
-        """Return ∫₀^r G(r') r' dr' [m²/N] for r ≥ 0 [m]."""
+        """Return ∫₀^r G(r') r' dr' [m³/N] for r ≥ 0 [m]."""
         ...
 
 
 @runtime_checkable
 class HasMeanCompliance(HasCompliance, Protocol):
-    """What a kernel has whose surface does not sink without bound under a uniform pressure."""
+    """A kernel that states the displacement of its surface under a uniform pressure."""
 
     def mean_compliance(self) -> float:
-        """Return G(0) [m/Pa]: the displacement by a uniform pressure over a periodic domain.
+        """Return G(0) [m/Pa], the displacement per uniform pressure on a periodic domain.
 
-        ∞ if there is no finite one: then the mean displacement is set to 0, and depths are
-        measured from the mean plane.
+        If it is infinite, the mean displacement is set to 0, and depths are measured from the mean
+        plane.
         """
         ...
 
 
 def mean_compliance(kernel: HasCompliance) -> float:
-    """Return G(0) [m/Pa] of a kernel, ∞ if it says nothing, as a half-space does."""
+    """Return G(0) [m/Pa] of a kernel; ∞ if it does not state it, as a half-space."""
     if not isinstance(kernel, HasMeanCompliance):
         return math.inf
     with blamed(kernel):
@@ -83,8 +83,8 @@ def mean_compliance(kernel: HasCompliance) -> float:
 def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
     """Return a method of a kernel that cannot change its argument and whose values are checked.
 
-    It raises PluginError where the kernel returns anything but an array of real numbers of the
-    shape of its argument.
+    The returned function raises PluginError if the kernel returns anything but an array of real
+    numbers of the shape of its argument.
     """
     method = getattr(kernel, name)
     text = f"{name}({'q' if name == 'compliance' else 'r'})"
@@ -100,29 +100,29 @@ def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
 class Operator(ABC):
     """The linear map from pressure [Pa] to displacement [m], both of the grid's shape.
 
-    Linear, symmetric and positive; ``applications`` counts its uses.
+    It is linear, symmetric and positive; `applications` counts its uses.
     """
 
     _symbol: _Symbol
-    _fixes_mean: bool
+    _has_mean: bool
 
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
         self.kernel = kernel
         self.grid = grid
-        # `scaled` operators count together.
+        # Shared with `scaled` copies.
         self._count = [0]
         # Powers of two, so that no digit changes.
         self._factor = 1.0
         self._holder = 0.0
 
     @property
-    def fixes_mean(self) -> bool:
+    def has_mean_compliance(self) -> bool:
         """Whether a uniform pressure has a displacement; if not, the mean displacement is zero."""
-        return self._fixes_mean or self._holder > 0
+        return self._has_mean or self._holder > 0
 
     @property
     def applications(self) -> int:
-        """Number of times that it has been applied, `scaled` or not."""
+        """Number of applications so far, including those of `scaled` copies."""
         return self._count[0]
 
     @property
@@ -132,14 +132,14 @@ class Operator(ABC):
 
     @property
     def unit(self) -> float:
-        """The power of two next below `greatest` [m/Pa]; 1 if that is 0."""
+        """The largest power of two up to `greatest` [m/Pa]; 1 if that is 0."""
         return self._symbol.unit * self._factor
 
     def held(self, compliance: float) -> Self:
-        """Return the operator for an indenter that a spring holds; it shares all arrays.
+        """Return the operator for an indenter held by a spring; it shares all arrays.
 
         The deflection of the spring, ``compliance`` [m/N] times the force, is added to the
-        displacement of every cell. It replaces that of an earlier spring.
+        displacement of every cell, in place of that of an earlier spring.
         """
         if compliance == self._holder:
             return self
@@ -148,14 +148,14 @@ class Operator(ABC):
         return held
 
     def deflection(self, total: float) -> float:
-        """Return that of the spring [m] under pressures whose sum is ``total`` [Pa]."""
+        """Return the deflection of the spring [m] under pressures whose sum is ``total`` [Pa]."""
         return self._holder * self.grid.cell_area * total
 
     def scaled(self, factor: float) -> Self:
         """Return the operator times ``factor``, a power of two; it shares all arrays with this one.
 
-        With 1/`unit` it is near 1, which single precision cannot do without: a compliance in m/Pa
-        may be below the numbers that it has.
+        The factor 1/`unit` brings its values near 1. Single precision needs that: a compliance in
+        m/Pa may be below its smallest number.
         """
         scaled = copy.copy(self)
         scaled._factor = self._factor * factor
@@ -170,22 +170,22 @@ class Operator(ABC):
         ConfigError
             The kernel cannot work on the coarser grid.
         """
-        # The kernel itself was checked for the finest grid.
+        # The kernel itself has been checked on the finest grid.
         coarse = _operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
         return coarse.held(self._holder)
 
     def compliance(self, q: Array) -> Array:
-        """Return G(q) [m/Pa] of the kernel at q > 0, as `scaled` as the operator."""
+        """Return G(q) [m/Pa] of the kernel at q > 0, `scaled` as the operator is."""
         return np.asarray(self.kernel.compliance(q) * self._factor, dtype=np.float64)
 
     def parts(self) -> dict[str, object]:
-        """Return what it consists of, by which a change is noticed."""
+        """Return the attributes by name; comparing them reveals a change."""
         return {**vars(self), "class": type(self), "symbol": self._symbol["D"]}
 
     def __call__(self, pressure: NDArray[Float]) -> NDArray[Float]:
         """Return the displacement [m], a new array, for a pressure [Pa].
 
-        A pressure in single precision is worked on in single precision, in half of the time.
+        A pressure in single precision is transformed in single precision, in half of the time.
         """
         self._count[0] += 1
         displacement = np.asarray(self._apply(pressure), dtype=pressure.dtype)
@@ -201,7 +201,7 @@ class Operator(ABC):
 
 
 class _Symbol:
-    """The transform of an operator, which is real, over its unit, in both precisions."""
+    """The real Fourier symbol of an operator over its unit, in double and single precision."""
 
     def __init__(self, values: Array) -> None:
         self.greatest = float(np.abs(values).max())
@@ -211,7 +211,7 @@ class _Symbol:
         self._single: NDArray[np.float32] | None = None
 
     def __getitem__(self, kind: str) -> NDArray[Any]:
-        """Return it for transforms of this kind of complex number; single only if asked for."""
+        """Return the symbol for transforms of a complex type; single precision on demand."""
         if kind == "D":
             return self.double
         if self._single is None:
@@ -222,7 +222,7 @@ class _Symbol:
 class PeriodicOperator(Operator):
     """G(q) sampled on the wavenumbers of the FFT.
 
-    The mean displacement is zero if a uniform pressure has no finite one.
+    The mean displacement is zero if that under a uniform pressure is not finite.
     """
 
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
@@ -230,8 +230,8 @@ class PeriodicOperator(Operator):
         qx, qy = grid.wavenumbers()
         q = np.hypot(qx, qy)
         mean = mean_compliance(kernel)
-        # An incompressible layer has no mean displacement either.
-        self._fixes_mean = 0 < mean < math.inf
+        # That of an incompressible layer is 0.
+        self._has_mean = 0 < mean < math.inf
         symbol = np.empty(q.shape)
         # The first wavenumber is 0.
         symbol.ravel()[0] = 0.0 if mean == math.inf else mean
@@ -258,7 +258,7 @@ class FreeOperator(Operator):
     Exact for a pressure that is uniform in each cell, at the cell centres (Liu, Wang & Liu 2000).
     """
 
-    _fixes_mean = True
+    _has_mean = True
 
     def __init__(self, kernel: HasClosedForm, grid: Grid) -> None:
         super().__init__(kernel, grid)
@@ -321,10 +321,10 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
         The kernel cannot work on this boundary, or its values are not finite and positive.
     PluginError
         The kernel breaks its contract: it changes its argument, returns anything but an array of
-        real numbers of the argument's shape, grows for ever shorter waves, or its closed form
-        contradicts its compliance.
+        real numbers of the argument's shape, keeps growing towards short waves, or has a closed
+        form that contradicts its compliance.
     """
-    # A table is made of the compliance.
+    # A table is computed from the compliance, and cannot contradict it.
     is_table = isinstance(kernel, Tabulated)
     if grid.boundary == "free" and isinstance(kernel, HasClosedForm) and not is_table:
         with np.errstate(all="ignore"):
@@ -333,7 +333,7 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
 
 
 def _operator(kernel: HasCompliance, grid: Grid) -> Operator:
-    # Overflow of a formula shows in its values, which are looked at.
+    # Overflow of a formula shows in its values, which are checked.
     with np.errstate(all="ignore"):
         if grid.boundary == "periodic":
             return PeriodicOperator(kernel, grid)
@@ -341,7 +341,7 @@ def _operator(kernel: HasCompliance, grid: Grid) -> Operator:
 
 
 def _in_real_space(kernel: HasCompliance, grid: Grid) -> HasClosedForm:
-    # Wide enough for all coarser grids of the same domain, which are given the table made here.
+    # Wide enough for all coarser grids of the same domain, which reuse the table.
     radii = 0.2 * min(grid.spacing), 3 * math.hypot(*grid.size)
     if isinstance(kernel, Tabulated):
         return kernel if kernel.covers(*radii) else Tabulated(kernel.compliance, *radii)
@@ -357,7 +357,7 @@ def _refuse_contradiction(kernel: HasClosedForm, grid: Grid) -> None:
     def positive(q: Array) -> Array:
         with np.errstate(all="ignore"):
             values = compliance(q)
-        # A formula may cancel for waves far longer than the domain, which hardly count.
+        # Formulas may cancel for waves far longer than the domain, which hardly contribute.
         near = q > 1e-3 / math.hypot(*grid.size)
         _positive(kernel, q[near], values[near])
         return np.where(np.isfinite(values), values, 0.0)
@@ -376,14 +376,14 @@ def _refuse_contradiction(kernel: HasClosedForm, grid: Grid) -> None:
 def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array:
     """Return the surface displacement [m] of shape (nx, ny) under a pressure [Pa] of that shape.
 
-    One application of the operator; on a periodic grid the mean displacement is zero, unless the
-    kernel says what a uniform pressure does (`HasMeanCompliance`).
+    This is one application of the operator. On a periodic grid the mean displacement is zero,
+    unless the kernel states that under a uniform pressure (`HasMeanCompliance`).
 
     Raises
     ------
     ConfigError
-        The pressure is not a finite real array of the grid's shape, or the kernel or the grid is
-        none.
+        The pressure is not a finite real array of the grid's shape, or ``kernel`` is not a kernel,
+        or ``grid`` is not a grid.
 
     Warns
     -----
@@ -391,9 +391,11 @@ def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array
         The cells are too wide for the kernel.
     """
     if not hasattr(kernel, "compliance"):
-        raise ConfigError(f"{shown(kernel)} is no kernel; make one by pellicle.kernel(…)", "kernel")
+        raise ConfigError(
+            f"{shown(kernel)} is not a kernel; make one with pellicle.kernel(…)", "kernel"
+        )
     if not isinstance(grid, Grid):
-        raise ConfigError(f"{shown(grid)} is no grid; make one by pellicle.Grid(…)", "grid")
+        raise ConfigError(f"{shown(grid)} is not a grid; make one with pellicle.Grid(…)", "grid")
     given = np.asarray(pressure)
     if given.shape != grid.shape or given.dtype.kind not in "fiu":
         raise ConfigError(
@@ -419,7 +421,7 @@ def _wrap(cells: Array, padded: tuple[int, ...]) -> Array:
 
 
 def _positive(kernel: HasCompliance, q: Array, values: Array) -> Array:
-    """Return G(q) [m/Pa] if every value is positive and finite, or refuse the kernel."""
+    """Return G(q) [m/Pa]; refuse the kernel unless all values are positive and finite."""
     wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
     if wrong.size:
         raise ConfigError(
@@ -435,11 +437,11 @@ def _positive(kernel: HasCompliance, q: Array, values: Array) -> Array:
 def _refuse_growth(
     kernel: HasCompliance, compliance: Callable[[Array], Array], shortest: float
 ) -> None:
-    """Refuse a kernel whose G(q) grows with q at the grid's shortest waves and does not stop.
+    """Refuse a kernel whose G(q) grows with q at the grid's shortest waves and beyond them.
 
-    To short waves a solid is a half-space, whose G(q) falls as 1/q; a bed of springs answers all
-    waves alike. G(q) of an incompressible layer grows too, up to waves about as long as the layer
-    is thick, which may be shorter than the grid's: therefore shorter waves decide.
+    For short waves a solid is a half-space, whose G(q) falls as 1/q; that of a bed of springs is
+    constant. G(q) of an incompressible layer grows with q down to waves about as long as the layer
+    is thick. These may be shorter than the grid's, so still shorter waves decide.
     """
     if not shortest > 0:
         return

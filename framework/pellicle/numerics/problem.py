@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import isfinite
 from typing import Final, Literal, NamedTuple
 
@@ -112,9 +113,16 @@ class Problem:
         """
         return self.value if self.prescribed == "depth" else float(aloft.mean())
 
+    def gap(self, displacement: Array, contact: Mask) -> tuple[Array, float]:
+        """Return the gap A p − z − f and z [m] given A p, by `depth` on the contact."""
+        gap = displacement - self.profile
+        depth = self.depth(gap[contact])
+        gap -= depth
+        return gap, depth
+
     def is_rigid(self, contact: Mask) -> bool:
         """Whether no force more on ``contact`` makes it sink: full contact that keeps its mean."""
-        return bool(contact.all()) and not self.operator.fixes_mean
+        return bool(contact.all()) and not self.operator.has_mean_compliance
 
     def height_scale(self, contact: Mask, depth: float, total: float) -> float:
         """Return the length [m] by which gaps are judged.
@@ -159,59 +167,98 @@ class Problem:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A pressure measured against its problem, by one fresh application of the operator."""
+    """A pressure measured against its problem.
 
+    The first use of the displacement, or of what follows from it, applies the operator once.
+    """
+
+    problem: Problem
     pressure: Array
-    displacement: Array
-    """u [m]."""
-    gap: Array
-    """u − δ − f [m]; +inf where there is no indenter."""
-    depth: float
-    """δ [m]."""
-    force: float
-    """[N]."""
-    residual_contact: float
-    """max |gap| in contact, over the height range of the indenter in contact."""
-    residual_penetration: float
-    """max(0, −min gap) outside the contact, over the same."""
-    residual_complementarity: float
-    """Σ p|gap| / Σ p, over the same."""
-    residual_load: float
-    """|force − prescribed| / prescribed; 0 when the depth is prescribed."""
+    """[Pa]"""
 
-    @property
+    @cached_property
     def contact(self) -> Mask:
         """Where pressure acts, bool of the grid's shape."""
         return self.pressure > 0
 
+    @property
+    def residual(self) -> float:
+        """The largest of the residuals."""
+        return max(
+            self.residual_contact,
+            self.residual_penetration,
+            self.residual_complementarity,
+            self.residual_load,
+        )
+
+    @cached_property
+    def total(self) -> float:
+        """Sum of the pressures [Pa]."""
+        return float(self.pressure.sum())
+
+    @property
+    def force(self) -> float:
+        """[N]."""
+        return self.total * self.problem.grid.cell_area
+
+    @cached_property
+    def displacement(self) -> Array:
+        """Displacement u of the surface [m]."""
+        return self.problem.operator.held(0.0)(self.pressure)
+
+    @property
+    def depth(self) -> float:
+        """Depth δ of the indenter [m]."""
+        return self._base - self.problem.operator.deflection(self.total)
+
+    @cached_property
+    def gap(self) -> Array:
+        """U − δ − f [m]; +inf where there is no indenter."""
+        return self.displacement - self.problem.profile - self.depth
+
+    @property
+    def residual_contact(self) -> float:
+        """Max |gap| in contact, over the height range of the indenter in contact."""
+        return float(self._inside.max(initial=0.0)) / self._scale
+
+    @property
+    def residual_penetration(self) -> float:
+        """max(0, −min gap) outside the contact, over the same."""
+        return max(0.0, -float(self.gap.min(initial=0.0, where=~self.contact))) / self._scale
+
+    @property
+    def residual_complementarity(self) -> float:
+        """Σ p|gap| / Σ p, over the same."""
+        work = float((self.pressure[self.contact] * self._inside).sum())
+        return work / self.total / self._scale if self.total else 0.0
+
+    @property
+    def residual_load(self) -> float:
+        """|force − prescribed| / prescribed; 0 under depth control."""
+        control = self.problem.control
+        missed = abs(self.force - control.value) if isinstance(control, Force) else 0.0
+        return missed / control.value if missed else 0.0
+
+    @cached_property
+    def _base(self) -> float:
+        # Without pressure the lowest point just touches, wherever between the cells it is.
+        contact = self.contact
+        if not contact.any():
+            return self.problem.depth(np.zeros(1))
+        return self.problem.depth(self.displacement[contact] - self.problem.profile[contact])
+
+    @cached_property
+    def _scale(self) -> float:
+        return self.problem.height_scale(self.contact, self._base, self.total)
+
+    @property
+    def _inside(self) -> Array:
+        return np.abs(self.gap[self.contact])
+
 
 def measure(problem: Problem, pressure: Array) -> Equilibrium:
     """Return what ``pressure`` [Pa] really achieves."""
-    contact = pressure > 0
-    total = float(pressure.sum())
-    force = total * problem.grid.cell_area
-    displacement = problem.operator.held(0.0)(pressure)
-    aloft = displacement - problem.profile
-    # Without pressure the lowest point just touches, wherever between the cells it is.
-    base = problem.depth(aloft[contact] if total else np.zeros(1))
-    depth = base - problem.operator.deflection(total)
-    gap = aloft - depth
-    scale = problem.height_scale(contact, base, total)
-    inside = np.abs(gap[contact])
-    missed = abs(force - problem.value) if problem.prescribed == "force" else 0.0
-    return Equilibrium(
-        pressure=pressure,
-        displacement=displacement,
-        gap=gap,
-        depth=depth,
-        force=force,
-        residual_contact=float(inside.max(initial=0.0)) / scale,
-        residual_penetration=max(0.0, -float(gap.min(initial=0.0, where=~contact))) / scale,
-        residual_complementarity=float((pressure[contact] * inside).sum()) / total / scale
-        if total
-        else 0.0,
-        residual_load=missed / problem.value if missed else 0.0,
-    )
+    return Equilibrium(problem, pressure)
 
 
 def height_scale(
@@ -266,7 +313,7 @@ def measure_stiffness(problem: Problem, contact: Mask, pressure: Array) -> Stiff
     """
     if not contact.any():
         return Stiffness(0.0, 0.0)
-    response = problem.operator(pressure)
+    response = problem.operator.held(0.0)(pressure)
     missed = 1.0 - response[contact]
     total = float(pressure.sum()) + float((pressure[contact] * missed).sum())
     return Stiffness(

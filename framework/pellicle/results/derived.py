@@ -3,31 +3,22 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from pellicle.errors import ConfigError, StorageError, shown
-from pellicle.model.expression import evaluate, names_in
+from pellicle.model.expression import evaluate
 from pellicle.model.paths import walk
-
-from . import storage
-from .variables import FIELDS
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from .result import Result
-
-_CELLS = ["x", "y"]
+CELLS = ["x", "y"]
+"""Dimensions of a field."""
 REDUCTIONS: dict[str, Callable[[Any], Any]] = {
-    "mean": lambda field: field.mean(_CELLS),
-    "sum": lambda field: field.sum(_CELLS),
-    "min": lambda field: field.min(_CELLS),
-    "max": lambda field: field.max(_CELLS),
+    "mean": lambda field: field.mean(CELLS),
+    "sum": lambda field: field.sum(CELLS),
+    "min": lambda field: field.min(CELLS),
+    "max": lambda field: field.max(CELLS),
 }
 """Functions that reduce a field to one number for each step."""
 
@@ -92,67 +83,3 @@ def as_array(text: str, data: xr.Dataset) -> xr.DataArray:
 
     value = evaluate(text, names(data))
     return value if isinstance(value, xr.DataArray) else xr.DataArray(value)
-
-
-def _by_step(text: str, run: xr.Dataset) -> Any:
-    """Return the value for each step of an expression over a run with reduced fields."""
-    value = evaluate(text, names(run), REDUCTIONS)
-    if set(getattr(value, "dims", ())) & set(_CELLS):
-        raise ConfigError(
-            f"{shown(text)} has a value for each cell, and one for each step is drawn; put fields, "
-            f"x and y inside {', '.join(REDUCTIONS)}, such as mean(pressure)"
-        )
-    return value
-
-
-@dataclass(frozen=True)
-class Runs:
-    """A table of runs, and access to the fields of each."""
-
-    table: xr.Dataset
-    """Numbers of each run and step; ``run`` names the runs."""
-    open: Callable[[str], xr.Dataset]
-    """Returns the dataset of a run by its name, or raises StorageError."""
-
-    @classmethod
-    def of_result(cls, result: Result) -> Runs:
-        """Return the one run of a result, as a table of its steps."""
-        data = result.dataset
-        return cls(data.drop_dims(_CELLS).assign(run=((), "")), lambda _: data)
-
-    @classmethod
-    def of_study(cls, table: xr.Dataset, directory: Path) -> Runs:
-        """Return the runs of the study whose folder is ``directory``."""
-        return cls(table, lambda name: storage.read(directory / "runs" / f"{name}.h5"))
-
-    def each(self) -> Iterator[tuple[tuple[int, ...], xr.Dataset | None]]:
-        """Yield the index in the table and the dataset of each run; None for one without a file."""
-        for index, name in np.ndenumerate(self.table["run"].values):
-            try:
-                yield index, self.open(str(name))
-            except StorageError:
-                yield index, None
-
-    def column(self, text: str) -> xr.DataArray:
-        """Return the value of an expression over the table, with fields reduced to numbers.
-
-        Raises
-        ------
-        ConfigError
-            The text is not arithmetic, or a name in it is unknown.
-        """
-        if names_in(text) & {*FIELDS, *_CELLS}:
-            return self.from_each(lambda run: _by_step(text, run))
-        return as_array(text, self.table)
-
-    def from_each(self, measure: Callable[[xr.Dataset], Any]) -> xr.DataArray:
-        """Return ``measure`` of each run, a number for each step; NaN where there is no run."""
-        import xarray as xr
-
-        runs, steps = self.table["run"], self.table.sizes["step"]
-        values = np.full((*runs.shape, steps), np.nan)
-        for index, data in self.each():
-            if data is not None:
-                values[index][: data.sizes["step"]] = measure(data)
-        coords = {dim: self.table[dim] for dim in (*runs.dims, "step")}
-        return xr.DataArray(values, coords, (*runs.dims, "step"))

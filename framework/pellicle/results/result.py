@@ -38,6 +38,12 @@ class Result:
         return Grid(**self.configuration["grid"])
 
     @property
+    def planned_steps(self) -> int:
+        """The number of load steps of the configuration, solved or not."""
+        loading = self.configuration["loading"]
+        return next(len(value) for value in loading.values() if isinstance(value, list))
+
+    @property
     def converged(self) -> bool:
         """Whether every step converged."""
         return bool(self.dataset["converged"].all())

@@ -13,8 +13,12 @@ class Status(Enum):
 
     CONVERGED = "converged"
     NEAREST_AREA = (
-        "converged; the contact area misses the prescribed one by {measure:.1e}, and no load "
-        "brings a nearer number of whole cells: more points do"
+        "converged; the contact area misses the prescribed one by {measure:.1e}: it jumps from "
+        "{below} to {above}, and no load brings a nearer number of whole cells: more points do"
+    )
+    NEAREST = (
+        "converged; the {quantity} misses the prescribed one by {measure:.1e}: it jumps from "
+        "{below} to {above}"
     )
     COARSE = (
         "converged, but the cells are too coarse for this contact, which covers {cells} of them: "
@@ -41,6 +45,9 @@ class Status(Enum):
     AREA = (
         "the contact area misses the prescribed one by {measure:.1e}, over {tolerance:g}; {remedy}"
     )
+    NOT_REACHED = (
+        "the {quantity} misses the prescribed one by {measure:.1e}, over {tolerance:g}; {remedy}"
+    )
     STIFFNESS = (
         "the contact stiffness is not known: its displacement misses by {measure:.1e}, over the "
         "tolerance {tolerance:.1e}; loosen solver.tolerance, or leave loading.stiffness out"
@@ -56,7 +63,7 @@ class Status(Enum):
     @property
     def converged(self) -> bool:
         """Whether the numbers of the step may be used, possibly with a remark."""
-        return self in (Status.CONVERGED, Status.NEAREST_AREA, Status.COARSE)
+        return self in (Status.CONVERGED, Status.NEAREST_AREA, Status.NEAREST, Status.COARSE)
 
     @property
     def verdict(self) -> str:

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
 
 Kind = Literal["field", "main", "requested", "other", "contact", "effort", "residual", "status"]
 """``field`` has a value for each cell, ``main`` is listed for each run of a study, ``requested``
-exists only where the loading asks for it, ``contact`` describes the shape of the contact."""
+exists only where the loading asks for it, as do those of a prescription, ``contact`` describes the
+shape of the contact."""
 Type = Literal["number", "count", "truth", "text"]
 
 
@@ -47,7 +48,6 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
     ),
     "other": (("mean_pressure", "Pa", "force over the area of the domain"),),
     "requested": (
-        ("mean_plane_depth", "m", "depth of the indenter's mean plane, where that is prescribed"),
         ("stiffness", "N/m", "contact stiffness dF/dδ, where loading.stiffness asks for it"),
     ),
     "contact": (
@@ -77,7 +77,6 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         ("residual_penetration", "1", "largest penetration outside the contact over the same"),
         ("residual_complementarity", "1", "pressure-weighted mean gap over the same"),
         ("residual_load", "1", "relative error of the prescribed force"),
-        ("residual_area", "1", "relative error of the contact area or radius, where prescribed"),
     ),
     "status": (
         ("converged", "1", "whether every residual is under the tolerance", "truth"),

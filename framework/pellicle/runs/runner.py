@@ -1,4 +1,4 @@
-"""A run from configuration to result: compose, solve every load step, hand to the outputs."""
+"""A run from configuration to result: compose, solve every load step, write result and outputs."""
 
 from __future__ import annotations
 
@@ -7,17 +7,15 @@ import re
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack, closing
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from pellicle import memory
 from pellicle.checks import blamed, checked_threads, read_only_dataset
-from pellicle.components import Output, Place
-from pellicle.components.calls import (
-    earlier_steps,
-    files_of,
-    hand_over,
-)
+from pellicle.components import Output
+from pellicle.components.calls import files_of
+from pellicle.components.output import Runs, stem_of
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
@@ -25,19 +23,20 @@ from pellicle.plugins import registry
 from pellicle.results.result import Result, said_of_steps
 from pellicle.results.step import Steps
 
+from .compose import compose
+from .journal import Journal
 from .lock import locked
 from .progress import Bar, Progress
+from .steps import solve_steps
 
 if TYPE_CHECKING:
     import xarray as xr
-from .compose import problems_of
-from .steps import solve_steps
 
-STANDARD_OUTPUTS = ("hdf5", "csv", "figures")
-
-
+STANDARD_OUTPUTS = ("csv", "figures")
+"""What is written besides the result file where a configuration names no outputs."""
 # Points of a transform from which on threads pay.
 _LARGE = 2048**2
+Value = TypeVar("Value")
 
 
 def run(
@@ -55,15 +54,15 @@ def run(
     configuration
         A `Run`, the path of a TOML file, or a mapping of the same form.
     directory
-        Where the outputs go. Without it nothing is written, unless the configuration names
-        outputs: these go to the current folder.
+        Folder of the result file and the outputs. Without it nothing is written, unless the
+        configuration names outputs: then it is the current folder.
     progress
         Show a bar, if there is a terminal.
     threads
         Threads of the Fourier transforms, a whole number ≥ 1; None for `default_threads`.
     overwrite
-        Begin anew, in place of whatever result is there. Otherwise the steps that the folder holds
-        of the same run are taken from there, and what is of another run is refused.
+        Start over, in place of whatever result file there is. Otherwise the steps that it holds of
+        the same run are not solved again, and the result of another run is refused.
 
     Raises
     ------
@@ -74,16 +73,15 @@ def run(
     Warns
     -----
     ConvergenceWarning
-        A step is in the result but marked: as not converged, or as too coarse.
+        A step of the result is marked as not converged, or as too coarse.
     """
     threads = checked_threads(threads)
-    made, name = _as_run(configuration)
-    outputs = standard_outputs(made.outputs) if directory is not None else made.outputs or ()
-    place = Place(
-        Path(directory or "."), name, made.to_json(as_given=True), made.identity, overwrite
-    )
-    bar = Progress(len(made.loading.values), progress)
-    result = execute(made, place, outputs, bar, threads=threads).result
+    run, name = _as_run(configuration)
+    outputs = standard_outputs(run.outputs) if directory is not None else run.outputs or ()
+    writes = directory is not None or bool(outputs)
+    journal = Journal(Path(directory or ".") / name, run.identity, overwrite) if writes else None
+    bar = Progress(len(run.loading.values), progress)
+    result = execute(run, journal, outputs, bar, threads=threads).result
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
     if coarse := result.coarse():
@@ -92,126 +90,144 @@ def run(
 
 
 def solve(run: Run) -> Result:
-    """Return the result of ``run``, of which nothing is written or shown."""
-    nowhere = Place(Path(), "run", run.to_json(as_given=True))
-    return execute(run, nowhere, (), Progress(len(run.loading.values), enabled=False)).result
+    """Return the result of ``run``; nothing is written or shown."""
+    return execute(run, None, (), Progress(len(run.loading.values), enabled=False)).result
 
 
 class Executed(NamedTuple):
-    """What came of a run."""
+    """The outcome of a run."""
 
     result: Result
     files: tuple[Path, ...]
-    """What its outputs left."""
-    taken: int
-    """How many of its steps an earlier process had done."""
+    """The result file and the files of the outputs."""
+    resumed: int
+    """Number of steps that an earlier process had solved."""
 
 
 def execute(
     run: Run,
-    place: Place,
+    journal: Journal | None,
     outputs: Sequence[Output],
     bar: Bar,
     *,
     threads: int | None = None,
     lock: bool = True,
 ) -> Executed:
-    """Solve the load steps of ``run`` that ``outputs`` do not have yet at ``place``.
+    """Solve the load steps that ``journal`` lacks and write the outputs beside it.
 
-    On an interruption the outputs still get the steps that are finished. No other process may write
-    there meanwhile; without ``lock`` the caller sees to that.
+    After an interruption the outputs still show the steps that are finished. Without a journal
+    nothing is written. No other process may write there meanwhile; without ``lock`` the caller has
+    to ensure that.
     """
     import scipy.fft
 
     memory.require(run.grid, len(run.loading.values), run.solver)
     steps = Steps(len(run.loading.values))
-    files: list[Path] = []
+    outputs = [output for output in outputs if journal and output.scope != "study"]
+    files: tuple[Path, ...] = ()
     with scipy.fft.set_workers(threads or default_threads(run.grid)), bar, ExitStack() as stack:
         try:
-            problems = problems_of(run)
-            if outputs and lock:
-                stack.enter_context(locked(place.directory, place.name))
-            for output in outputs:
-                with blamed(output):
-                    output.open(place)
-            steps.extend(_resume(outputs, place, len(problems)))
-            taken = len(steps)
-            # closing: the generator's arrays go before the outputs draw.
-            with closing(solve_steps(run, problems, steps, bar)) as solved:
+            solved = solve_steps(run, compose(run), steps, bar)
+            if journal:
+                if lock:
+                    stack.enter_context(locked(journal.stem.parent, journal.stem.name))
+                for step in journal.resume():
+                    _hand_over(steps.append(step), outputs, journal)
+            resumed = len(steps)
+            # closing frees the operator before the outputs draw.
+            with closing(solved):
                 for step in solved:
-                    hand_over(outputs, place, step)
+                    if journal:
+                        _hand_over(step, outputs, journal, is_new=True)
         except MemoryError:
             raise ConfigError(
                 f"{run.grid.points} cells do not fit in memory; use fewer points", "grid.points"
             ) from None
         finally:
             if steps:
-                # What has been solved with makes room.
-                problems.clear()
                 result = Result(steps.joined())
-                files = left_by(
-                    outputs,
-                    "close()",
-                    lambda output: output.close(place, Result(read_only_dataset(result.dataset))),
-                    run.outputs,
-                )
-    return Executed(result, tuple(files), taken)
+                if journal:
+                    files = _written(run, result, outputs, journal)
+    return Executed(result, files, resumed)
 
 
-def left_by(
-    outputs: Sequence[Output],
-    call: str,
-    leave: Callable[[Output], Iterable[Path]],
-    named: Sequence[Output] | None,
-) -> list[Path]:
-    """Return the files that outputs leave; one that fails does not keep the others from it.
+def _hand_over(
+    step: xr.Dataset, outputs: Sequence[Output], journal: Journal, *, is_new: bool = False
+) -> None:
+    """Give a step to every output, and first, if it is new, to the journal."""
 
-    ``call`` is the name of the method that ``leave`` calls. ``named`` are the outputs of the
-    configuration, by which a field is found.
+    def give(output: Output) -> None:
+        with blamed(output):
+            output.step(read_only_dataset(step), stem_of(output, journal.stem))
+
+    calls = [partial(give, output) for output in outputs]
+    all_done([partial(journal.append, step), *calls] if is_new else calls)
+
+
+def _written(
+    run: Run, result: Result, outputs: Sequence[Output], journal: Journal
+) -> tuple[Path, ...]:
+    def runs() -> Runs:
+        dataset = read_only_dataset(result.dataset)
+        return Runs.of_run(dataset, run.to_json(as_given=True))
+
+    files = all_done([journal.close, *writers(outputs, runs, journal.stem, run)])
+    return tuple(path for paths in files for path in paths)
+
+
+def writers(
+    outputs: Sequence[Output], runs: Callable[[], Runs], stem: Path, run: Run
+) -> list[Callable[[], tuple[Path, ...]]]:
+    """Return for each output a call that writes its files; ``runs`` makes data for each anew.
+
+    A ConfigError has the output's path among the outputs of ``run``.
     """
-    files: list[Path] = []
-    errors: list[Exception] = []
-    for output in outputs:
+
+    def write(output: Output) -> tuple[Path, ...]:
         try:
-            files.extend(files_of(output, call, leave))
+            return files_of(output, runs(), stem)
         except ConfigError as error:
-            at = [index for index, each in enumerate(named or ()) if each is output]
-            errors.append(error.within(f"outputs.{at[0]}") if at else error)
+            if not run.outputs:
+                raise
+            raise error.within(f"outputs.{run.outputs.index(output)}") from None
+
+    return [partial(write, output) for output in outputs]
+
+
+def all_done(calls: Iterable[Callable[[], Value]]) -> list[Value]:
+    """Return what all calls return; one that raises does not keep the others from being made.
+
+    Raises
+    ------
+    Exception
+        The first that was raised.
+    """
+    values: list[Value] = []
+    errors: list[Exception] = []
+    for call in calls:
+        try:
+            values.append(call())
         except Exception as error:
             errors.append(error)
     if errors:
         raise errors[0]
-    return files
-
-
-def _resume(outputs: Sequence[Output], place: Place, number: int) -> list[xr.Dataset]:
-    """Return the steps, of a ``number``, that the first output which has any has, one by one."""
-    for source in outputs:
-        held = earlier_steps(source, place, number)
-        if held is None:
-            continue
-        steps = [held.isel(step=[index]) for index in range(held.sizes["step"])]
-        others = [output for output in outputs if output is not source]
-        for step in steps:
-            hand_over(others, place, step)
-        return steps
-    return []
+    return values
 
 
 def _as_run(configuration: Run | Mapping[str, Any] | str | Path) -> tuple[Run, str]:
-    made = Run.of(configuration)
+    run = Run.of(configuration)
     if isinstance(configuration, (str, Path)):
-        return made, Path(configuration).stem
-    return made, _file_stem(made.title)
+        return run, Path(configuration).stem
+    return run, _file_stem(run.title)
 
 
 def _file_stem(title: str) -> str:
-    """Return a file name made of a title."""
+    """Return the file name for a title."""
     return re.sub(r"\W+", "-", title).strip("-").lower() or "run"
 
 
 def standard_outputs(named: Sequence[Output] | None) -> Sequence[Output]:
-    """Return the outputs that are named, or the standard ones if it is not said which."""
+    """Return the outputs that a configuration names, or the standard ones if it names none."""
     if named is not None:
         return named
     return [registry().make(Output, {"type": type_}) for type_ in STANDARD_OUTPUTS]

@@ -3,89 +3,91 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Generator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellicle.components import Monitor
+from pellicle.components import Depth, Monitor, Search, Setting
 from pellicle.components.calls import (
     corrected_area,
+    report_of,
     response_of,
     solution_of,
+    target_of,
 )
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
-from pellicle.numerics.problem import Equilibrium, Problem, Stiffness, measure, measure_stiffness
-from pellicle.numerics.solution import Solution, State
+from pellicle.numerics.problem import Equilibrium, Stiffness, measure, measure_stiffness
+from pellicle.numerics.solution import State
 from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable
 
 from .progress import Bar
-from .target_search import Reached, reach_area
+from .target_search import Reached, reach
+from .verdict import judge
 
 if TYPE_CHECKING:
     import xarray as xr
-from .compose import prescribed_areas
-from .verdict import judge
 
 
 def solve_steps(
-    run: Run, problems: Sequence[Problem], steps: Steps, bar: Bar
+    run: Run, setting: Setting, steps: Steps, bar: Bar
 ) -> Generator[xr.Dataset, None, None]:
     """Add each load step that ``steps`` lack as soon as it is solved, and yield it."""
     origin = provenance(run)
-    first = len(steps)
-    for index, problem in enumerate(problems[first:], first):
+    for index in range(len(steps), len(run.loading.values)):
         # Only the copy in ``steps`` outlives a solve; the next one starts from its state.
-        yield steps.append(
-            _solved_step(run, index, problem, steps.state, bar.step(index)).assign_attrs(origin)
-        )
+        here = replace(setting, state=steps.state)
+        yield steps.append(_solved_step(run, here, index, bar.step(index)).assign_attrs(origin))
 
 
-def _solved_step(
-    run: Run, index: int, problem: Problem, start: State | None, monitor: Monitor
-) -> xr.Dataset:
-    """Return a load step, solved and judged."""
+def _solved_step(run: Run, setting: Setting, index: int, monitor: Monitor) -> xr.Dataset:
+    """Return load step ``index``, counted from 0, solved and judged."""
     started = time.perf_counter()
-    applied = problem.operator.applications
-    step = solve_step(run, index, problem, start, monitor)
-    used = problem.operator.applications - applied
-    found = measure(step.problem, step.solution.pressure)
-    stiffness = _stiffness(run, problem, found, monitor)
-    status, message = judge(run, index, found, step, stiffness)
+    applied = setting.operator.applications
+    value, prescription = run.loading.values[index], run.loading.prescription
+    step = solve_step(run, setting, value, monitor)
+    used = setting.operator.applications - applied
+    stiffness = _stiffness(run, step.equilibrium, monitor) if run.loading.stiffness else None
+    status, message = judge(run, value, step, stiffness)
+    report = report_of(prescription, setting, step.equilibrium)
+    report |= {v.name: step.missed for v in prescription.variables if v.name not in report}
+    areas = {
+        area_variable(correction.type_name): corrected_area(
+            correction, step.equilibrium.contact, run.grid
+        )
+        for correction in run.corrections
+    }
     scalars = {
-        **_asked(run, problem, found, step, stiffness),
-        "iterations": step.solution.iterations,
+        **{variable.name: area for variable, area in areas.items()},
+        **report,
+        **({"stiffness": stiffness.value} if stiffness else {}),
+        "iterations": step.iterations,
         "operator_applications": used,
         "converged": status.converged,
         "status_code": status.name,
         "status": message,
         "wall_time": time.perf_counter() - started,
     }
-    areas = [area_variable(correction.type_name) for correction in run.corrections]
-    return step_dataset(run.grid, index + 1, found, scalars, areas)
+    added = (*areas, *prescription.variables)
+    return step_dataset(run.grid, index + 1, step.equilibrium, scalars, added)
 
 
-def solve_step(
-    run: Run, index: int, problem: Problem, start: State | None, monitor: Monitor
-) -> Reached:
-    """Return the solution of load step ``index``, started from ``start``."""
-    areas = prescribed_areas(run)
-    if areas and areas[index] > 0:
-        return reach_area(problem, areas[index], run.solver, start, monitor)
-    if not problem.touches:
-        return Reached(problem, Solution(np.zeros(run.grid.shape), 0), 0.0, "met")
-    solution = solution_of(run.solver, problem, start, monitor)
-    return Reached(problem, solution, 0.0, "met")
+def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Reached:
+    """Return the load step at a prescribed ``value``, started from the state of ``setting``."""
+    target = target_of(run.loading.prescription, setting, value)
+    if isinstance(target, Search):
+        return reach(setting, target, run.solver, monitor)
+    problem = setting.problem(target)
+    solution = solution_of(run.solver, problem, setting.state, monitor)
+    return Reached(measure(problem, solution.pressure), solution.iterations, solution.stop)
 
 
-def _stiffness(
-    run: Run, problem: Problem, found: Equilibrium, monitor: Monitor
-) -> Stiffness | None:
-    """Return the contact stiffness if it is asked for."""
-    if not run.loading.stiffness:
-        return None
+def _stiffness(run: Run, found: Equilibrium, monitor: Monitor) -> Stiffness:
+    """Return the contact stiffness dF/dδ, δ being the depth of the indenter."""
+    problem = replace(found.problem, control=Depth(found.depth))
     contact = found.contact
     if problem.is_rigid(contact):
         return Stiffness(np.inf, 0.0)
@@ -93,21 +95,3 @@ def _stiffness(
         return Stiffness(0.0, 0.0)
     state = State(found.pressure, found.pressure, found.depth)
     return measure_stiffness(problem, contact, response_of(run.solver, problem, state, monitor))
-
-
-def _asked(
-    run: Run, problem: Problem, found: Equilibrium, step: Reached, stiffness: Stiffness | None
-) -> dict[str, float]:
-    """Return the numbers that are there because the run asks for them."""
-    loading = {
-        "mean_plane_depth": found.depth + float(problem.profile.mean()),
-        "residual_area": step.missed,
-        "stiffness": stiffness.value if stiffness else np.nan,
-    }
-    corrected = {
-        area_variable(correction.type_name).name: corrected_area(
-            correction, found.contact, run.grid
-        )
-        for correction in run.corrections
-    }
-    return corrected | {name: loading[name] for name in loading if name in run.loading.brings}

@@ -1,14 +1,14 @@
-"""The load step of a prescribed contact area: the force under which as many cells touch.
+"""The load step at which a measured quantity has a prescribed value.
 
-The area of the cells in contact is a staircase of the force. Searched for is the stair whose area
-is nearest to the prescribed one: any force on it where it is within half a cell, or else the force
-at which the area passes the prescribed one, to `_WIDTH`, on its nearer side.
+A contact area is a staircase of the force, so the quantity may jump. The search ends at any control
+whose value is within the resolution of the goal, or else at the jump across the goal, known to a
+width, on its nearer side.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
@@ -16,114 +16,132 @@ from scipy.optimize import brentq
 
 from pellicle.components import Monitor, Solver
 from pellicle.components.calls import solution_of
-from pellicle.numerics.problem import Force, Problem
-from pellicle.numerics.solution import Solution, State
+from pellicle.components.prescription import Search, Setting
+from pellicle.numerics.problem import Depth, Equilibrium, measure
+from pellicle.numerics.solution import Solution, Stop
 
-# Of the logarithm of the force where the area jumps across the prescribed one.
-_WIDTH: Final = 1e-4
-# Forces tried before it is taken that none brings such an area.
-_MOST_TRIES: Final = 40
+# Trials after which no control is expected to bring the goal.
+_MOST_TRIALS: Final = 40
 
 
 class Reached(NamedTuple):
-    """The load step whose area is the nearest."""
+    """A load step, with the trial of a search that came nearest to its goal."""
 
-    problem: Problem
-    """With the force that was found."""
-    solution: Solution
-    """Its iterations are those of the whole search."""
-    missed: float
-    """|A − prescribed| / prescribed."""
-    how: Literal["met", "nearest", "not found"]
-    """Whether the area is within half a cell; or else whether no force brings a nearer one."""
+    equilibrium: Equilibrium
+    iterations: int
+    """Of all trials."""
+    stop: Stop
+    search: Search | None = None
+    missed: float = 0.0
+    """|value − goal| / |goal|."""
+    how: Literal["met", "nearest", "not found"] = "met"
+    """"nearest" if the quantity jumps across the goal, "not found" if no control passes it."""
+    between: tuple[float, float] = (-math.inf, math.inf)
+    """The values of the trials next below and above the goal."""
 
 
-def reach_area(
-    problem: Problem, area: float, solver: Solver, start: State | None, monitor: Monitor
-) -> Reached:
-    """Return the load step with a contact area [m²] > 0; the value of ``problem`` is not used.
+def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) -> Reached:
+    """Return the load step at which the quantity of ``search`` has its goal.
 
-    The root of log A over log F is bracketed and found (Brent 1973). Each try starts from the
-    pressure of the one before, the first from ``start`` if that is not None.
+    The root is bracketed, the bracket growing from the first trial, and found by Brent's method
+    (1973), over log F for a force. Every trial starts from the state of the step before.
     """
-    search = _Search(replace(problem, control=Force(0.0)), area, solver, monitor, start)
-    low = high = math.log(_first_force(problem, area, start))
-    below = above = search(low)
-    while below > 0 and len(search.tried) < _MOST_TRIES:
+    trials = _Trials(setting, search, solver, monitor)
+    low = high = trials.first()
+    below = above = trials(low)
+    while below > 0 and len(trials.excess) < _MOST_TRIALS:
         high, above = low, below
-        low -= _stride(below, len(search.tried))
-        below = search(low)
-    while above < 0 and len(search.tried) < _MOST_TRIES:
+        low -= _stride(below, len(trials.excess))
+        below = trials(low)
+    while above < 0 and len(trials.excess) < _MOST_TRIALS:
         low, below = high, above
-        high += _stride(above, len(search.tried))
-        above = search(high)
-    if below < 0 < above:
-        brentq(search, low, high, xtol=_WIDTH, rtol=1e-15)
-    how: Literal["met", "nearest", "not found"] = "nearest" if below < 0 < above else "not found"
+        high = min(high + _stride(above, len(trials.excess)), 0.5 * (high + trials.limit))
+        above = trials(high)
+    if jumps := below < 0 < above:
+        brentq(trials, low, high, xtol=search.width, rtol=1e-15)
+    how: Literal["met", "nearest", "not found"] = "nearest" if jumps else "not found"
     return Reached(
-        replace(search.problem, control=Force(search.force)),
-        replace(search.solution, iterations=search.iterations),
-        search.missed,
-        "met" if 0.0 in search.tried.values() else how,
+        trials.found,
+        trials.iterations,
+        trials.solution.stop,
+        search,
+        trials.missed,
+        "met" if 0.0 in trials.excess.values() else how,
+        (trials.below, trials.above),
     )
 
 
-def _stride(excess: float, tries: int) -> float:
-    """Return how far to go in log F for log A to pass its goal; further each time it does not.
+def _stride(excess: float, trials: int) -> float:
+    """Return how far to move log F towards the goal; further with every trial.
 
-    A ~ F^(2/3) at most, under a smooth indenter; A ~ F under tension or where it is rough.
+    A contact area grows as F^(2/3) under a smooth indenter at most, and as F under tension or where
+    the indenter is rough.
     """
-    return min(1.5 * abs(excess) + 0.02 * 2.0**tries, math.log(30.0))
-
-
-def _first_force(problem: Problem, area: float, start: State | None) -> float:
-    """Return the force of the step before, scaled as its area is, or that of an overlap."""
-    cell = problem.grid.cell_area
-    if start is not None and start.contact.any():
-        before = float(np.count_nonzero(start.contact)) * cell
-        return float(start.pressure.sum()) * cell * math.pow(area / before, 1.5)
-    heights = np.sort(problem.profile[np.isfinite(problem.profile)])[::-1]
-    lowest = heights[min(math.ceil(area / cell + 0.5), heights.size - 1)]
-    # Deeper than that by a little: at a cell's very height it is round-off whether it touches.
-    overlap = np.maximum(problem.profile - 1.01 * lowest, 0.0)
-    response = problem.operator(overlap)
-    # The multiple of the overlap whose displacement comes nearest to it in energy.
-    share = float((overlap**2).sum()) / float((overlap * response).sum())
-    return cell * share * float(overlap.sum())
+    return min(1.5 * abs(excess) + 0.02 * 2.0**trials, math.log(30.0))
 
 
 @dataclass
-class _Search:
-    """Solves for one force after the other, and keeps the nearest area."""
+class _Trials:
+    """Solves for one control after the other, and keeps the one nearest to the goal."""
 
-    problem: Problem
-    area: float
+    setting: Setting
+    search: Search
     solver: Solver
     monitor: Monitor
-    start: State | None
-    """The state of the last try, from which the next one starts."""
-    tried: dict[float, float] = field(default_factory=dict)
-    """log F → log A/A*, 0 where A is within half a cell of A*."""
+    excess: dict[float, float] = field(default_factory=dict)
+    """By log F, or by the depth over `scale`: how far the value is above the goal, 0 if met."""
     iterations: int = 0
     missed: float = math.inf
-    force: float = field(init=False)
+    below: float = -math.inf
+    above: float = math.inf
+    limit: float = math.inf
+    """Depth of full contact over `scale`, where no load reaches further."""
+    scale: float = field(init=False)
+    found: Equilibrium = field(init=False)
     solution: Solution = field(init=False)
 
-    def __call__(self, log_force: float) -> float:
-        """Return log A/A*."""
-        if log_force not in self.tried:
-            self.tried[log_force] = self._try(math.exp(log_force))
-        return self.tried[log_force]
+    def first(self) -> float:
+        """Return where the first trial is: at the guess, or at the control of the step before."""
+        profile, state = self.setting.profile, self.setting.state
+        heights = profile[np.isfinite(profile)]
+        reach = 0.5 * float(np.ptp(heights)) or 1e-3 * min(self.setting.grid.spacing)
+        guess = self.search.guess
+        if self.search.control is Depth:
+            self.scale = reach
+            touch = -float(profile.max()) / reach
+            if not self.setting.operator.has_mean_compliance:
+                self.limit = -self.setting.mean_height / reach
+            place = touch + 1.0 if guess is None else guess / reach
+            return place if place < self.limit else 0.5 * (touch + self.limit)
+        if guess is None and state is not None:
+            guess = float(state.pressure.sum()) * self.setting.grid.cell_area
+        if guess is None or guess <= 0:
+            guess = self.setting.force_at(reach - float(profile.max()))
+        return math.log(guess)
 
-    def _try(self, force: float) -> float:
-        problem = replace(self.problem, control=Force(force))
-        found = solution_of(self.solver, problem, self.start, self.monitor)
-        self.start = State(found.pressure, found.pressure, math.nan)
-        self.iterations += found.iterations
-        cell = self.problem.grid.cell_area
-        area = float(np.count_nonzero(found.pressure > 0)) * cell
-        missed = abs(area - self.area) / self.area
+    def __call__(self, place: float) -> float:
+        if place not in self.excess:
+            force = self.search.control is not Depth
+            self.excess[place] = self._try(math.exp(place) if force else place * self.scale)
+        return self.excess[place]
+
+    def _try(self, control: float) -> float:
+        goal = self.search.goal
+        problem = self.setting.problem(self.search.control(control))
+        solution = solution_of(self.solver, problem, self.setting.state, self.monitor)
+        found = measure(problem, solution.pressure)
+        self.iterations += solution.iterations
+        value = self.search.measure(found)
+        missed = abs(value - goal) / (abs(goal) or 1.0)
         # Of equals the later is nearer to the jump.
         if missed <= self.missed:
-            self.missed, self.force, self.solution = missed, force, found
-        return 0.0 if abs(area - self.area) <= cell / 2 else math.log(area / self.area)
+            self.missed, self.found, self.solution = missed, found, solution
+        if abs(value - goal) <= self.search.resolution:
+            return 0.0
+        if value < goal:
+            self.below = max(self.below, value)
+        else:
+            self.above = min(self.above, value)
+        if goal and value / goal > 0:
+            return math.copysign(1.0, goal) * math.log(value / goal)
+        return math.copysign(1.0, value - goal)

@@ -5,28 +5,23 @@ from __future__ import annotations
 import numpy as np
 
 from pellicle.arrays import Mask
+from pellicle.components.prescription import Search, in_unit
 from pellicle.config.run import Run
-from pellicle.numerics.problem import Equilibrium, Stiffness
+from pellicle.numerics.problem import Stiffness
 from pellicle.results.status import Status
-from pellicle.results.variables import VARIABLES
 
 from .target_search import Reached
 
-# A prescribed contact area that whole cells miss by more than this share is not what was asked.
-_AREA_TOLERANCE = 0.05
-
-
-# Of a paraboloid nine or twelve cells have the force to 8 %, five to 14 %, fewer do not have it.
+# A search that ends further from its goal than this share has not converged.
+_NEAR = 0.05
+# With nine or twelve cells a paraboloid has its force to 8 %, with five to 14 %, with fewer not.
 _RESOLVED = 13
-
-
 _RESOLVED_ACROSS = 4
 
 
-def judge(
-    run: Run, index: int, found: Equilibrium, step: Reached, stiffness: Stiffness | None
-) -> tuple[Status, str]:
-    """Return the status of a step by its measured residuals, and what the user is told."""
+def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) -> tuple[Status, str]:
+    """Return the status of a step by its measured residuals, and the message to the user."""
+    found = step.equilibrium
     tolerance = run.solver.tolerance
     if not np.isfinite(found.force):
         return Status.NOT_FINITE, Status.NOT_FINITE.value
@@ -42,27 +37,45 @@ def judge(
     ):
         if not residual <= tolerance:
             return status, status.value.format(
-                measure=residual, tolerance=tolerance, remedy=step.solution.stop.value
+                measure=residual, tolerance=tolerance, remedy=step.stop.value
             )
     if run.indenter.footprint == "unbounded" and _touches_edge(run, found.contact):
         nx, ny = run.grid.size
-        value, name = run.loading.values[index], run.loading.prescribed
+        loading = run.loading
         return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
             size=f"{nx:g} × {ny:g} m",
-            prescribed=f"loading.{name} = {value:g} {VARIABLES[name].unit}",
+            prescribed=f"loading.{loading.prescribed} = "
+            f"{in_unit(value, loading.prescription.unit)}",
         )
-    if step.how == "not found" or step.missed > _AREA_TOLERANCE:
-        remedy = "use more points" if step.how == "nearest" else "no load was found that brings it"
-        return Status.AREA, Status.AREA.value.format(
-            measure=step.missed, tolerance=_AREA_TOLERANCE, remedy=remedy
-        )
-    if step.how == "nearest":
-        return Status.NEAREST_AREA, Status.NEAREST_AREA.value.format(measure=step.missed)
+    if step.search and (step.how != "met" or step.missed > _NEAR):
+        return _not_met(step, step.search)
     cells = int(np.count_nonzero(found.contact))
     enough = _RESOLVED_ACROSS if min(found.contact.shape) == 1 else _RESOLVED
-    if step.problem.control.value > 0 and cells < min(enough, found.contact.size):
+    if found.problem.control.value > 0 and cells < min(enough, found.contact.size):
         return Status.COARSE, Status.COARSE.value.format(cells=cells or "none")
     return Status.CONVERGED, Status.CONVERGED.value
+
+
+def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
+    """Return the status of a search that ended away from its goal."""
+    near, far = Status.NEAREST, Status.NOT_REACHED
+    if search.quantity == "contact area":
+        near, far = Status.NEAREST_AREA, Status.AREA
+    # What falls as the control grows is measured by its negative.
+    below, above = sorted(map(abs, step.between))
+    words = {
+        "quantity": search.quantity,
+        "measure": step.missed,
+        "tolerance": _NEAR,
+        "below": in_unit(below, search.unit),
+        "above": in_unit(above, search.unit),
+    }
+    if step.how == "nearest" and step.missed <= _NEAR:
+        return near, near.value.format(**words)
+    remedy = "no load was found that brings it"
+    if step.how == "nearest":
+        remedy = "it jumps from {below} to {above}: use more points".format(**words)
+    return far, far.value.format(**words, remedy=remedy)
 
 
 def _touches_edge(run: Run, contact: Mask) -> bool:

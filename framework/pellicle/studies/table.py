@@ -1,4 +1,4 @@
-"""The table of a study: what its runs say, over the parameters that vary."""
+"""The table of a study: the numbers of its runs over the varied parameters."""
 
 from __future__ import annotations
 
@@ -21,9 +21,11 @@ from pellicle.results.variables import damage as damage_of
 if TYPE_CHECKING:
     import xarray as xr
 
+_TEXTS = "status_code", "status"
+
 
 class Table:
-    """Takes the numbers of the runs as they finish, and makes the dataset of what is there."""
+    """Collects the numbers of the runs of a study as they finish."""
 
     def __init__(self, study: Study) -> None:
         self._study = study
@@ -44,21 +46,19 @@ class Table:
             self._texts["status_code"][point.position][:count] = Status.NOT_RUN.name
             self._runs[point.position] = point.run.identity[:16]
         self._numbers: dict[str, np.ndarray[Any, np.dtype[Any]]] = {}
-        self._said: dict[str, dict[str, str]] = {}
+        self._descriptions: dict[str, dict[str, str]] = {}
 
     def put(self, index: tuple[int, ...], scalars: xr.Dataset) -> None:
-        """Take the steps that a run has."""
+        """Store the steps of a run."""
         count = scalars.sizes["step"]
         for name, variable in scalars.data_vars.items():
-            self._said.setdefault(str(name), dict(variable.attrs))
+            self._descriptions.setdefault(str(name), dict(variable.attrs))
             if name in _TEXTS:
                 self._texts[str(name)][index][:count] = variable.values
                 continue
             missing = False if variable.dtype == bool else np.nan
-            kept = self._numbers.setdefault(
-                str(name), np.full(self._texts["status"].shape, missing)
-            )
-            kept[index][:count] = variable.values
+            empty = np.full(self._texts["status"].shape, missing)
+            self._numbers.setdefault(str(name), empty)[index][:count] = variable.values
 
     def fail(self, index: tuple[int, ...], reason: str) -> None:
         """Record why a run has no more steps."""
@@ -68,42 +68,39 @@ class Table:
         self._texts["status"][index][missing] = Status.FAILED.value.format(reason=reason)
 
     def dataset(self) -> xr.Dataset:
-        """Return the table, NaN where there is no number."""
+        """Return the table, with NaN for missing numbers."""
         import xarray as xr
 
         dimensions = *self._study.dimensions, "step"
         variables: dict[str, Any] = {
-            name: (dimensions, _whole(values, name), self._said[name])
+            name: (dimensions, _whole(values, name), self._descriptions[name])
             for name, values in self._numbers.items()
         }
         for name, texts in self._texts.items():
-            variables[name] = dimensions, texts.copy(), self._said.get(name, {})
-        about = {"long_name": "name of the run's file"}
-        variables["run"] = dimensions[:-1], self._runs.copy(), about
+            variables[name] = dimensions, texts.copy(), self._descriptions.get(name, {})
+        description = {"long_name": "name of the run's file"}
+        variables["run"] = dimensions[:-1], self._runs.copy(), description
         coordinates: dict[str, Any] = {
-            key: (dimension, made.values, made.attributes)
-            for key, (dimension, made) in self._study.coordinates().items()
+            key: (dimension, *coordinate)
+            for key, (dimension, coordinate) in self._study.coordinates().items()
         }
         coordinates["step"] = (
             "step",
             np.arange(1, self._texts["status"].shape[-1] + 1),
             {"long_name": "load step, counted from 1"},
         )
-        made = xr.Dataset(variables, coordinates, self._attributes)
-        return derive(made, self._study.derived) if self._numbers else made
-
-
-_TEXTS = "status_code", "status"
+        table = xr.Dataset(variables, coordinates, self._attributes)
+        return derive(table, self._study.derived) if self._numbers else table
 
 
 def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any, np.dtype[Any]]:
-    """Return a copy, in whole numbers where they count something and none is missing."""
+    """Return a copy, as whole numbers if they are counts and none is missing."""
     counts = name in VARIABLES and VARIABLES[name].type == "count"
     return values.astype(int) if counts and np.isfinite(values).all() else values.copy()
 
 
 def damage(table: xr.Dataset) -> str:
-    """Return what keeps a dataset from being the table of a study."""
+    """Return why a dataset is not the table of a study; empty if it is one."""
     numbers = any(variable.dtype.kind in "fiu" for variable in table.data_vars.values())
     required = (*_TEXTS, "run", *(["converged"] if numbers else []))
     if problem := damage_of(table.data_vars, required, ("", *Status.__members__)):
@@ -116,7 +113,7 @@ def damage(table: xr.Dataset) -> str:
     except (LookupError, TypeError, ValueError):
         known = False
     if not known:
-        return "does not say which study it is of"
+        return "has no configuration of its study"
     return ""
 
 
@@ -135,10 +132,11 @@ def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:
         columns = ["run", *table.coords, *(n for n in table.data_vars if n != "run")]
         writer.writerow(header(str(name), table[name]) for name in columns)
         status = table["status"]
-        spread = [
+        cells = [
             table[name].broadcast_like(status).transpose(*status.dims).values.ravel()
             for name in columns
         ]
-        there = spread[columns.index("status")] != ""
-        writer.writerows(zip(*(column[there].tolist() for column in spread), strict=True))
+        # A run may have fewer steps than the table.
+        exists = cells[columns.index("status")] != ""
+        writer.writerows(zip(*(column[exists].tolist() for column in cells), strict=True))
     return whole, text

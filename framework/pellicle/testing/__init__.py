@@ -13,6 +13,7 @@ from .executors import check_executor
 from .indenters import check_indenter
 from .kernels import check_kernel
 from .outputs import check_output
+from .prescriptions import check_prescription
 from .solvers import check_solver
 
 __all__ = [
@@ -21,5 +22,6 @@ __all__ = [
     "check_indenter",
     "check_kernel",
     "check_output",
+    "check_prescription",
     "check_solver",
 ]

@@ -158,14 +158,14 @@ def primitive_is_the_integral_of_the_closed_form(kernel: Kernel) -> None:
     require_close(
         np.diff(primitive),
         integral,
-        "the growth of radial_primitive [m²/N] between radii of 1 nm to 100 m",
+        "the growth of radial_primitive [m³/N] between radii of 1 nm to 100 m",
         relative=1e-10,
         absolute=1e-13 * float(np.abs(primitive).max()),
     )
     require_close(
         kernel.radial_primitive(np.zeros(1)),
         np.zeros(1),
-        "radial_primitive(0) [m²/N]",
+        "radial_primitive(0) [m³/N]",
         absolute=1e-9 * float(np.abs(primitive[0])),
     )
 

@@ -1,22 +1,27 @@
-"""What every output keeps: the files it names, and no others, whether or not a run finishes."""
+"""Checks that an output keeps its contract."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache, partial
+from dataclasses import replace
+from fnmatch import fnmatch
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from pellicle.components import Output, Place
-from pellicle.components.calls import files_of
-from pellicle.config.output_conflicts import matches
+from pellicle.components import Output, Runs
+from pellicle.components.calls import require_files
+from pellicle.components.output import stem_of
 from pellicle.config.run import Run
-from pellicle.errors import StorageError
-from pellicle.results.result import Result
+from pellicle.config.study import Study
+from pellicle.results.derived import FIRST_RUN
+from pellicle.runs.journal import Journal
 from pellicle.runs.progress import Progress
 from pellicle.runs.runner import execute, solve
+from pellicle.studies import runner as studies
 
 from .component import check
 from .rules import Rule, require
@@ -25,20 +30,20 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _STEPS = 2
+_VARIED = "kernel.tension"
 
 
 def check_output(output: Output) -> None:
     """Check that an output keeps its contract.
 
-    Beside what all components keep: it leaves exactly the files that it names, and that `endings`
-    tells, also where the run was cut short and is repeated; each step leaves a trace in them,
-    unless a `study` of its own chooses what is shown; a folder that cannot be written is known
-    before anything is computed; and it works in a run.
+    Besides the rules of all components: it leaves exactly the files that it returns, in its
+    `suffixes`, also where a run was interrupted and is repeated; an output of scope ``"run"`` shows
+    every step; and it works in the runs and studies of its scope.
 
     Raises
     ------
     AssertionError
-        It does not; says what was asked and what was found.
+        It breaks a rule; the message has the rule and what was found.
     """
     check(output, "output", RULES)
 
@@ -61,116 +66,121 @@ def _dataset() -> xr.Dataset:
     return solve(_run()).dataset
 
 
+def _runs(output: Output, steps: xr.Dataset) -> Runs:
+    """Return a run of some steps, as a study of that run if the output shows studies only."""
+    configuration = _run().to_json()
+    runs = Runs.of_run(steps, configuration)
+    if output.scope != "study":
+        return runs
+    attributes = {"axes": json.dumps({_VARIED: [_VARIED]}), FIRST_RUN: configuration}
+    table = runs.table.expand_dims({_VARIED: [1.0]}).assign_attrs(attributes)
+    return replace(runs, table=table)
+
+
 @contextmanager
-def _place() -> Iterator[Place]:
-    """Yield a place in a folder that does not exist yet."""
+def _stem() -> Iterator[Path]:
+    """Yield the stem of a run in an empty folder."""
     with TemporaryDirectory() as folder:
-        yield Place(Path(folder) / "new" / "folder", "indent", _run().to_json(), _run().identity)
+        yield Path(folder) / "indent"
 
 
-def _leave(output: Output, place: Place, steps: xr.Dataset) -> tuple[Path, ...]:
-    """Hand steps to the output as a run does; return the files that it names."""
-    output.open(place)
+def _write(output: Output, stem: Path, steps: xr.Dataset) -> tuple[Path, ...]:
+    """Call the output as a run does; return the files that it returns."""
+    own = stem_of(output, stem)
     for index in range(steps.sizes["step"]):
-        output.step(place, steps.isel(step=slice(index, index + 1)))
-    return output.close(place, Result(steps))
+        output.step(steps.isel(step=slice(index, index + 1)), own)
+    return output.write(_runs(output, steps), own)
 
 
-def _left(place: Place) -> dict[str, bytes]:
-    """Return the content of each file that is there."""
-    there = place.directory.rglob("*") if place.directory.exists() else ()
+def _contents(folder: Path) -> dict[str, bytes]:
+    """Return the content of each file in a folder."""
     return {
-        path.relative_to(place.directory).as_posix(): path.read_bytes()
-        for path in there
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob("*")
         if path.is_file()
     }
 
 
 def leaves_its_data_as_they_are(output: Output) -> None:
-    """step() and close() change nothing of what they are given: others get it too."""
+    """step() and write() change nothing of their arguments: other outputs get them too."""
     data = _dataset().copy(deep=True)
-    with _place() as place:
-        _leave(output, place, data)
+    with _stem() as stem:
+        _write(output, stem, data)
     require(data.identical(_dataset()), "the data of the run differ afterwards")
 
 
-def leaves_the_files_it_names(output: Output) -> None:
-    """Cut short, and repeated with all steps, a run leaves what is named and endings() tells."""
-    with _place() as place:
+def leaves_the_files_it_returns(output: Output) -> None:
+    """Interrupted, and repeated with all steps, a run has the files of write(), in `suffixes`."""
+    with _stem() as stem:
         for steps in range(1, _STEPS + 1):
-            done = _dataset().isel(step=slice(steps))
-            named = files_of(output, "close()", partial(_leave, place=place, steps=done))
-            names = {path.relative_to(place.directory).as_posix() for path in named}
-            left = _left(place)
+            files = _write(output, stem, _dataset().isel(step=slice(steps)))
+            require_files(output, files, stem)
+            names = {path.relative_to(stem.parent).as_posix() for path in files}
+            left = _contents(stem.parent)
             require(
-                bool(names) and left.keys() == names,
-                f"after {steps} of {_STEPS} steps close() names {sorted(names)}, and there are "
+                left.keys() == names,
+                f"after {steps} of {_STEPS} steps write() returns {sorted(names)}, and there are "
                 f"{sorted(left)}",
             )
+            own = stem_of(output, stem).name
             for name, content in left.items():
                 require(bool(content), f"{name} is empty")
                 require(
-                    name.startswith(place.name),
-                    f"{name} does not begin with {place.name!r}; use place.file(…)",
-                )
-                told = output.endings()
-                require(
-                    any(matches(name.removeprefix(place.name), ending) for ending in told),
-                    f"{name} is left, and endings() tells {told}",
+                    any(fnmatch(name, f"{own}{suffix}") for suffix in output.suffixes),
+                    f"{name} is left, and suffixes are {output.suffixes}",
                 )
 
 
 def loses_no_step(output: Output) -> None:
-    """What is left behind differs if any of the steps does, unless study() chooses."""
-    if output.draws_studies:
+    """The files differ if any of the steps does, unless a study as a whole can be shown."""
+    if output.scope != "run":
         return
     whole = _dataset()
-    left = _content(output, whole)
-    # What holds a date or a random name differs between two equal runs: it says nothing here.
-    steady = {name for name, content in _content(output, whole).items() if content == left[name]}
+    left = _left(output, whole)
+    # A file with a date or a random name differs between two equal runs, and proves nothing.
+    steady = {name for name, content in _left(output, whole).items() if content == left[name]}
     for lost in range(_STEPS):
         other = whole.where(whole["step"] != lost + 1, whole.isel(step=(lost + 1) % _STEPS))
         other = other.transpose(*whole.dims).astype({n: v.dtype for n, v in whole.items()})
-        changed = _content(output, other)
+        changed = _left(output, other)
         require(
             not steady or any(changed.get(name) != left[name] for name in steady),
             f"step {lost + 1} of {_STEPS} leaves no trace in {sorted(left)}",
         )
 
 
-def _content(output: Output, steps: xr.Dataset) -> dict[str, bytes]:
-    with _place() as place:
-        _leave(output, place, steps)
-        return _left(place)
-
-
-def hopeless_folder_is_known_before_computing(output: Output) -> None:
-    """open() raises StorageError where nothing can be written: pellicle.storage.check_writable."""
-    with TemporaryDirectory() as folder:
-        blocked = Path(folder) / "file"
-        blocked.write_text("in the way", encoding="utf-8")
-        try:
-            output.open(Place(blocked / "folder", "indent", _run().to_json(), _run().identity))
-        except StorageError as error:
-            require("indent" in str(error), f"a message that names no file: {error}")
-        else:
-            raise AssertionError("open() raises nothing below a folder that is a file")
+def _left(output: Output, steps: xr.Dataset) -> dict[str, bytes]:
+    with _stem() as stem:
+        _write(output, stem, steps)
+        return _contents(stem.parent)
 
 
 def works_in_a_run(output: Output) -> None:
-    """A run with this output alone leaves its files."""
-    with TemporaryDirectory() as folder:
+    """A run with this output alone has its files beside the result file."""
+    if output.scope == "study":
+        return
+    with _stem() as stem:
         run = _run().model_copy(update={"outputs": (output,)})
-        place = Place(Path(folder), "indent", run.to_json(), run.identity)
-        bar = Progress(_STEPS, enabled=False)
-        files = execute(run, place, (output,), bar).files
-        require(bool(files) and all(path.is_file() for path in files), f"files {files}")
+        journal, bar = Journal(stem, run.identity), Progress(_STEPS, enabled=False)
+        files = execute(run, journal, (output,), bar).files
+        require(all(path.is_file() for path in files), f"files {files}")
+
+
+def works_in_a_study(output: Output) -> None:
+    """A study of two runs with this output has its files."""
+    with TemporaryDirectory() as folder:
+        run = json.loads(_run().to_json()) | {"outputs": [output]}
+        study = Study.from_mapping(run | {"study": {"vary": {_VARIED: [0.1, 0.2]}}})
+        result = studies.execute(study, Path(folder))
+        statuses = {*result.table["status"].values.ravel()}
+        require(all(path.is_file() for path in result.files), f"files {result.files}")
+        require(bool(result.table["converged"].all()), f"the runs end as {statuses}")
 
 
 RULES: list[Rule] = [
     leaves_its_data_as_they_are,
-    leaves_the_files_it_names,
+    leaves_the_files_it_returns,
     loses_no_step,
-    hopeless_folder_is_known_before_computing,
     works_in_a_run,
+    works_in_a_study,
 ]

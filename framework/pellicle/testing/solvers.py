@@ -1,18 +1,17 @@
-"""What every solver keeps: the answer is right, and depends on the problem alone."""
+"""The contract of solvers: the answer is right, and depends on the problem alone."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle.components import Solver
+from pellicle.components import IterativeSolver, Solver
 from pellicle.components.calls import solution_of
 from pellicle.config.run import Run
 from pellicle.numerics.operators import make_operator
-from pellicle.numerics.problem import Problem, measure, measure_stiffness
+from pellicle.numerics.problem import Depth, Force, Problem, measure, measure_stiffness
 from pellicle.numerics.solution import State, Stop
 
 from .component import check
@@ -48,52 +47,56 @@ _CASES: list[tuple[dict[str, Any], str, float]] = [
     (_ROUGH, "force", 3e-4),
     (_ROUGH, "mean_pressure", 400.0),
 ]
-# How much larger than the gap's the relative error of the pressure may be: the condition of the
-# operators above.
+# The condition number of the operators above: the relative error of the pressure may exceed that
+# of the gap by this factor.
 _CONDITION = 1e4
 
 
 def check_solver(solver: Solver) -> None:
     """Check that a solver keeps its contract.
 
-    Beside what all components keep: paraboloid, punch and rough surface, on free and periodic
-    grids, with depth, force and mean pressure prescribed, are solved to the solver's
+    In addition to the rules for all components: a paraboloid, a punch and a rough surface, on free
+    and periodic grids, with depth, force and mean pressure prescribed, are solved to the solver's
     ``tolerance``, with pressure ≥ 0; the answer depends on neither the step before nor the unit of
-    stiffness; arguments are as they were; progress is told; and ``response`` is that of a flat
-    punch.
+    stiffness; arguments are unchanged; the monitor is called; ``response`` is that of a flat punch;
+    and the ``residual`` of an iterative solver only looks.
 
     Raises
     ------
     AssertionError
-        It does not; says what was asked and what was found.
+        A rule is broken; the message names it and what was found.
     """
     check(solver, "solver", RULES)
 
 
 def _solve(problem: dict[str, Any], solver: Solver, prescribed: str, *values: float) -> xr.Dataset:
-    """Return the last of the load steps, each started from the one before."""
-    more = {"solver": solver, "loading": {prescribed: list(values)}}
-    return solved(problem | more).isel(step=-1)
+    """Return the last of several load steps, each started from the one before."""
+    steps = {"solver": solver, "loading": {prescribed: list(values)}}
+    return solved(problem | steps).isel(step=-1)
 
 
 @lru_cache(maxsize=len(_CASES))
 def _afresh(solver: Solver, case: int) -> xr.Dataset:
-    """Return the one step of a case; several rules compare with it."""
+    """Return the only step of a case; several rules compare with it."""
     problem, prescribed, value = _CASES[case]
     return _solve(problem, solver, prescribed, value)
 
 
-def _problems() -> Iterator[Problem]:
-    """Yield a smooth problem as a solver sees it, its depth or its force prescribed."""
-    for problem, prescribed, value in _CASES[:2]:
-        run = Run(**problem, loading={prescribed: value})
-        profile = run.indenter.profile(*run.grid.coordinates())
-        assert prescribed in ("depth", "force")
-        kind: Any = prescribed
-        yield Problem(run.grid, make_operator(run.kernel, run.grid), profile, kind, value)
+def _problems() -> list[Problem]:
+    """Return the smooth problem, at a given depth and at a given force."""
+    run = Run(**_SMOOTH, loading={"depth": 0.0})
+    operator = make_operator(run.kernel, run.grid)
+    profile = run.indenter.profile(*run.grid.coordinates())
+    return [
+        Problem(run.grid, operator, profile, control) for control in (Depth(20e-6), Force(4e-5))
+    ]
 
 
-def _ignore(iteration: int, residual: float) -> None:
+def _state(pressure: Any) -> State:
+    return State(pressure, pressure, 0.0)
+
+
+def _ignore(iteration: int, residual_ratio: float) -> None:
     pass
 
 
@@ -106,56 +109,35 @@ def solve_returns_a_solution(solver: Solver) -> None:
 def pressure_is_nowhere_negative(solver: Solver) -> None:
     """solve() returns a finite pressure ≥ 0 of the grid's shape."""
     for problem in _problems():
-        found = solver.solve(problem, None, _ignore).pressure
-        require(np.shape(found) == problem.grid.shape, f"shape {np.shape(found)}")
-        require(np.isfinite(found).all(), "a pressure that is not finite")
-        require(
-            found.min() >= 0,
-            f"{found.min():g} Pa, with {problem.prescribed} prescribed; the highest is "
-            f"{found.max():g} Pa",
-        )
+        pressure = solver.solve(problem, None, _ignore).pressure
+        require(np.shape(pressure) == problem.grid.shape, f"shape {np.shape(pressure)}")
+        require(np.isfinite(pressure).all(), "a pressure that is not finite")
+        lowest, highest = pressure.min(), pressure.max()
+        require(lowest >= 0, f"{lowest:g} Pa for {problem.control}; the highest is {highest:g} Pa")
 
 
 def done_means_solved(solver: Solver) -> None:
     """A solver that stops with Stop.DONE has met its tolerance, measured afresh."""
     for problem in _problems():
-        found = solver.solve(problem, None, _ignore)
-        residual = _residual(problem, found.pressure)
-        require(
-            found.stop is not Stop.DONE or residual <= solver.tolerance,
-            f"Stop.DONE at a residual of {residual:.1e}, over the tolerance "
-            f"{solver.tolerance:.1e}, with {problem.prescribed} prescribed",
-        )
-
-
-def _residual(problem: Problem, pressure: Any) -> float:
-    found = measure(problem, pressure)
-    return max(
-        found.residual_contact,
-        found.residual_penetration,
-        found.residual_complementarity,
-        found.residual_load,
-    )
+        solution = solver.solve(problem, None, _ignore)
+        residual = measure(problem, solution.pressure).residual
+        what = f"Stop.DONE at a residual of {residual:.1e}, for {problem.control}"
+        require(solution.stop is not Stop.DONE or residual <= solver.tolerance, what)
 
 
 def what_is_prescribed_is_solved(solver: Solver) -> None:
     """Pressure, gap and load meet the tolerance, for depth, force and mean pressure."""
     for case, (_, prescribed, value) in enumerate(_CASES):
-        require_close(
-            _afresh(solver, case)[prescribed].item(),
-            value,
-            f"the {prescribed}",
-            relative=solver.tolerance,
-        )
+        result = _afresh(solver, case)[prescribed].item()
+        require_close(result, value, f"the {prescribed}", relative=solver.tolerance)
 
 
 def start_does_not_matter(solver: Solver) -> None:
     """Loaded from below or unloaded from above, a step ends where it ends from scratch."""
     for case, (problem, prescribed, value) in enumerate(_CASES):
-        afresh = _afresh(solver, case)
         for before in (0.3, 2.0):
             after = _solve(problem, solver, prescribed, before * value, value)
-            _require_same_pressure(after, afresh, 1.0, solver, f"after {before:g} times the load")
+            _require_same_pressure(after, case, 1.0, solver, f"after {before:g} times the load")
 
 
 def pressure_is_proportional_to_the_stiffness(solver: Solver) -> None:
@@ -164,60 +146,68 @@ def pressure_is_proportional_to_the_stiffness(solver: Solver) -> None:
         kernel = {key: v if key == "type" else 2 * v for key, v in problem["kernel"].items()}
         load = value if prescribed == "depth" else 2 * value
         doubled = _solve(problem | {"kernel": kernel}, solver, prescribed, load)
-        single = _afresh(solver, case)
-        _require_same_pressure(doubled, single, 2.0, solver, "of twice the stiffness")
+        _require_same_pressure(doubled, case, 2.0, solver, "of twice the stiffness")
 
 
 def _require_same_pressure(
-    found: xr.Dataset, expected: xr.Dataset, factor: float, solver: Solver, what: str
+    result: xr.Dataset, case: int, factor: float, solver: Solver, what: str
 ) -> None:
-    pressure = factor * expected["pressure"].values
+    pressure = factor * _afresh(solver, case)["pressure"].values
     allowed = _CONDITION * solver.tolerance * float(pressure.max())
-    require_close(found["pressure"].values, pressure, f"the pressure [Pa] {what}", absolute=allowed)
+    require_close(
+        result["pressure"].values, pressure, f"the pressure [Pa] {what}", absolute=allowed
+    )
 
 
 def start_belongs_to_the_caller(solver: Solver) -> None:
     """The start given to a solver is as it was, and the result is not the same array."""
     for problem in _problems():
         pressure = np.full(problem.grid.shape, 100.0)
-        start = State(pressure, pressure, 0.0)
         profile = problem.profile.copy()
-        found = solver.solve(problem, start, _ignore).pressure
+        solution = solver.solve(problem, _state(pressure), _ignore)
         require((pressure == 100.0).all(), "solve() changes start.pressure")
         require(np.array_equal(profile, problem.profile), "solve() changes problem.profile")
-        require(not np.shares_memory(found, pressure), "the pressure returned is start.pressure")
+        shared = np.shares_memory(solution.pressure, pressure)
+        require(not shared, "the pressure returned is the array start.pressure")
 
 
-def progress_is_told(solver: Solver) -> None:
+def monitor_is_called(solver: Solver) -> None:
     """monitor(iteration, residual / tolerance) is called, at the end with the result's."""
     for problem in _problems():
-        told: list[tuple[int, float]] = []
-        found = solver.solve(problem, None, lambda *each, to=told: to.append(each))
-        require(bool(told), "monitor is never called")
-        iterations = [iteration for iteration, _ in told]
+        calls: list[tuple[int, float]] = []
+        solution = solver.solve(problem, None, lambda *call, calls=calls: calls.append(call))
+        require(bool(calls), "monitor is never called")
+        iterations = [iteration for iteration, _ in calls]
         require(iterations == sorted(iterations), f"iterations {iterations}")
-        require(
-            iterations[-1] == found.iterations,
-            f"the last iteration told is {iterations[-1]}, that of the result {found.iterations}",
-        )
-        require(told[-1][1] <= 1, f"the last residual told is {told[-1][1]:g} of the tolerance")
+        what = f"monitor ends at iteration {iterations[-1]}, the result at {solution.iterations}"
+        require(iterations[-1] == solution.iterations, what)
+        require(calls[-1][1] <= 1, f"the last residual is {calls[-1][1]:g} of the tolerance")
 
 
 def response_is_that_of_a_flat_punch(solver: Solver) -> None:
     """response() displaces the contact of a state by 1 and acts nowhere else."""
     for problem in _problems():
         contact = problem.profile > 0.1 * problem.profile.min()
-        any_pressure = contact.astype(np.float64)
-        state = State(any_pressure, any_pressure, 0.0)
-        pressure = solver.response(problem, state, _ignore)
+        pressure = solver.response(problem, _state(contact.astype(np.float64)), _ignore)
         require(np.shape(pressure) == problem.grid.shape, f"shape {np.shape(pressure)}")
         require(not pressure[~contact].any(), "response() presses off the contact")
-        require(
-            (residual := measure_stiffness(problem, contact, pressure).residual)
-            <= solver.tolerance,
-            f"response() misses the displacement 1 by {residual:.1e}, over the tolerance "
-            f"{solver.tolerance:.1e}",
-        )
+        residual = measure_stiffness(problem, contact, pressure).residual
+        what = f"response() misses the displacement 1 by {residual:.1e}"
+        require(residual <= solver.tolerance, what)
+
+
+def residual_only_looks(solver: Solver) -> None:
+    """residual() of an iterative solver neither applies the operator nor changes the iterate."""
+    if not isinstance(solver, IterativeSolver):
+        return
+    for problem in _problems():
+        state = solver.begin(problem, None)
+        for _ in range(3):
+            applied = problem.operator.applications
+            first, second = solver.residual(problem, state), solver.residual(problem, state)
+            require(problem.operator.applications == applied, "residual() applies the operator")
+            require(first == second, f"residual() returns {first:g}, and then {second:g}")
+            state = solver.step(problem, state)
 
 
 RULES: list[Rule] = [
@@ -226,8 +216,9 @@ RULES: list[Rule] = [
     done_means_solved,
     start_belongs_to_the_caller,
     response_is_that_of_a_flat_punch,
+    residual_only_looks,
     what_is_prescribed_is_solved,
     start_does_not_matter,
     pressure_is_proportional_to_the_stiffness,
-    progress_is_told,
+    monitor_is_called,
 ]

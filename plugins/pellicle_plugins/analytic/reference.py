@@ -10,7 +10,8 @@ import numpy as np
 
 from pellicle import Run
 from pellicle.errors import ConfigError
-from pellicle.results.derived import Runs, derive
+from pellicle.results.derived import derive
+from pellicle.results.runs import Runs
 from pellicle_plugins.kernels.half_space import HalfSpace
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 
@@ -62,7 +63,14 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
             return indent(indenter, modulus, tension, contact_radius=value)
         case "contact_area":
             return indent(indenter, modulus, tension, contact_radius=float(np.sqrt(value / np.pi)))
-    return indent(indenter, modulus, tension, force=value)
+        case "force":
+            return indent(indenter, modulus, tension, force=value)
+        case other:
+            raise ConfigError(
+                f"loading.{other} has no reference solution; prescribe depth, force, "
+                "contact_radius or contact_area",
+                "reference",
+            )
 
 
 def exact(runs: Runs) -> Runs:

@@ -28,7 +28,7 @@ class HalfSpace(ElasticSolid):
         return 1.0 / (np.pi * self.contact_modulus * r)
 
     def radial_primitive(self, r: Array) -> Array:
-        """Return ∫₀^r G r dr = r/(π E*) [m²/N]."""
+        """Return ∫₀^r G r dr = r/(π E*) [m³/N]."""
         return r / (np.pi * self.contact_modulus)
 
 

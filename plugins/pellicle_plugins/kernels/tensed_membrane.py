@@ -40,7 +40,7 @@ class TensedMembrane(ElasticSolid):
         return struve_minus_bessel(r / s) / (2 * s * self.contact_modulus)
 
     def radial_primitive(self, r: Array) -> Array:
-        """Return ∫₀^r G r dr = (s/2E*)[z(H₁(z) − Y₁(z)) − 2/π], z = r/s [m²/N]."""
+        """Return ∫₀^r G r dr = (s/2E*)[z(H₁(z) − Y₁(z)) − 2/π], z = r/s [m³/N]."""
         s = self.elastocapillary_length
         if s == 0:
             return r / (np.pi * self.contact_modulus)

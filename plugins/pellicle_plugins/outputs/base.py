@@ -1,4 +1,4 @@
-"""What the outputs that draw a table of runs have in common."""
+"""The base classes of outputs that draw a table of runs."""
 
 from __future__ import annotations
 
@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from pellicle.components import Output, Place
+from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
 from pellicle.model.expression import evaluate
 from pellicle.model.messages import nearest
 from pellicle.report.plotting import save_figure, without_round_off
-from pellicle.results.derived import Runs, names
-from pellicle.results.result import Result
+from pellicle.results.derived import names
 from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
@@ -41,10 +40,10 @@ Reference = Annotated[
 ]
 
 
-class Drawing(Output):
-    """Draws the runs of a study, or the steps of one run."""
+class TableFigure(Output):
+    """A figure of the runs of a study, or of the steps of one run."""
 
-    leaves_numbers: ClassVar[bool] = True
+    numbers: ClassVar[bool] = True
     """Whether the numbers drawn are written as CSV beside the figure."""
 
     name: Annotated[
@@ -63,22 +62,10 @@ class Drawing(Output):
         ),
     ] = None
 
-    @abstractmethod
-    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the files, whose names begin with ``stem``, and return them."""
-
-    def endings(self) -> tuple[str, ...]:
-        """Return those of the figure and of its numbers."""
-        kinds = (*self.formats, "csv") if self.leaves_numbers else self.formats
-        return tuple(f"{self._ending}.{kind}" for kind in kinds)
-
-    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
-        """Draw the steps of a run and return the files."""
-        return self.draw(Runs.of_result(result), place.file(self._ending))
-
-    def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
-        """Draw the runs of a study and return the files."""
-        return self.draw(Runs.of_study(table, place.directory), place.file(self._ending))
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Those of the figure and of its numbers."""
+        return tuple(f".{kind}" for kind in (*self.formats, *["csv"] * self.numbers))
 
     def picked(self, table: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
         """Yield the name of each curve or panel and the point of the table that it shows.
@@ -87,37 +74,37 @@ class Drawing(Output):
         """
         one_axis(table.sizes, self.by, "by")
         first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
-        for at in along(table, self.by):
-            here = table.isel({**first, **at})
-            yield label(self.label, here, self.by), here
+        for index in along(table, self.by):
+            point = table.isel({**first, **index})
+            yield label(self.label, point, self.by), point
 
     def steps(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
-        """Yield the name of each curve or panel and the fields that it shows, if they are there."""
-        for name, here in self.picked(runs.table):
-            step = _step_of(runs, here)
-            if step is not None:
-                yield name, step
+        """Yield the name of each curve or panel and the load step that it shows, if it exists."""
+        for name, point in self.picked(runs.table):
+            try:
+                run = runs.open(str(point["run"].item()))
+            except StorageError:
+                continue
+            number = int(point["step"].item())
+            if number in run["step"]:
+                yield name, without_round_off(run.sel(step=number))
 
-    @property
-    def _ending(self) -> str:
-        return f"-{self.name or self.type_name}"
 
-
-class Graph(Drawing):
-    """Draws one number against another."""
+class XYFigure(TableFigure):
+    """A figure of one number against another."""
 
     x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
     y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
 
     @abstractmethod
-    def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
-        """Draw, and yield the rows of the numbers drawn."""
+    def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        """Draw the curves, and yield the rows of the numbers drawn."""
 
-    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
         rows: list[dict[str, object]] = []
         files = save_figure(
-            lambda figure: rows.extend(self.fill(figure.add_subplot(), runs)), stem, self.formats
+            lambda figure: rows.extend(self.draw(figure.add_subplot(), runs)), stem, self.formats
         )
         return (*files, write_csv(stem, rows))
 
@@ -126,59 +113,49 @@ def one_axis(dims: Iterable[object], chosen: str | None, field: str) -> None:
     """Refuse a ``chosen`` dimension that is not among ``dims``."""
     if chosen is not None and chosen not in dims:
         known = nearest(chosen, map(str, dims))
-        raise ConfigError(f"{chosen!r} is no axis of the table; {known}", field)
+        raise ConfigError(f"{chosen!r} is not an axis of the table; {known}", field)
 
 
 def along(table: xr.Dataset, dim: str | None) -> list[dict[str, int]]:
-    """Return the places along a dimension; one that is everywhere if there is none."""
+    """Return the indices along a dimension; without one, a single index of the whole table."""
     return [{dim: index} for index in range(table.sizes[dim])] if dim else [{}]
-
-
-def _step_of(runs: Runs, picked: xr.Dataset) -> xr.Dataset | None:
-    """Return the fields of the step that a point of the table stands for, if they are there."""
-    try:
-        run = runs.open(str(picked["run"].item()))
-    except StorageError:
-        return None
-    number = int(picked["step"].item())
-    return without_round_off(run.sel(step=number)) if number in run["step"] else None
 
 
 def label(template: str | None, data: xr.Dataset, dim: str | None) -> str:
     """Return the name of a curve or a panel.
 
-    ``{…}`` in the template is an expression, of which the mean over ``data`` is written; without
-    a template it is the value of the dimension ``dim``, and without that, those of all axes of the
-    study at which ``data`` is.
+    ``{…}`` in the template is an expression, replaced by its mean over ``data``. Without a template
+    the name is the value of the dimension ``dim``; without that, the values of all axes of the
+    study for which ``data`` has only one.
     """
     if template is not None:
         known = names(data)
         return _PLACEHOLDER.sub(
-            lambda found: f"{np.nanmean(np.asarray(evaluate(found[1], known))):.3g}", template
+            lambda match: f"{np.nanmean(np.asarray(evaluate(match[1], known))):.3g}", template
         )
     axes = [dim] if dim else json.loads(data.attrs.get("axes", "[]"))
-    return ", ".join(_at(data[axis]) for axis in axes if data[axis].ndim == 0)
+    return ", ".join(_value(data[axis]) for axis in axes if data[axis].ndim == 0)
 
 
-def _at(value: xr.DataArray) -> str:
+def _value(value: xr.DataArray) -> str:
     unit = value.attrs.get("units", "1")
     text = readable(value.item(), unit, digits=4) if unit != "1" else str(value.item())
     return f"{value.name} = {text}"
 
 
-def scaled(text: str, values: xr.DataArray, given: str | None) -> tuple[float, str]:
+def scaled(text: str, values: xr.DataArray, axis_label: str | None) -> tuple[float, str]:
     """Return the factor and the label of an axis that shows the expression ``text``.
 
-    A bare variable is brought to a unit with a prefix, unless the label is given.
+    A bare variable is converted to a unit with a prefix, unless ``axis_label`` is given.
     """
-    if given is not None:
-        return 1.0, given
+    if axis_label is not None:
+        return 1.0, axis_label
     factor, name = axis_unit(values.values, values.attrs.get("units", "1"))
     return factor, f"{text} [{name}]" if name else text
 
 
 def set_scales(axes: Axes, log: Sequence[str]) -> None:
-    """Make axes logarithmic that show anything positive, others begin at zero or below."""
+    """Make the axes in ``log`` logarithmic if they show a positive value; begin others at 0."""
     for which in ("x", "y"):
         low, _ = getattr(axes, f"get_{which}lim")()
         if which in log and np.isfinite(getattr(axes.dataLim, f"minpos{which}")):
@@ -189,8 +166,8 @@ def set_scales(axes: Axes, log: Sequence[str]) -> None:
 
 
 def write_csv(stem: Path, rows: Sequence[dict[str, object]], heads: Sequence[str] = ()) -> Path:
-    """Write the numbers drawn beside their figure; ``heads`` are there even if no row is."""
-    path = stem.with_name(f"{stem.name}.csv")
+    """Write the numbers drawn beside their figure, under ``heads`` even if there is no row."""
+    path = Path(f"{stem}.csv")
     heads = list(dict.fromkeys([*heads, *(head for row in rows for head in row)]))
     with storage_errors(path), path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, heads)

@@ -1,4 +1,4 @@
-"""The kernel in Fourier space, as the cells have it, against its symbol."""
+"""The compliance of the cells in Fourier space, beside the kernel's symbol."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from pydantic import Field
 
 from pellicle import Run, displacement, hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Output
+from pellicle.components import Output, Runs
 from pellicle.errors import StorageError
 from pellicle.model.expression import evaluate
-from pellicle.results.derived import Runs, names
+from pellicle.results.derived import names
 
-from .base import Graph, set_scales
+from .base import XYFigure, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _SYMBOLS = 40
 
 
-class Compliance(Graph):
+class Compliance(XYFigure):
     """Compliance of the cells against the kernel's symbol, over the wavenumber.
 
     Symbols are the Fourier transform of the displacement under a pressure on one cell, along x,
@@ -38,18 +38,18 @@ class Compliance(Graph):
     x: Annotated[str, Field(description="expression for the horizontal axis")] = "q"
     y: Annotated[str, Field(description="expression for the vertical axis")] = "compliance"
 
-    def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
-        """Draw, and yield the rows of the numbers drawn."""
+    def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        """Draw the curves, and yield the rows of the numbers drawn."""
         for number, (name, picked) in enumerate(self.picked(runs.table)):
             try:
-                said = runs.open(str(picked["run"].item())).attrs["configuration"]
+                configuration = runs.open(str(picked["run"].item())).attrs["configuration"]
             except StorageError:
                 continue
-            run = Run.from_json(said)
+            run = Run.from_json(configuration)
             q, of_cells = of_cells_along_x(run)
-            # A grid one cell across has no waves.
+            # A grid with a single cell along x has no waves.
             shown = np.unique(np.geomspace(1, max(1, q.size), _SYMBOLS).astype(int)) - 1
-            for values, what, style in (
+            for values, series, style in (
                 (of_cells, "cells", "o"),
                 (run.kernel.compliance(q), "symbol", "-"),
             ):
@@ -63,10 +63,10 @@ class Compliance(Graph):
                     markerfacecolor="white",
                     markevery=list(shown) if style == "o" else None,
                     linewidth=1.0,
-                    label=(name or what) if style == "o" else None,
+                    label=(name or series) if style == "o" else None,
                 )
                 for px, py in zip(x, y, strict=True):
-                    yield {"curve": name, "series": what, "x": px, "y": py}
+                    yield {"curve": name, "series": series, "x": px, "y": py}
         axes.plot([], [], color="0.4", linewidth=1.0, label="symbol")
         axes.set(
             xlabel=self.x_label or (f"{self.x} [rad/m]" if self.x == "q" else self.x),
@@ -83,11 +83,11 @@ class Compliance(Graph):
 
 
 def of_cells_along_x(run: Run) -> tuple[Array, Array]:
-    """Return q > 0 [rad/m] along x, and the compliance [m/Pa] that the cells of a run have there.
+    """Return wavenumbers q > 0 along x [rad/m] and the compliance of the cells there [m/Pa].
 
-    It is the discrete Fourier transform of the displacement under a unit pressure on the cell at
-    the middle, cut off at half of the domain to each side: on a free boundary it swings about the
-    symbol by about s/L where the length s of the tension is not small against the domain L.
+    The compliance is the discrete Fourier transform of the displacement under a unit pressure on
+    the cell in the middle, cut off at half of the domain on each side. On a free boundary it
+    oscillates about the symbol by about s/L, where s is the length of the tension and L the domain.
     """
     middle = tuple(n // 2 for n in run.grid.shape)
     pressure = np.zeros(run.grid.shape)

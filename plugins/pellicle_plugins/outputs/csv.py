@@ -6,12 +6,11 @@ import csv
 from collections.abc import Callable
 from os import SEEK_END
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from pellicle import hookimpl
-from pellicle.components import Output, Place
+from pellicle.components import Output, Runs
 from pellicle.files import storage_errors
-from pellicle.results.result import Result
 from pellicle.results.variables import header
 
 if TYPE_CHECKING:
@@ -21,23 +20,26 @@ _TEXT: dict[str, Any] = {"newline": "", "encoding": "utf-8"}
 
 
 class Csv(Output):
-    """Table with one row a step; units in the header."""
+    """Table with one row for each step; units in the header."""
 
     type: Literal["csv"] = "csv"
+    scope: ClassVar[Literal["run"]] = "run"
+    shares_stem: ClassVar[bool] = True
 
-    def endings(self) -> tuple[str, ...]:
-        """Return that of the table."""
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """That of the table."""
         return (".csv",)
 
-    def step(self, place: Place, step: xr.Dataset) -> None:
+    def step(self, record: xr.Dataset, stem: Path) -> None:
         """Write the row of the step, the first with a header."""
-        path = place.file(".csv")
+        path = Path(f"{stem}.csv")
         row = {
             header(str(name), variable): variable.item()
-            for name, variable in step.data_vars.items()
+            for name, variable in record.data_vars.items()
             if variable.dims == ("step",)
         }
-        number = step["step"].item()
+        number = record["step"].item()
         with storage_errors(path), path.open("a+" if number > 1 else "w+", **_TEXT) as file:
             file.seek(0)
             # Steps that an earlier version solved may have fewer columns.
@@ -48,9 +50,9 @@ class Csv(Output):
                 writer.writeheader()
             writer.writerow({"step": number, **row})
 
-    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
-        """Name the file, which is complete."""
-        return (place.file(".csv"),)
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Return the file, which is complete."""
+        return (Path(f"{stem}.csv"),)
 
 
 @hookimpl

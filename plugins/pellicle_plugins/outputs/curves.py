@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
@@ -11,19 +11,18 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle import hookimpl
-from pellicle.analysis import Extrapolation, extrapolate
+from pellicle.analysis import extrapolate
 from pellicle.arrays import Array
-from pellicle.components import Output, Place
+from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError
 from pellicle.model.base import Model
 from pellicle.model.expression import names_in
-from pellicle.results.derived import Runs
 from pellicle_plugins.analytic.reference import exact
 
 from .base import (
-    Graph,
     Log,
     Reference,
+    XYFigure,
     along,
     label,
     one_axis,
@@ -51,9 +50,9 @@ _Texts = Annotated[
 
 
 class Published(Model):
-    """Points or a line of somebody else, to compare with."""
+    """Published points or a line, to compare with."""
 
-    label: Annotated[str, Field(description="its name in the legend")]
+    label: Annotated[str, Field(description="name in the legend")]
     x: Annotated[tuple[float, ...], Field(min_length=1, description="x as drawn")]
     y: Annotated[tuple[float, ...], Field(min_length=1, description="y as drawn")]
     style: Annotated[Literal["points", "line"], Field(description="how it is drawn")] = "points"
@@ -65,7 +64,7 @@ class Published(Model):
         return self
 
 
-class Curves(Graph):
+class Curves(XYFigure):
     """One number against another over the runs, one curve for each value of an axis.
 
     ``x`` and ``y`` are arithmetic over the columns of the table, the numbers of the configuration
@@ -109,64 +108,70 @@ class Curves(Graph):
             raise ConfigError(f"{self.over!r} is by already; give another axis", "over")
         return self
 
-    def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
-        """Draw the runs; by is, if absent, the only axis beside step, or step if x is that axis."""
-        long = [str(dim) for dim, size in table.sizes.items() if size > 1 and dim != self.over]
-        by = self.by
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the figure and its numbers.
+
+        ``by`` is by default the only long axis beside step, or step if ``x`` is that axis.
+        """
+        sizes, by = runs.table.sizes, self.by
+        long = [str(dim) for dim, size in sizes.items() if size > 1 and dim != self.over]
         if by is None and len(long) == 2 and long[1] == "step":
             by = "step" if long[0] in names_in(self.x) else long[0]
-        return super(Curves, self.model_copy(update={"by": by})).study(place, table)
+        return super(Curves, self.model_copy(update={"by": by})).write(runs, stem)
 
-    def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
-        """Draw, and yield the rows of the numbers drawn."""
-        true = exact(runs) if self.reference else None
-        table = runs.table
-        for field, chosen in (("by", self.by), ("over", self.over)):
-            one_axis(table.sizes, chosen, field)
-        x = runs.column(self.x)
+    def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        """Draw the curves, and yield the rows of the numbers drawn."""
+        one_axis(runs.table.sizes, self.by, "by")
+        one_axis(runs.table.sizes, self.over, "over")
+        x, *ys = (runs.column(text) for text in (self.x, *self.y))
         factor_x, x_label = scaled(self.x, x, self.x_label)
-        ys = [runs.column(text) for text in self.y]
         factor_y, y_label = scaled(self.y[0], ys[0], self.y_label)
-        factors = factor_x, factor_y
-        for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
-            series = self.series[number] if self.series else text
-            style = _Style(f"C{number}", number, true is not None)
-            twin = (true.column(self.x), true.column(text)) if true else None
-            for index, at in enumerate(along(table, self.by)):
-                here = table.isel(at)
-                name = label(self.label, here, self.by)
-                if self.by:
-                    style = replace(style, colour=f"C{index}")
-                # Colours tell the values of by, markers the several y.
-                said = "" if number else name
-                if not self.by and (self.series or len(ys) > 1):
-                    said = series
-                curve = self._curve(here, _at(x, at), _at(y, at))
-                curve.draw(axes, said, style, factors)
-                head = {"curve": name, "series": series}
-                yield from ({**head, **row} for row in curve.rows())
-                if self.extrapolate:
-                    _enough(_at(x, at))
-                # An interrupted study may not have them all yet.
-                if self.extrapolate and np.unique(curve.x).size >= _GRIDS:
-                    limit = _Limit.of(curve)
-                    limit.draw(axes, style, factors)
-                    yield {**head, "series": f"{series}, extrapolated", **limit.row()}
-                if twin is not None:
-                    line = self._curve(here, _at(twin[0], at), _at(twin[1], at)).ordered()
-                    line.draw(axes, "", _Style(style.colour, None), factors)
-                    head["series"] += ", semi-analytic"
-                    yield from ({**head, **row} for row in line.rows())
-            if self.by and len(ys) > 1:
-                _NOTHING.draw(axes, series, replace(style, colour="0.4"), factors)
-        if true is not None:
-            _NOTHING.draw(axes, "semi-analytic", _Style("0.4", None), factors)
-        yield from self._draw_published(axes)
+        lines = list(self._lines(runs, x, ys))
+        for line in lines:
+            line.draw(axes, factor_x, factor_y)
+        published = list(self._draw_published(axes))
         y_label = y_label if len(ys) == 1 else self.y_label or ""
         axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
         set_scales(axes, self.log)
         if axes.get_legend_handles_labels()[1]:
             axes.legend(frameon=False, fontsize="small")
+        for line in lines:
+            yield from line.rows()
+        yield from published
+
+    def _lines(
+        self, runs: Runs, x: xr.DataArray, ys: Sequence[xr.DataArray]
+    ) -> Iterator[_Line | _Limit]:
+        """Yield what is drawn, in order; entries that only the legend shows have no points."""
+        reference = exact(runs) if self.reference else None
+        for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
+            series = self.series[number] if self.series else text
+            exact_x, exact_y = (
+                (reference.column(self.x), reference.column(text)) if reference else (x, y)
+            )
+            for index, point in enumerate(along(runs.table, self.by)):
+                part = runs.table.isel(point)
+                name = label(self.label, part, self.by)
+                # Colours distinguish the values of by, markers the several y.
+                style = _Style(f"C{index if self.by else number}", number, reference is not None)
+                legend = "" if number else name
+                if not self.by and (self.series or len(ys) > 1):
+                    legend = series
+                points = self._points(part, _at(x, point), _at(y, point))
+                yield _Line(points, style, legend, name, series)
+                if self.extrapolate:
+                    _require_grids(_at(x, point))
+                    # An interrupted study may lack some of them.
+                    if np.unique(points.x).size >= _GRIDS:
+                        yield _Limit(points, style, name, f"{series}, extrapolated")
+                if reference:
+                    points = self._points(part, _at(exact_x, point), _at(exact_y, point))
+                    thin = _Style(style.colour, None)
+                    yield _Line(points.ordered(), thin, "", name, f"{series}, semi-analytic")
+            if self.by and len(ys) > 1:
+                yield _Line(_NO_POINTS, _Style("0.4", number, reference is not None), series)
+        if reference:
+            yield _Line(_NO_POINTS, _Style("0.4", None), "semi-analytic")
 
     def _draw_published(self, axes: Axes) -> Iterator[dict[str, object]]:
         for number, other in enumerate(self.published):
@@ -183,21 +188,21 @@ class Curves(Graph):
             for x, y in zip(other.x, other.y, strict=True):
                 yield {"curve": other.label, "series": "published", "x": x, "y": y}
 
-    def _curve(self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> _Curve:
+    def _points(self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> _Points:
         """Return the points of one curve, in the order of the table."""
         import xarray as xr
 
         x, y, good = xr.broadcast(x, y, table["converged"].astype(float))
         if self.over is not None:
-            done = (x + y).notnull()
-            x, y, good = (each.where(done) for each in (x, y, good))
+            finished = (x + y).notnull()
+            x, y, good = (column.where(finished) for column in (x, y, good))
             columns = [
                 x.mean(self.over),
                 y.mean(self.over),
                 y.min(self.over),
                 y.max(self.over),
                 good.min(self.over).fillna(0.0),
-                done.sum(self.over),
+                finished.sum(self.over),
             ]
         else:
             columns = [x, y, y, y, good.fillna(0.0), xr.ones_like(x)]
@@ -208,63 +213,20 @@ class Curves(Graph):
                 "over for mean and range",
                 "by",
             )
-        values = [column.values.ravel().astype(float) for column in columns]
-        return _Curve(*_finite(*values))
-
-
-@dataclass(frozen=True)
-class _Limit:
-    """Where a curve goes as x goes to 0."""
-
-    fit: Extrapolation
-    reach: float
-    """Largest x of the curve."""
-    good: bool
-    """Whether every run converged."""
-
-    @classmethod
-    def of(cls, curve: _Curve) -> _Limit:
-        fit = extrapolate(curve.x, curve.y)
-        return cls(fit, float(curve.x.max()), bool((curve.good == 1).all()))
-
-    def draw(self, axes: Axes, style: _Style, factors: tuple[float, float]) -> None:
-        x = np.linspace(0, self.reach, 200)
-        y = np.append(self.fit.limit, self.fit(x[1:]))
-        axes.plot(x * factors[0], y * factors[1], color=style.colour, linewidth=0.8, zorder=1)
-        spread = [self.fit.limit - self.fit.lowest], [self.fit.highest - self.fit.limit]
-        axes.errorbar(
-            [0.0],
-            [self.fit.limit * factors[1]],
-            np.maximum(spread, 0.0) * factors[1],
-            fmt="_",
-            color=style.colour,
-            markersize=12,
-            linewidth=0.8,
-            capsize=3,
-            clip_on=False,
-        )
-
-    def row(self) -> dict[str, object]:
-        return {
-            "x": 0.0,
-            "y": self.fit.limit,
-            "y_lowest": self.fit.lowest,
-            "y_highest": self.fit.highest,
-            "converged": self.good,
-            "exponent": self.fit.exponent,
-        }
+        values = np.array([column.values.ravel().astype(float) for column in columns])
+        return _Points(*values[:, np.isfinite(values).all(axis=0)])
 
 
 @dataclass(frozen=True)
 class _Style:
     colour: str
     number: int | None
-    """Which of the markers and line styles; None for a plain thin line."""
+    """Index of the marker and line style; None for a plain thin line."""
     scattered: bool = False
     """Whether markers alone are drawn, beside a line of something else."""
 
     def keywords(self) -> dict[str, Any]:
-        """Return what ``Axes.plot`` takes."""
+        """Return keywords of ``Axes.plot``."""
         if self.number is None:
             return {"color": self.colour, "linewidth": 1.0, "zorder": 1}
         return {
@@ -278,7 +240,7 @@ class _Style:
 
 
 @dataclass(frozen=True)
-class _Curve:
+class _Points:
     x: Array
     y: Array
     low: Array
@@ -286,40 +248,88 @@ class _Curve:
     good: Array
     """1 where every run converged."""
     runs: Array
-    """How many runs each point is the mean of."""
+    """Number of runs that each point is the mean of."""
 
-    def ordered(self) -> _Curve:
+    def ordered(self) -> _Points:
         """Return the same points in the order of x."""
         order = np.argsort(self.x)
-        return _Curve(*(getattr(self, one.name)[order] for one in fields(self)))
+        return _Points(*(getattr(self, field.name)[order] for field in fields(self)))
 
-    def draw(self, axes: Axes, name: str, style: _Style, factors: tuple[float, float]) -> None:
-        x, y = self.x * factors[0], self.y * factors[1]
-        axes.plot(x, y, label=name or None, **style.keywords())
+
+_NO_POINTS = _Points(*[np.empty(0)] * 6)
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Points, as drawn and as written in columns ``curve`` and ``series``."""
+
+    points: _Points
+    style: _Style
+    legend: str
+    curve: str = ""
+    series: str = ""
+
+    def draw(self, axes: Axes, factor_x: float, factor_y: float) -> None:
+        points, style = self.points, self.style
+        x, y = points.x * factor_x, points.y * factor_y
+        axes.plot(x, y, label=self.legend or None, **style.keywords())
         if style.number is None:
             return
-        bad = self.good < 1
+        bad = points.good < 1
         axes.plot(x[bad], y[bad], "x", color="red", markersize=9, label="_not converged")
-        # The range of the first series only: bands upon bands cannot be read.
-        if style.number == 0 and (self.runs > 1).any():
-            low, high = self.low * factors[1], self.high * factors[1]
+        # The range of the first series only: several bands cannot be told apart.
+        if style.number == 0 and (points.runs > 1).any():
+            low, high = points.low * factor_y, points.high * factor_y
             axes.fill_between(x, low, high, color=style.colour, alpha=0.2, linewidth=0)
 
     def rows(self) -> Iterator[dict[str, object]]:
-        for x, y, low, high, good, runs in zip(
-            *(getattr(self, one.name) for one in fields(self)), strict=True
-        ):
-            row: dict[str, object] = {"x": x, "y": y}
+        columns = (getattr(self.points, field.name) for field in fields(self.points))
+        for x, y, low, high, good, runs in zip(*columns, strict=True):
+            row: dict[str, object] = {"curve": self.curve, "series": self.series, "x": x, "y": y}
             if runs > 1:
                 row |= {"y_lowest": low, "y_highest": high, "runs": int(runs)}
             yield row | {"converged": bool(good)}
 
 
-_NOTHING = _Curve(*[np.empty(0)] * 6)
-"""For the legend."""
+class _Limit:
+    """The limit of a curve for x → 0."""
+
+    def __init__(self, points: _Points, style: _Style, curve: str, series: str) -> None:
+        self._points, self._style = points, style
+        self._fit = extrapolate(points.x, points.y)
+        self._head = {"curve": curve, "series": series}
+
+    def draw(self, axes: Axes, factor_x: float, factor_y: float) -> None:
+        fit, colour = self._fit, self._style.colour
+        x = np.linspace(0, float(self._points.x.max()), 200)
+        y = np.append(fit.limit, fit(x[1:]))
+        axes.plot(x * factor_x, y * factor_y, color=colour, linewidth=0.8, zorder=1)
+        spread = [fit.limit - fit.lowest], [fit.highest - fit.limit]
+        axes.errorbar(
+            [0.0],
+            [fit.limit * factor_y],
+            np.maximum(spread, 0.0) * factor_y,
+            fmt="_",
+            color=colour,
+            markersize=12,
+            linewidth=0.8,
+            capsize=3,
+            clip_on=False,
+        )
+
+    def rows(self) -> Iterator[dict[str, object]]:
+        yield {
+            **self._head,
+            "x": 0.0,
+            "y": self._fit.limit,
+            "y_lowest": self._fit.lowest,
+            "y_highest": self._fit.highest,
+            "converged": bool((self._points.good == 1).all()),
+            "exponent": self._fit.exponent,
+        }
 
 
-def _enough(x: xr.DataArray) -> None:
+def _require_grids(x: xr.DataArray) -> None:
     """Refuse a curve over too few grids to be extrapolated."""
     if (count := np.unique(x).size) < _GRIDS:
         raise ConfigError(
@@ -329,14 +339,8 @@ def _enough(x: xr.DataArray) -> None:
         )
 
 
-def _finite(*columns: Array) -> list[Array]:
-    """Return the columns without the rows that have a NaN or an infinite value."""
-    good = np.all([np.isfinite(column) for column in columns], axis=0)
-    return [column[good] for column in columns]
-
-
-def _at(column: xr.DataArray, at: dict[str, int]) -> xr.DataArray:
-    return column.isel({dim: index for dim, index in at.items() if dim in column.dims})
+def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:
+    return column.isel({dim: index for dim, index in point.items() if dim in column.dims})
 
 
 @hookimpl

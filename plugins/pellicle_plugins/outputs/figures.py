@@ -1,40 +1,37 @@
-"""Pictures of a run."""
+"""Figures of a run or a study."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import ClassVar, Literal
 
 from pellicle import hookimpl
-from pellicle.components import Output, Place
+from pellicle.components import Output, Runs
 from pellicle.report.plotting import FIGURES, STUDY_FIGURES, save_figures, save_study_figures
 from pellicle.results.result import Result
 
 from .base import Formats
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 class Figures(Output):
     """Pressure map, profiles through the centre, force and area curves."""
 
     type: Literal["figures"] = "figures"
+    shares_stem: ClassVar[bool] = True
     formats: Formats = ("png",)
 
-    def endings(self) -> tuple[str, ...]:
-        """Return those of the figures of a run and of a study."""
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Those of the figures of a run and of a study."""
         names = dict.fromkeys((*FIGURES, *STUDY_FIGURES))
         return tuple(f"-{name}.{format_}" for name in names for format_ in self.formats)
 
-    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
-        """Draw the result and return the files."""
-        return save_figures(result, place.directory, place.name, self.formats)
-
-    def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
-        """Draw the table and return the files."""
-        return save_study_figures(table, place.directory, place.name, self.formats)
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Draw the result of a run, or the table of a study."""
+        if runs.axes is not None:
+            return save_study_figures(runs.table, stem.parent, stem.name, self.formats)
+        return save_figures(Result(runs.open()), stem.parent, stem.name, self.formats)
 
 
 @hookimpl

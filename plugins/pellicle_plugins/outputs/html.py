@@ -1,4 +1,4 @@
-"""One web page for a run or a study, with all that it needs inside."""
+"""A self-contained web page of a run or a study."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import shlex
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import tomli_w
 from pydantic import Field
 
-from pellicle import Grid, Loading, hookimpl
-from pellicle.components import Output, Place
+from pellicle import Grid, hookimpl
+from pellicle.components import Output, Runs
 from pellicle.config.describe import Input, inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
@@ -31,7 +31,7 @@ from pellicle.report.page import (
     page,
     side,
 )
-from pellicle.report.page import Field as Shown
+from pellicle.report.page import Field as MapField
 from pellicle.report.plotting import (
     FIGURES,
     STUDY_FIGURES,
@@ -45,7 +45,7 @@ from pellicle.results.result import Result
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import names_of
-from pellicle.studies.summary import coarse, each_run, failures, reasons, standing
+from pellicle.studies.summary import coarse, failures, progress_of, reasons, runs_of
 from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
@@ -53,11 +53,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 FIELDS = {
-    "pressure": Shown("contact pressure", "Pa", blank=True),
-    "gap": Shown("gap", "m", "Blues", power=0.5),
+    "pressure": MapField("contact pressure", "Pa", blank=True),
+    "gap": MapField("gap", "m", "Blues", power=0.5),
 }
-"""What is mapped, by the name of its variable."""
-_EFFORT = names_of("effort", "residual")
+"""The variables that are mapped."""
 _CURVES = {
     "profile": "Pressure and gap of the last step along x through the centre.",
     "force_depth": "Force against depth over the load steps.",
@@ -68,11 +67,12 @@ _CURVES = {
 class Html(Output):
     """Web page of a run or a study: status, numbers, zoomable maps, figures, inputs, provenance.
 
-    It is one file and loads nothing, so it can be kept, sent and viewed without a network. Of a
+    It is one file that loads nothing, so it can be kept, sent and viewed without a network. Of a
     study it shows the last step of each run.
     """
 
     type: Literal["html"] = "html"
+    shares_stem: ClassVar[bool] = True
     points: Annotated[
         int,
         Field(
@@ -91,79 +91,76 @@ class Html(Output):
         ),
     ] = 64
 
-    def endings(self) -> tuple[str, ...]:
-        """Return that of the page."""
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """That of the page."""
         return (".html",)
 
-    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
-        """Write the page of a run."""
-        data = result.dataset
-        said = json.loads(place.configuration)
-        sections = [
-            Section("Status", [_status(result)]),
-            Section("Results", _steps(data)),
-            Section("Maps", [self._maps_of_steps(data, Grid(**said["grid"]))]),
-            Section("Curves", _pictures_of(result)),
-            Section("Inputs", [_inputs(list(inputs(said)))]),
-            Section("Provenance", [*_origin(data.attrs, said)]),
-            Section("How to reproduce it", [*_reproduce(place)]),
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the page."""
+        table, path = runs.table, Path(f"{stem}.html")
+        given = json.loads(runs.configuration)
+        if runs.axes is None:
+            data, run = runs.open(), given
+            result = Result(data)
+            sections = [
+                Section("Status", [_status(result)]),
+                Section("Results", _steps(data)),
+                Section("Maps", [self._maps_of_steps(data, Grid(**run["grid"]))]),
+                Section("Curves", _pictures_of(result)),
+                Section("Inputs", [_inputs(list(inputs(run)))]),
+            ]
+        else:
+            run = json.loads(table.attrs[FIRST_RUN])
+            rows = list(runs_of(table))
+            frames = dict(self._frames_of_runs(rows, stem.parent / "runs"))
+            sections = [
+                Section("Status", [_status_of_study(table, len(rows))]),
+                Section("Runs", [_runs(table, rows, list(frames))]),
+                Section("Maps", _maps_of_runs(list(frames.values()), len(rows))),
+                Section("Curves", _pictures_of_study(table)),
+                Section("Inputs", [_inputs(_varied(table, list(inputs(run))))]),
+            ]
+        sections += [
+            Section("Provenance", [*_origin(table.attrs, run)]),
+            Section("How to reproduce it", [*_reproduce(given, stem)]),
         ]
-        return _write(place, data.attrs, "Run", sections)
-
-    def study(self, place: Place, table: xr.Dataset) -> tuple[Path, ...]:
-        """Write the page of a study."""
-        said = json.loads(table.attrs[FIRST_RUN])
-        runs = list(each_run(table))
-        mapped = dict(self._frames_of_runs(runs, place.directory / "runs"))
-        shown = {index: number for number, index in enumerate(mapped)}
-        maps = (
-            Maps(
-                f"The last step of {_some(len(mapped), len(runs), 'run')}, each in colours over "
-                "its own range.",
-                "run",
-                tuple(FIELDS.values()),
-                tuple(mapped.values()),
-                shared=False,
-            ),
-        )
-        sections = [
-            Section("Status", [_status_of_study(table, len(runs))]),
-            Section("Runs", [_runs(table, runs, shown)]),
-            Section("Maps", maps if mapped else ()),
-            Section("Curves", _pictures_of_study(table)),
-            Section("Inputs", [_inputs(_varied(table, list(inputs(said))))]),
-            Section("Provenance", [*_origin(table.attrs, said)]),
-            Section("How to reproduce it", [*_reproduce(place)]),
-        ]
-        return _write(place, table.attrs, "Study", sections)
+        date = table.attrs["date"].replace("T", " ").replace("+00:00", " UTC")
+        kind = "Run" if runs.axes is None else "Study"
+        with atomic_write(path) as part:
+            text = page(table.attrs["title"] or stem.name, sections, f"{kind} of pellicle, {date}")
+            part.write_text(text, encoding="utf-8")
+        return (path,)
 
     def _maps_of_steps(self, data: xr.Dataset, grid: Grid) -> Maps:
         steps = data.sizes["step"]
         chosen = self._chosen(steps)
         factor, unit = axis_unit(data["depth"].values, "m")
         points = side(self.points, len(chosen) * len(FIELDS))
-        made = []
+        frames = []
         for index in chosen:
             step = without_round_off(data.isel(step=index))
             label = f"{index + 1}: depth {step['depth'].item() * factor:.4g} {unit}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
-            made.append(frame(label, grid, [step[name].values for name in FIELDS], points))
+            frames.append(frame(label, grid, [step[name].values for name in FIELDS], points))
         caption = f"Contact pressure and gap in {_some(len(chosen), steps, 'load step')}."
-        return Maps(caption, "load step", tuple(FIELDS.values()), made, begin=len(made) - 1)
+        return Maps(caption, "load step", tuple(FIELDS.values()), frames, begin=len(frames) - 1)
 
-    def _frames_of_runs(self, runs: list[xr.Dataset], folder: Path) -> Iterator[tuple[int, Frame]]:
-        """Yield the maps of the last step of runs, by their place among all."""
+    def _frames_of_runs(self, rows: list[xr.Dataset], folder: Path) -> Iterator[tuple[int, Frame]]:
+        """Yield the maps of the last step of runs, by their index among all."""
         import xarray as xr
 
-        there = [index for index, row in enumerate(runs) if standing(row)[0]]
-        chosen = self._chosen(len(there))
+        solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
+        chosen = self._chosen(len(solved))
         points = side(self.points, len(chosen) * len(FIELDS))
-        for index in (there[number] for number in chosen):
-            row = runs[index]
-            path = folder / f"{row['run'].item()}.h5"
-            last = standing(row)[0] - 1
+        for index in (solved[number] for number in chosen):
+            row = rows[index]
+            last = progress_of(row)[0] - 1
             try:
-                attributes, fields = storage.fields(path, RESULT_FIELDS, last)
+                # Only what is drawn is read, not all steps.
+                attributes, fields = storage.fields(
+                    folder / f"{row['run'].item()}.h5", RESULT_FIELDS, last
+                )
             except StorageError:
                 continue
             grid = Grid(**json.loads(attributes["configuration"])["grid"])
@@ -178,64 +175,56 @@ class Html(Output):
             yield index, frame(_named(row), grid, [drawn[name].values for name in FIELDS], points)
 
     def _chosen(self, count: int) -> list[int]:
-        """Return which of so many are mapped: all, or evenly spaced ones up to the last."""
-        many = min(count, self.frames)
-        return [(count * (number + 1) + many - 1) // many - 1 for number in range(many)]
+        """Return the indices that are mapped: all, or evenly spaced ones up to the last."""
+        number = min(count, self.frames)
+        return [(count * (index + 1) + number - 1) // number - 1 for index in range(number)]
 
 
-def _some(shown: int, there: int, what: str) -> str:
-    if shown == there:
-        return f"each {what}"
-    return f"{shown} of {there} {what}s"
-
-
-def _write(
-    place: Place, attributes: dict[str, str], what: str, sections: list[Section]
-) -> tuple[Path, ...]:
-    path = place.file(".html")
-    made = page(
-        attributes["title"] or place.name,
-        sections,
-        f"{what} of pellicle, {attributes['date'].replace('T', ' ').replace('+00:00', ' UTC')}",
+def _maps_of_runs(frames: list[Frame], count: int) -> list[Maps]:
+    caption = (
+        f"The last step of {_some(len(frames), count, 'run')}, each in colours over its own range."
     )
-    with atomic_write(path) as part:
-        part.write_text(made, encoding="utf-8")
-    return (path,)
+    maps = Maps(caption, "run", tuple(FIELDS.values()), frames, shared=False)
+    return [maps] if frames else []
+
+
+def _some(shown: int, count: int, what: str) -> str:
+    return f"each {what}" if shown == count else f"{shown} of {count} {what}s"
 
 
 def _status(result: Result) -> Notice:
-    wanted = len(Loading(**result.configuration["loading"]).values)
+    wanted = result.planned_steps
     done, failed = result.dataset.sizes["step"], result.failures()
-    said = []
+    sentences = []
     if done < wanted:
-        said.append(f"The run ended early: {done} of {wanted} load steps are there.")
+        sentences.append(f"The run ended early: {done} of {wanted} load steps are there.")
     if failed:
-        said.append(f"{len(failed)} of {done} load steps did not converge: do not rely on them.")
+        sentences.append(
+            f"{len(failed)} of {done} load steps did not converge: do not rely on them."
+        )
     else:
         steps = "The load step" if done == 1 else f"All {done} load steps"
-        said.append(f"{steps} converged.")
+        sentences.append(f"{steps} converged.")
     if coarse := result.coarse():
-        said.append(f"In {len(coarse)} of {done} the cells are too coarse for the contact.")
+        sentences.append(f"In {len(coarse)} of {done} the cells are too coarse for the contact.")
     details = [f"Step {step}: {message}" for step, message in (*failed, *coarse)]
-    return Notice(" ".join(said), not details and done == wanted, details)
+    return Notice(" ".join(sentences), not details and done == wanted, details)
 
 
 def _status_of_study(table: xr.Dataset, count: int) -> Notice:
-    bad = failures(table)
-    doubts = [*coarse(table)]
-    if not bad:
-        return Notice(f"Every step of all {count} runs converged.", not doubts, doubts)
-    said = f"Not all is well: {bad}."
-    return Notice(said, False, [*reasons(table), *doubts])
+    failed, warnings = failures(table), [*coarse(table)]
+    if not failed:
+        return Notice(f"Every step of all {count} runs converged.", not warnings, warnings)
+    return Notice(f"Not all is well: {failed}.", False, [*reasons(table), *warnings])
 
 
 def _column(name: str, variable: xr.DataArray) -> tuple[Column, float]:
     """Return the head of a variable's column, and the factor to its unit."""
     unit = variable.attrs.get("units", "1")
     factor, unit = axis_unit(variable.values, unit)
-    words = variable.dtype.kind not in "if"
-    said = name if "." in name else name.replace("_", " ")
-    return Column(said, unit, variable.attrs.get("long_name", ""), words), factor
+    head = name if "." in name else name.replace("_", " ")
+    is_text = variable.dtype.kind not in "if"
+    return Column(head, unit, variable.attrs.get("long_name", ""), is_text), factor
 
 
 def _numbers(data: xr.Dataset) -> list[str]:
@@ -246,18 +235,24 @@ def _numbers(data: xr.Dataset) -> list[str]:
     ]
 
 
+def _is_effort(name: str) -> bool:
+    # Prescriptions add residuals of their own.
+    return name in names_of("effort") or name.startswith("residual_")
+
+
 def _steps(data: xr.Dataset) -> list[Table]:
-    """Return the numbers of each load step: what was found, of what shape, and at what effort."""
-    effort = [n for n in _numbers(data) if n in _EFFORT]
+    """Return the numbers of each load step: the result, the shape of the contact, the effort."""
+    effort = [n for n in _numbers(data) if _is_effort(n)]
     shape = [n for n in _numbers(data) if n in names_of("contact")]
-    found = [n for n in _numbers(data) if n not in (*effort, *shape)]
     tables = {
-        "What was found in each load step.": found,
+        "What was found in each load step.": [
+            n for n in _numbers(data) if n not in (*effort, *shape)
+        ],
         "Of what shape the contact is.": shape,
         "How exactly each load step was solved, and at what effort.": effort,
     }
-    # Files of earlier versions do not say the shape.
-    return [_table_of_steps(data, names, said) for said, names in tables.items() if names]
+    # Files of earlier versions lack the shape.
+    return [_table_of_steps(data, names, caption) for caption, names in tables.items() if names]
 
 
 def _table_of_steps(data: xr.Dataset, names: list[str], caption: str) -> Table:
@@ -266,7 +261,7 @@ def _table_of_steps(data: xr.Dataset, names: list[str], caption: str) -> Table:
         column, factor = _column(name, data[name])
         columns.append(column)
         style = ".1e" if name.startswith("residual_") else ".6g"
-        texts.append([_said(value, factor, style) for value in data[name].values.tolist()])
+        texts.append([_text(value, factor, style) for value in data[name].values.tolist()])
     rows = [
         [*cells, _verdict(Status[code].verdict)]
         for *cells, code in zip(*texts, data["status_code"].values, strict=True)
@@ -274,8 +269,8 @@ def _table_of_steps(data: xr.Dataset, names: list[str], caption: str) -> Table:
     return Table(caption, [*columns, Column("status", words=True)], rows)
 
 
-def _said(value: Any, factor: float, style: str = ".6g") -> str:
-    """Return a number in its unit; what counts something, or is a text, as it is."""
+def _text(value: Any, factor: float, style: str = ".6g") -> str:
+    """Return a float in its unit, and counts and texts unchanged."""
     return (
         format(value * factor, style if value else "g") if isinstance(value, float) else str(value)
     )
@@ -285,24 +280,28 @@ def _verdict(word: str) -> Cell:
     return Cell(word, bad=word != "converged")
 
 
-def _runs(table: xr.Dataset, runs: list[xr.Dataset], shown: dict[int, int]) -> Table:
-    """Return a row for each run: what is varied, and the numbers of its last step."""
+def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table:
+    """Return a row for each run: what is varied, and the numbers of its last step.
+
+    ``mapped`` has the indices of the runs that are mapped, in the order of their maps.
+    """
     axes = [str(name) for name in table.coords if name != "step"]
+    names = [n for n in _numbers(table) if not _is_effort(n)]
     varied = [_column(name, table[name]) for name in axes]
-    found = [n for n in _numbers(table) if n not in _EFFORT]
-    numbers = [_column(name, table[name]) for name in found]
+    numbers = [_column(name, table[name]) for name in names]
     rows: list[list[str | Cell]] = []
     for index, row in enumerate(runs):
-        done, wanted, word = standing(row)
-        given = [
-            _said(row[name].item(), factor) for name, (_, factor) in zip(axes, varied, strict=True)
+        done, wanted, word = progress_of(row)
+        point = [
+            _text(row[name].item(), factor) for name, (_, factor) in zip(axes, varied, strict=True)
         ]
         last = [
-            _said(row[name].values[done - 1].item(), factor) if done else ""
-            for name, (_, factor) in zip(found, numbers, strict=True)
+            _text(row[name].values[done - 1].item(), factor) if done else ""
+            for name, (_, factor) in zip(names, numbers, strict=True)
         ]
-        name = Cell(str(row["run"].item()), frame=shown.get(index))
-        rows.append([name, *given, f"{done}/{wanted}", *last, _verdict(word)])
+        shown = mapped.index(index) if index in mapped else None
+        run = Cell(str(row["run"].item()), frame=shown)
+        rows.append([run, *point, f"{done}/{wanted}", *last, _verdict(word)])
     columns = [
         Column("run", meaning="name of its file in the folder runs", words=True),
         *(column for column, _ in varied),
@@ -315,7 +314,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], shown: dict[int, int]) -> T
 
 
 def _named(row: xr.Dataset) -> str:
-    """Return what tells a run from the others."""
+    """Return the values that distinguish a run from the others."""
     return ", ".join(
         f"{name} = {readable(value.item(), value.attrs.get('units', '1'))}"
         for name, value in row.coords.items()
@@ -349,18 +348,18 @@ def _picture(draw: Callable[[Axes], None], caption: str) -> Picture:
     return Picture(svg(fill), caption, caption)
 
 
-def _inputs(found: list[Input]) -> Table:
+def _inputs(fields: list[Input]) -> Table:
     columns = [Column(head, words=True) for head in ("field", "value", "meaning")]
     rows = [
         [i.name, i.value, i.meaning]
-        for i in found
+        for i in fields
         if i.name != "title" and not i.name.startswith("outputs.")
     ]
     return Table("All that decides the result, defaults included.", columns, rows)
 
 
-def _varied(table: xr.Dataset, found: list[Input]) -> list[Input]:
-    """Return the inputs of a study: those of its first run, but for those that vary."""
+def _varied(table: xr.Dataset, fields: list[Input]) -> list[Input]:
+    """Return the inputs of a study: its axes, and the inputs of its first run that do not vary."""
     axes = [
         Input(
             str(name),
@@ -370,8 +369,8 @@ def _varied(table: xr.Dataset, found: list[Input]) -> list[Input]:
         for name, axis in table.coords.items()
         if name != "step"
     ]
-    taken = [axis.name for axis in axes]
-    fixed = [i for i in found if not any(f"{i.name}.".startswith(f"{name}.") for name in taken)]
+    names = tuple(f"{axis.name}." for axis in axes)
+    fixed = [field for field in fields if not f"{field.name}.".startswith(names)]
     return [*axes, *fixed]
 
 
@@ -392,9 +391,9 @@ def _origin(attributes: dict[str, str], configuration: dict[str, Any]) -> Iterat
     yield Table("Where the components come from.", [Column(n, words=True) for n in names], rows)
 
 
-def _reproduce(place: Place) -> Iterator[Code]:
-    name, folder = f"{place.name}.toml", place.directory.resolve().name or place.name
-    yield Code(tomli_w.dumps(json.loads(place.configuration)), "All that was asked, in SI.", name)
+def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:
+    name, folder = f"{stem.name}.toml", stem.parent.resolve().name or stem.name
+    yield Code(tomli_w.dumps(configuration), "All that was asked, in SI.", name)
     yield Code(
         f"pellicle run {shlex.quote(name)} -o {shlex.quote(folder)}",
         "With that file in the current folder, and files that it names where their paths say; what "

@@ -11,12 +11,12 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.components import Output
+from pellicle.components import Output, Runs
 from pellicle.report.plotting import extent, save_figure
-from pellicle.results.derived import Runs, as_array
+from pellicle.results.derived import as_array
 from pellicle.units import axis_unit
 
-from .base import Drawing, scaled
+from .base import TableFigure, scaled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +26,7 @@ _PANEL = 2.7
 _COLUMNS = 4
 
 
-class Maps(Drawing):
+class Maps(TableFigure):
     """A field over the domain, one panel for each value of an axis.
 
     Of the other axes of a study the first value is drawn, and of the steps the last. ``field`` is
@@ -34,19 +34,19 @@ class Maps(Drawing):
     ``displacement - depth - gap`` is the profile of the indenter.
     """
 
-    leaves_numbers: ClassVar[bool] = False
+    numbers: ClassVar[bool] = False
 
     type: Literal["maps"] = "maps"
     field: Annotated[str, Field(description="expression for what is drawn")] = "pressure"
     field_label: Annotated[str | None, Field(description="label of the colours")] = None
 
-    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure."""
         import xarray as xr
 
         panels = []
         for name, run in self.steps(runs):
-            # In arithmetic truth values are numbers; alone they stay what they are.
+            # Truth values become numbers in arithmetic; alone they are drawn black on white.
             field = run.get(self.field.strip())
             if field is None or field.dtype != bool:
                 field = as_array(self.field, run)
@@ -72,14 +72,12 @@ class Maps(Drawing):
         if not panels:
             return
         values = np.concatenate([field.values.ravel() for *_, field in panels])
-        yes_or_no = panels[0][2].dtype == bool
-        factor, name = (
-            (1.0, "") if yes_or_no else scaled(self.field, panels[0][2], self.field_label)
-        )
+        is_bool = panels[0][2].dtype == bool
+        factor, name = (1.0, "") if is_bool else scaled(self.field, panels[0][2], self.field_label)
         values = values[np.isfinite(values)] * factor
-        low, high = (values.min(), values.max()) if values.size and not yes_or_no else (0.0, 1.0)
+        low, high = (values.min(), values.max()) if values.size and not is_bool else (0.0, 1.0)
         if low == high:
-            # Colours go from 0, where matplotlib would put 0 in the middle of nothing.
+            # matplotlib would centre a scale without range on its only value.
             low, high = min(low, 0.0), max(high, 0.0 if low else 1.0)
         for axes, (title, run, field) in zip(all_axes, panels, strict=False):
             length, unit = axis_unit(np.append(run["x"].values, run["y"].values), "m")
@@ -87,17 +85,17 @@ class Maps(Drawing):
                 field.transpose("y", "x").values * factor,
                 origin="lower",
                 extent=extent(run["x"].values * length, run["y"].values * length),
-                cmap="binary" if yes_or_no else "viridis",
+                cmap="binary" if is_bool else "viridis",
                 vmin=low,
                 vmax=high,
-                interpolation="nearest" if yes_or_no else None,
-                # The other stage makes four colour values of each cell first.
+                interpolation="nearest" if is_bool else None,
+                # The other stage converts every cell to four colour values first.
                 interpolation_stage="data",
             )
             axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
             axes.set_title(title, fontsize="medium")
             axes.label_outer()
-        if not yes_or_no:
+        if not is_bool:
             figure.colorbar(image, ax=list(all_axes), label=name, shrink=0.85)
         figure.suptitle(self.title)
 

@@ -10,75 +10,73 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import analysis, hookimpl
-from pellicle.components import Output
+from pellicle.components import Output, Runs
 from pellicle.report.plotting import extent, save_figure
-from pellicle.results.derived import Runs
 from pellicle.results.result import Result
 from pellicle.units import axis_unit
 
-from .base import Drawing, write_csv
+from .base import TableFigure, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from pellicle.analysis import Patches
-
 _SIZE = 10.0, 4.2
 _HEADS = "curve", "step", "patch", "area [m2]", "force [N]", "neighbours"
 
 
-class PatchesOutput(Drawing):
-    """Patches of contact, the last that is drawn as a map, and how many are larger than an area.
+class Patches(TableFigure):
+    """Map of the contact patches, and the number of patches that are larger than an area.
 
-    Cells in contact that share an edge are of one patch; on a periodic grid also across the edge
-    of the domain. Each patch is written as CSV beside the figure, the largest first: its area, its
-    force and its number of neighbours, as `pellicle.analysis.coordination` counts them.
+    Cells in contact that share an edge belong to one patch, on a periodic grid also across the edge
+    of the domain. The map is that of the last curve. The patches are written as CSV beside the
+    figure, the largest first: area, force and number of neighbours, which
+    `pellicle.analysis.coordination` counts.
     """
 
     type: Literal["patches"] = "patches"
     connectivity: Annotated[
         Literal[4, 8],
         Field(
-            description="8: cells that share a corner are of one patch too; the number of patches "
-            "in the table is that of 4"
+            description="8: cells that share a corner belong to one patch too; the number of "
+            "patches in the table is that for 4"
         ),
     ] = 4
 
-    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
-        found = [(name, step, self._patches(step)) for name, step in self.steps(runs)]
-        files = save_figure(lambda figure: self._fill(figure, found), stem, self.formats, _SIZE)
-        rows = [row for each in found for row in _rows(*each)]
+        curves = [(name, step, self._patches(step)) for name, step in self.steps(runs)]
+        files = save_figure(lambda figure: self._fill(figure, curves), stem, self.formats, _SIZE)
+        rows = [row for curve in curves for row in _rows(*curve)]
         return (*files, write_csv(stem, rows, _HEADS))
 
-    def _patches(self, step: xr.Dataset) -> Patches:
+    def _patches(self, step: xr.Dataset) -> analysis.Patches:
         return analysis.patches(step["contact"], Result(step).grid, self.connectivity)
 
-    def _fill(self, figure: Figure, found: list[tuple[str, xr.Dataset, Patches]]) -> None:
-        beside, curves = figure.subplots(1, 2)
-        if found:
-            _map(beside, *found[-1])
-        largest = [each.area[0] for *_, each in found if each.count]
-        factor, name = axis_unit(np.array(largest), "m2")
-        for said, _, each in found:
-            rank = np.arange(1, each.count + 1)
-            curves.step(each.area * factor, rank, where="post", marker=".", label=said or None)
-        curves.set(xlabel=f"area of a patch [{name}]", ylabel="patches at least as large")
+    def _fill(self, figure: Figure, curves: list[tuple[str, xr.Dataset, analysis.Patches]]) -> None:
+        left, right = figure.subplots(1, 2)
+        if curves:
+            _map(left, *curves[-1])
+        largest = [patches.area[0] for *_, patches in curves if patches.count]
+        factor, unit = axis_unit(np.array(largest), "m2")
+        for name, _, patches in curves:
+            rank = np.arange(1, patches.count + 1)
+            right.step(patches.area * factor, rank, where="post", marker=".", label=name or None)
+        right.set(xlabel=f"area of a patch [{unit}]", ylabel="patches at least as large")
         if largest:
-            curves.set(xscale="log", yscale="log")
-        curves.grid(alpha=0.3)
-        if curves.get_legend_handles_labels()[1]:
-            curves.legend(frameon=False, fontsize="small")
+            right.set(xscale="log", yscale="log")
+        right.grid(alpha=0.3)
+        if right.get_legend_handles_labels()[1]:
+            right.legend(frameon=False, fontsize="small")
         figure.suptitle(self.title)
 
 
-def _map(axes: Axes, name: str, step: xr.Dataset, found: Patches) -> None:
-    """Draw each patch in a colour of its own, as far as there are enough."""
+def _map(axes: Axes, name: str, step: xr.Dataset, patches: analysis.Patches) -> None:
+    """Draw the patches in 20 colours, used in turn."""
     length, unit = axis_unit(np.append(step["x"].values, step["y"].values), "m")
     axes.imshow(
-        np.ma.masked_equal(found.labels.T, 0) % 20,
+        np.ma.masked_equal(patches.labels.T, 0) % 20,
         origin="lower",
         extent=extent(step["x"].values * length, step["y"].values * length),
         cmap="tab20",
@@ -86,18 +84,19 @@ def _map(axes: Axes, name: str, step: xr.Dataset, found: Patches) -> None:
         interpolation_stage="data",
     )
     axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
-    axes.set_title(f"{name}\n{found.count} patches".lstrip(), fontsize="medium")
+    axes.set_title(f"{name}\n{patches.count} patches".lstrip(), fontsize="medium")
 
 
-def _rows(name: str, step: xr.Dataset, found: Patches) -> Iterator[dict[str, object]]:
+def _rows(name: str, step: xr.Dataset, patches: analysis.Patches) -> Iterator[dict[str, object]]:
     grid = Result(step).grid
-    force = np.bincount(found.labels.ravel(), step["pressure"].values.ravel())[1:] * grid.cell_area
-    neighbours = analysis.coordination(found.labels, grid)
-    for index, values in enumerate(zip(found.area, force, neighbours, strict=True)):
+    pressure = step["pressure"].values.ravel()
+    force = np.bincount(patches.labels.ravel(), pressure)[1:] * grid.cell_area
+    neighbours = analysis.coordination(patches.labels, grid)
+    for index, values in enumerate(zip(patches.area, force, neighbours, strict=True)):
         yield dict(zip(_HEADS, (name, step["step"].item(), index + 1, *values), strict=True))
 
 
 @hookimpl
 def register_outputs(register: Callable[[type[Output]], None]) -> None:
     """Register the patches."""
-    register(PatchesOutput)
+    register(Patches)

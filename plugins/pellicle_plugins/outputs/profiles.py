@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field
 
 from pellicle import hookimpl
-from pellicle.components import Output
-from pellicle.results.derived import Runs, as_array
+from pellicle.components import Output, Runs
+from pellicle.results.derived import as_array
 from pellicle_plugins.analytic.reference import exact_line
 
-from .base import Graph, Reference, scaled, set_scales
+from .base import Reference, XYFigure, scaled, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,7 +22,7 @@ _ACROSS = {"x": "y", "y": "x"}
 _SYMBOLS = 90
 
 
-class Profiles(Graph):
+class Profiles(XYFigure):
     """Fields along x or y through the centre, one curve for each value of an axis.
 
     Of the other axes of a study the first value is drawn, and of the steps the last. ``x`` and
@@ -38,18 +38,16 @@ class Profiles(Graph):
     y: Annotated[str, Field(description="expression for the vertical axis")] = "pressure"
     reference: Reference = None
 
-    def fill(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
-        """Draw, and yield the rows of the numbers drawn."""
+    def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
+        """Draw the curves, and yield the rows of the numbers drawn."""
         factors: tuple[float, float] | None = None
         for number, (name, run) in enumerate(self.steps(runs)):
             line = run.isel({_ACROSS[self.along]: run.sizes[_ACROSS[self.along]] // 2})
             x, y = self._columns(line)
             if factors is None:
-                (fx, x_label), (fy, y_label) = (
-                    scaled(self.x or self.along, x, self.x_label),
-                    scaled(self.y, y, self.y_label),
-                )
-                factors = fx, fy
+                factor_x, x_label = scaled(self.x or self.along, x, self.x_label)
+                factor_y, y_label = scaled(self.y, y, self.y_label)
+                factors = factor_x, factor_y
                 axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
             axes.plot(
                 x.values * factors[0],
@@ -84,13 +82,13 @@ class Profiles(Graph):
         import xarray as xr
 
         x, y = (as_array(text, line) for text in (self.x or self.along, self.y))
-        x, y = (xr.DataArray(0.0 * line[self.along] + each, attrs=each.attrs) for each in (x, y))
+        x, y = (xr.DataArray(0.0 * line[self.along] + axis, attrs=axis.attrs) for axis in (x, y))
         return x, y
 
 
-def _rows(name: str, what: str, x: xr.DataArray, y: xr.DataArray) -> Iterator[dict[str, object]]:
+def _rows(curve: str, series: str, x: xr.DataArray, y: xr.DataArray) -> Iterator[dict[str, object]]:
     for px, py in zip(x.values, y.values, strict=True):
-        yield {"curve": name, "series": what, "x": px, "y": py}
+        yield {"curve": curve, "series": series, "x": px, "y": py}
 
 
 @hookimpl

@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from pellicle import hookimpl
-from pellicle.analysis import Spectrum, spectrum
-from pellicle.components import Output
+from pellicle import analysis, hookimpl
+from pellicle.components import Output, Runs
 from pellicle.report.plotting import save_figure
-from pellicle.results.derived import Runs
 from pellicle.results.result import Result
 
-from .base import Drawing, write_csv
+from .base import TableFigure, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,40 +22,40 @@ if TYPE_CHECKING:
 _STYLES = {"indenter": "--", "displacement": "-"}
 _HEADS = "curve", "series", "wavenumber [rad/m]", "density [m4]", "wave_vectors"
 _ROUND_OFF = 1e-24
+_Curves = list[tuple[str, dict[str, analysis.Spectrum]]]
 
 
-class SpectrumOutput(Drawing):
+class Spectrum(TableFigure):
     """Radially averaged power spectral densities of the indenter and of the displaced surface.
 
-    `pellicle.analysis.spectrum` says how they are defined, and what a free boundary has them
-    multiplied by. An indenter that ends within the domain has none. The numbers are written as CSV
-    beside the figure, with the wave vectors in each ring: density times count, summed up and
-    divided by the area of the domain, is the mean square.
+    `pellicle.analysis.spectrum` defines them, and the window used on a free boundary. An indenter
+    that ends within the domain has no spectrum. The numbers are written as CSV beside the figure,
+    with the number of wave vectors in each ring: density times number, summed up and divided by the
+    area of the domain, is the mean square.
     """
 
     type: Literal["spectrum"] = "spectrum"
 
-    def draw(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
-        found = [(name, _of(step)) for name, step in self.steps(runs)]
-
-        def fill(axes: Axes) -> None:
-            self._fill(axes, found)
-
-        files = save_figure(lambda figure: fill(figure.add_subplot()), stem, self.formats)
-        return (*files, write_csv(stem, list(_rows(found)), _HEADS))
-
-    def _fill(self, axes: Axes, found: list[tuple[str, dict[str, Spectrum]]]) -> None:
-        highest = max(
-            (of.density.max(initial=0.0) for _, each in found for of in each.values()), default=0.0
+        curves = [(name, _spectra(step)) for name, step in self.steps(runs)]
+        files = save_figure(
+            lambda figure: self._fill(figure.add_subplot(), curves), stem, self.formats
         )
-        for number, (name, each) in enumerate(found):
-            for surface, of in each.items():
+        return (*files, write_csv(stem, list(_rows(curves)), _HEADS))
+
+    def _fill(self, axes: Axes, curves: _Curves) -> None:
+        highest = max(
+            (one.density.max(initial=0.0) for _, spectra in curves for one in spectra.values()),
+            default=0.0,
+        )
+        for number, (name, spectra) in enumerate(curves):
+            for surface, spectrum in spectra.items():
                 # Rings that hold nothing but round-off would set the scale.
-                shown = of.density > _ROUND_OFF * highest
+                shown = spectrum.density > _ROUND_OFF * highest
                 axes.plot(
-                    of.wavenumber[shown],
-                    of.density[shown],
+                    spectrum.wavenumber[shown],
+                    spectrum.density[shown],
                     _STYLES[surface],
                     color=f"C{number}",
                     linewidth=1.2,
@@ -76,7 +74,7 @@ class SpectrumOutput(Drawing):
         axes.legend(frameon=False, fontsize="small")
 
 
-def _of(step: xr.Dataset) -> dict[str, Spectrum]:
+def _spectra(step: xr.Dataset) -> dict[str, analysis.Spectrum]:
     displacement = step["displacement"].values
     surfaces = {
         "indenter": displacement - step["depth"].item() - step["gap"].values,
@@ -84,20 +82,21 @@ def _of(step: xr.Dataset) -> dict[str, Spectrum]:
     }
     grid = Result(step).grid
     return {
-        name: spectrum(heights, grid)
+        name: analysis.spectrum(heights, grid)
         for name, heights in surfaces.items()
         if np.isfinite(heights).all()
     }
 
 
-def _rows(found: list[tuple[str, dict[str, Spectrum]]]) -> Iterator[dict[str, object]]:
-    for name, surfaces in found:
-        for surface, of in surfaces.items():
-            for row in zip(of.wavenumber, of.density, of.count, strict=True):
+def _rows(curves: _Curves) -> Iterator[dict[str, object]]:
+    for name, spectra in curves:
+        for surface, spectrum in spectra.items():
+            columns = spectrum.wavenumber, spectrum.density, spectrum.count
+            for row in zip(*columns, strict=True):
                 yield dict(zip(_HEADS, (name, surface, *row), strict=True))
 
 
 @hookimpl
 def register_outputs(register: Callable[[type[Output]], None]) -> None:
     """Register the spectrum."""
-    register(SpectrumOutput)
+    register(Spectrum)

@@ -9,7 +9,7 @@ import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from xml.sax.saxutils import XMLGenerator
 from xml.sax.xmlreader import AttributesImpl
 
@@ -17,9 +17,8 @@ import numpy as np
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Output, Place
+from pellicle.components import Output, Runs
 from pellicle.files import atomic_write
-from pellicle.results.result import Result
 from pellicle.results.variables import FIELDS
 
 if TYPE_CHECKING:
@@ -38,25 +37,28 @@ class Vtk(Output):
 
     type: Literal["vtk"] = "vtk"
 
-    def endings(self) -> tuple[str, ...]:
-        """Return those of the list and of the steps."""
+    scope: ClassVar[Literal["run"]] = "run"
+    shares_stem: ClassVar[bool] = True
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Those of the list and of the steps."""
         return ".pvd", "-*.vts"
 
-    def step(self, place: Place, step: xr.Dataset) -> None:
+    def step(self, record: xr.Dataset, stem: Path) -> None:
         """Write the file of the step."""
-        _write_step(step, _file(place, step["step"].item()))
+        _write_step(record, _file(stem, record["step"].item()))
 
-    def close(self, place: Place, result: Result) -> tuple[Path, ...]:
-        """Write the list of the steps and name all files."""
-        steps = result.dataset["step"].values.tolist()
-        files = [_file(place, number) for number in steps]
-        names = {number: path.name for number, path in zip(steps, files, strict=True)}
-        _write_list(names, place.file(".pvd"))
-        return (*files, place.file(".pvd"))
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the list of the steps; return all files."""
+        files = {number: _file(stem, number) for number in runs.table["step"].values.tolist()}
+        path = Path(f"{stem}.pvd")
+        _write_list({number: file.name for number, file in files.items()}, path)
+        return (*files.values(), path)
 
 
-def _file(place: Place, number: int) -> Path:
-    return place.file(f"-{number:04d}.vts")
+def _file(stem: Path, number: int) -> Path:
+    return Path(f"{stem}-{number:04d}.vts")
 
 
 def _write_step(step: xr.Dataset, path: Path) -> None:

@@ -13,312 +13,292 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor, Solver
 from pellicle.errors import ConfigError
 from pellicle.numerics.grid_transfer import highest, prolong
+from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.problem import Depth, Problem
 from pellicle.numerics.solution import Progress, State, Stop
 
-from .contact_cg import Inner, inner_solve
-from .initial_guess import first_guess, with_force
+from .contact_cg import InnerSolution, inner_solve
 from .preconditioner import OnContact, Preconditioner
 from .relaxation import relaxed
 from .scaling import ScaledSolver
 
-# Coarse grids are solved to this share of the height range: with tension a smaller error than that
-# of the grid itself still moves the edge of the contact by several cells.
+# Relative tolerance on coarse grids: under tension even an error below that of the discretisation
+# moves the contact edge by several cells.
 _COARSE_TOLERANCE: Final = 1e-5
-# Grids with no more cells than this along their longer edge are not coarsened.
+# Grids of up to this many cells along the longer edge are not coarsened.
 _COARSEST: Final = 48
-# A start with an error above this share of the height range costs more to mend, along the edge of
-# the contact, than a solve from the coarser grids.
+# A start whose error exceeds this share of the height range costs more to correct, along the
+# contact edge, than a solve from the coarser grids.
 _CLOSE: Final = 0.05
-# What an inner solve counts on later iterations to change, over what the last one did; and where
-# the last look did not find fewer cells wrong.
-_DOUBT: Final = 1.0
-_DEEP_DOUBT: Final = 30.0
-# Under a skin that bends a gap that has shrunk to this share is closed as the cells settle.
+# Sign-certainty factors: the sign of a cell counts as final if its value exceeds this multiple of
+# its last change. The strict one applies after an outer iteration without progress.
+_SIGN_CERTAINTY: Final = 1.0
+_STRICT_SIGN_CERTAINTY: Final = 30.0
+# With bending stiffness, local relaxation follows once the gap has fallen to this share.
 _REDUCTION: Final = 0.1
-# Cells of a coarser grid's contact that lie this share of the height range above the indenter, on a
-# surface rough at the size of a cell, are not in contact.
-_HANGING: Final = 0.4
-# Under a skin that bends a cell joins the contact if it penetrates by this share of the deepest:
-# one that joins lifts those around it.
+# Cells of a prolonged contact with a gap above this share of the height range are released: on a
+# surface that is rough at the size of a cell they are pits, which the coarse grid cannot resolve.
+_PIT: Final = 0.4
+# With bending stiffness, a cell joins the contact if it penetrates by this share of the deepest
+# penetration or more: a cell that joins lifts its neighbours.
 _DEEPEST: Final = 0.5
-# Cells that settled have gone astray where the error is above this share of the height range.
-_ASTRAY: Final = 0.5
+# A local relaxation that leaves a larger error than before, above this share of the height range,
+# is rejected.
+_DIVERGED: Final = 0.5
 # Outer iterations without progress after which the solve is abandoned.
 _STAGNATION: Final = 30
-# Where as many looks find no fewer cells wrong, cells are no longer left to settle together.
-_SETTLING: Final = 10
+# Local relaxation is switched off after this many outer iterations without fewer misclassified
+# cells.
+_RELAXATION_STAGNATION: Final = 10
 
 
 @dataclass(frozen=True)
 class History:
-    """What has been tried since the fewest cells were wrong, to tell when it goes round."""
+    """The contacts since the number of misclassified cells was least, to detect cycles."""
 
     contacts: frozenset[bytes] = frozenset()
-    """Every contact that there was, packed."""
+    """The contacts, packed into bits."""
     fewest: float = np.inf
-    """Least number of cells found wrong."""
+    """Least number of misclassified cells."""
     returns: int = 0
-    """How often a contact came back; then `contacts` begins anew."""
+    """How often an earlier contact came back; `contacts` is then cleared."""
 
     @property
     def makes_progress(self) -> bool:
-        """Whether the last look found fewer wrong cells than any before."""
+        """Whether the last outer iteration left fewer misclassified cells than any before."""
         return len(self.contacts) <= 1 and self.returns == 0
 
-    def after(self, contact: Mask, wrong: int) -> History:
-        """Return it after an inner solve on a contact that found so many cells wrong."""
+    def after(self, contact: Mask, misclassified: int) -> History:
+        """Return the history after an inner solve with so many misclassified cells."""
         packed = np.packbits(contact).tobytes()
-        if wrong < self.fewest:
-            return History(frozenset({packed}), wrong)
+        if misclassified < self.fewest:
+            return History(frozenset({packed}), misclassified)
         if packed in self.contacts:
             return History(frozenset({packed}), self.fewest, self.returns + 1)
         return replace(self, contacts=self.contacts | {packed})
 
 
 @dataclass(frozen=True)
-class _State:
+class _Iterate:
     problem: Problem
-    start: Array
-    """Pressure that the next inner solve starts from [Pa]; it may still pull."""
+    trial: Array
+    """Pressure from which the next inner solve starts [Pa]; it may be tensile."""
     displacement: Array
-    """What ``start`` makes [m]."""
+    """The displacement under ``trial`` [m]."""
     on_contact: OnContact
-    """Preconditioner of where the next inner solve puts pressure."""
+    """Preconditioner on the contact of the next inner solve."""
     scale: float
     """Height range of the indenter in contact [m]."""
     error: float
-    """max(|gap| under pressure, penetration) of ``start`` [m]."""
-    preconditioner: Preconditioner
+    """max(|gap| under pressure, penetration) of ``trial`` [m]."""
     history: History
     progress: Progress
-    """Of the error over `scale` and of the fewest misclassified cells."""
-    relaxes: bool
-    """Whether cells may settle together; not once that has led away from the solution."""
+    """Of the error over `scale` and of the least number of misclassified cells."""
+    may_relax: bool
+    """False once local relaxation has led away from the solution."""
 
     @property
-    def settles(self) -> bool:
-        """Whether cells settle together: bending decides, and they have not gone astray."""
-        return self.preconditioner.bends and self.relaxes
+    def bends(self) -> bool:
+        """Whether bending dominates the stiffness at the size of a cell."""
+        return self.on_contact.preconditioner.bends
 
     @property
     def pressure(self) -> Array:
-        """``start`` without what pulls, with the force that is prescribed [Pa]."""
-        if self.start.min() >= 0:
-            return self.start
-        return with_force(self.problem, np.maximum(self.start, 0))
+        """``trial`` without its tensile part, with the prescribed force if there is one [Pa]."""
+        if self.trial.min() >= 0:
+            return self.trial
+        return with_force(self.problem, np.maximum(self.trial, 0))
 
 
 class ActiveSet(ScaledSolver):
     """Solver whose operator applications hardly grow with the grid or with the tension.
 
-    The contact is guessed on a coarser grid; an inner solve finds the pressure, of either sign,
-    that closes the gap on it; cells that would need suction leave, cells that penetrate join
-    (Hintermüller, Ito & Kunisch 2002), and so on until nothing changes. Departures: (1) an inner
-    solve ends as soon as it is certain which cells are wrong, and those in doubt stay, so that
-    loose solves do not scatter the contact; (2) what pressed on cells that leave goes to those
-    around them (see `OnContact.moved`); (3) on a skin that bends, what one cell does decides what
-    the next ones do, and they settle together (see `relaxed`); (4) where a contact comes back, one
-    cell at a time changes sides (Murty 1974), until fewer are wrong than ever.
+    The contact is first solved for on coarser grids. In each outer iteration an inner solve finds
+    the pressure, of either sign, that closes the gap on the contact; cells with tensile pressure
+    leave the contact and cells that penetrate join it (Hintermüller, Ito & Kunisch 2002), until no
+    cell is misclassified. This differs from the textbook method in four points:
+
+    1. An inner solve ends as soon as it is certain which cells are misclassified. Cells of
+       uncertain sign stay as they are, so that an inexact solve does not scatter the contact.
+    2. The pressure of cells that leave is transferred to those around them (see
+       `OnContact.transferred`).
+    3. With bending stiffness the state of one cell decides that of the next ones, and cells change
+       sides together in a local relaxation (see `relaxed`).
+    4. When a contact comes back, one cell at a time changes sides (Murty 1974) until fewer are
+       misclassified than ever before.
     """
 
     type: Literal["active_set"] = "active_set"
 
-    def begin(self, problem: Problem, start: State | None) -> _State:
-        """Return the state of the last step's pressure, or of the solution on a coarser grid."""
+    def begin(self, problem: Problem, start: State | None) -> _Iterate:
+        """Return the iterate of the step before if it is close, or that of a coarser grid."""
         preconditioner = Preconditioner(problem.operator)
         if start is not None and start.contact.any():
-            on_start = preconditioner.on(start.contact)
-            state = _measured(problem, start.pressure, on_start, preconditioner)
+            state = _iterate(problem, preconditioner.on(start.contact), start.pressure)
             if state.error <= _CLOSE * state.scale:
                 return state
         prolonged = self._prolonged(problem)
         pressure = first_guess(problem) if prolonged is None else prolonged
-        state = _measured(problem, pressure, preconditioner.on(pressure > 0), preconditioner)
-        return state if prolonged is None else _without_hanging(problem, state)
+        state = _iterate(problem, preconditioner.on(pressure > 0), pressure)
+        return state if prolonged is None else _without_pits(problem, state)
 
-    def step(self, problem: Problem, state: _State) -> _State:
-        """Return the state after one inner solve and one look at the contact."""
+    def step(self, problem: Problem, state: _Iterate) -> _Iterate:
+        """Return the iterate after one outer iteration."""
         goal = self.tolerance / 2 * state.scale
-        # Loose solves are quick as long as they lead to fewer wrong cells. Under a skin that bends
-        # they tell what settles, not yet which cells are wrong.
-        loose = state.history.makes_progress and (state.settles or not state.preconditioner.bends)
-        solved = inner_solve(
+        relaxes = state.bends and state.may_relax
+        # Loose solves are cheap as long as they leave fewer misclassified cells. With bending
+        # stiffness they only prepare a local relaxation.
+        loose = state.history.makes_progress and (relaxes or not state.bends)
+        inner = inner_solve(
             problem,
             state.on_contact,
-            state.start,
+            state.trial,
             state.displacement,
             goal,
-            doubt=_DOUBT if loose else _DEEP_DOUBT,
-            reduction=_REDUCTION if loose and state.settles else 0.0,
+            certainty=_SIGN_CERTAINTY if loose else _STRICT_SIGN_CERTAINTY,
+            reduction=_REDUCTION if loose and relaxes else 0.0,
         )
-        history = state.history.after(state.on_contact.contact, solved.wrong.size)
-        if not solved.wrong.size:
-            return _after(problem, state, state.on_contact, solved.pressure, history)
-        if (
-            state.settles
-            and solved.pressure.any()
-            and history.returns == 0
-            and len(history.contacts) <= _SETTLING
-        ):
-            relaxed_state = _relaxed(problem, state, solved, history, goal)
-            if relaxed_state is not None:
-                if relaxed_state.error <= max(state.error, _ASTRAY * relaxed_state.scale):
-                    return relaxed_state
-                # The same contact once more, solved further.
-                again = _after(problem, state, state.on_contact, solved.pressure, state.history)
-                return replace(again, relaxes=False)
-        on_changed = _changed(problem, state, solved, history)
-        pressure = on_changed.moved(solved.pressure)
-        # Two arrays less while the next displacement is computed.
-        del solved
-        return _after(problem, state, on_changed, pressure, history)
+        history = state.history.after(state.on_contact.contact, inner.misclassified.size)
+        if not inner.misclassified.size:
+            return _iterate(problem, state.on_contact, inner.pressure, history, state)
+        relaxes &= history.returns == 0 and len(history.contacts) <= _RELAXATION_STAGNATION
+        if relaxes and inner.pressure.any():
+            contact, forces = relaxed(problem, state.on_contact, inner, goal)
+            on_contact = state.on_contact.preconditioner.on(contact)
+            trial = on_contact.transferred(forces)
+            if trial.sum() > 0:
+                after = _iterate(problem, on_contact, trial, history, state)
+                if after.error <= max(state.error, _DIVERGED * after.scale):
+                    return after
+                # The same contact once more, to be solved further.
+                after = _iterate(problem, state.on_contact, inner.pressure, state.history, state)
+                return replace(after, may_relax=False)
+        on_contact = _changed(problem, state, inner, history)
+        trial = on_contact.transferred(inner.pressure)
+        # Frees two arrays while the next displacement is computed.
+        del inner
+        return _iterate(problem, on_contact, trial, history, state)
 
-    def residual(self, problem: Problem, state: _State) -> float:
+    def residual(self, problem: Problem, state: _Iterate) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""
         return state.error / state.scale
 
-    def pressure(self, state: _State) -> Array:
-        """Return the pressure of a state."""
+    def pressure(self, state: _Iterate) -> Array:
+        """Return the pressure of an iterate."""
         return state.pressure
 
-    def terminate(self, problem: Problem, state: _State) -> Stop | None:
-        """Return whether the iteration stalls: neither the error nor the misclassified cells fall.
+    def terminate(self, problem: Problem, state: _Iterate) -> Stop | None:
+        """Return whether neither the error nor the number of misclassified cells falls any more.
 
-        The error of a contact with a row of misclassified cells may exceed that of one with many.
+        Both count: a contact with a row of misclassified cells may have a larger error than one
+        that is wrong everywhere.
         """
         return Stop.STALLED if state.progress.stagnant >= _STAGNATION else None
 
     def response(self, problem: Problem, state: State, monitor: Monitor) -> Array:
         """Return dp/dδ [Pa/m] with the contact fixed, by the same inner solves."""
         contact = state.contact
-        profile = np.where(contact, 0.0, -np.inf)
         unit = 1 / problem.operator.unit
         operator = problem.operator.scaled(unit)
-        flat = replace(problem, operator=operator, profile=profile, control=Depth(1.0))
-        preconditioner = Preconditioner(operator).on(contact)
+        profile = np.where(contact, 0.0, -np.inf)
+        punch = Problem(problem.grid, operator, profile, Depth(1.0))
+        on_contact = Preconditioner(operator).on(contact)
         goal = self.tolerance / 2
         pressure, displacement = np.zeros(problem.grid.shape), np.zeros(problem.grid.shape)
         error, before, iteration = 1.0, np.inf, 0
-        # Each solve leaves what its single precision has no digits for.
+        # Each solve leaves a gap that its single precision has no digits for.
         while goal < error < before / 2:
             monitor(iteration, error / self.tolerance)
             pressure = inner_solve(
-                flat, preconditioner, pressure, displacement, goal, doubt=np.inf
+                punch, on_contact, pressure, displacement, goal, certainty=np.inf
             ).pressure
-            displacement = operator(pressure)
+            displacement = punch.operator(pressure)
             error, before = float(np.abs(1.0 - displacement[contact]).max()), error
             iteration += 1
         return pressure * unit
 
     def _prolonged(self, problem: Problem) -> Array | None:
-        """Return the pressure [Pa] solved for on a coarser grid, None if that tells nothing."""
+        """Return the pressure [Pa] of the solution on a coarser grid, None if there is none."""
         if max(problem.grid.shape) <= _COARSEST:
             return None
         try:
             coarse = problem.coarsened()
         except ConfigError:
-            # A thin incompressible layer is rigid under cells much wider than it is thick.
+            # A thin incompressible layer is rigid under cells much wider than its thickness.
             return None
         if not coarse.touches:
-            # The indenter touches with less than half of each coarse cell.
+            # The indenter touches with less than half of every coarse cell.
             coarse = replace(coarse, profile=highest(problem.profile, coarse.grid.shape))
         tolerance = max(self.tolerance, _COARSE_TOLERANCE)
         solver = self.model_copy(update={"tolerance": tolerance})
         solution = solver.solve(coarse, None, lambda iteration, residual_ratio: None)
         pressure = prolong(solution.pressure, problem.grid.shape)
-        # A coarse cell may hang over the rim of the indenter.
+        # A coarse cell may extend beyond the rim of the indenter.
         pressure *= np.isfinite(problem.profile)
         return pressure if pressure.any() else None
 
 
-def _without_hanging(problem: Problem, state: _State) -> _State:
-    """Return the state of a coarser grid's pressure without the cells that hang over the indenter.
+def _without_pits(problem: Problem, state: _Iterate) -> _Iterate:
+    """Return the iterate of a prolonged pressure without the cells that are pits.
 
-    Where heights change from cell to cell, a coarser grid's contact covers pits as well. A
-    prescribed force may be high enough for them to touch.
+    Where heights change from cell to cell, the contact of a coarser grid covers pits as well. A
+    prescribed force may be large enough for them to touch.
     """
     if problem.prescribed == "force":
         return state
-    contact = state.on_contact.contact
-    gap = state.displacement - problem.profile
-    gap -= problem.depth(gap[contact])
-    hangs = gap > _HANGING * state.scale
-    hangs &= gap * state.preconditioner.stiffest > state.start
-    kept = contact & ~hangs
-    if not kept.any() or kept.sum() == contact.sum():
+    on_contact = state.on_contact
+    gap, _ = problem.gap(state.displacement, on_contact.contact)
+    pits = (gap > _PIT * state.scale) & (gap * on_contact.preconditioner.stiffest > state.trial)
+    retained = on_contact.contact & ~pits
+    if not retained.any() or retained.sum() == on_contact.cells.size:
         return state
-    on_kept = state.preconditioner.on(kept)
-    return _after(problem, state, on_kept, on_kept.moved(state.start), state.history)
+    on_contact = on_contact.preconditioner.on(retained)
+    return _iterate(problem, on_contact, on_contact.transferred(state.trial))
 
 
-def _relaxed(
-    problem: Problem, state: _State, solved: Inner, history: History, margin: float
-) -> _State | None:
-    """Return the state once cells have settled together, None if nothing presses then.
-
-    Cells penetrate where they do by more than ``margin`` [m].
-    """
-    preconditioner = state.preconditioner
-    contact, forces = relaxed(problem, preconditioner.settling, state.on_contact, solved, margin)
-    on_contact = preconditioner.on(contact)
-    start = on_contact.moved(forces)
-    return _after(problem, state, on_contact, start, history) if start.sum() > 0 else None
-
-
-def _changed(problem: Problem, state: _State, solved: Inner, history: History) -> OnContact:
-    """Return the contact once the wrong cells have changed sides, or one of them in a cycle."""
-    contact, wrong, bends = state.on_contact.contact, solved.wrong, state.preconditioner.bends
-    if history.returns > (1 if bends else 0):
-        wrong = wrong[:1]
-    elif bends:
-        gap = solved.displacement - problem.profile
-        gap -= problem.depth(gap[contact])
-        joins = ~contact.ravel()[wrong]
-        deepest = float(gap.ravel()[wrong].min(initial=0.0, where=joins))
-        wrong = wrong[~joins | (gap.ravel()[wrong] <= _DEEPEST * deepest)]
+def _changed(
+    problem: Problem, state: _Iterate, inner: InnerSolution, history: History
+) -> OnContact:
+    """Return the contact with the misclassified cells changed, only one of them in a cycle."""
+    contact, cells = state.on_contact.contact, inner.misclassified
+    if history.returns > (1 if state.bends else 0):
+        cells = cells[:1]
+    elif state.bends:
+        gap = problem.gap(inner.displacement, contact)[0].ravel()[cells]
+        joins = ~contact.ravel()[cells]
+        deepest = float(gap.min(initial=0.0, where=joins))
+        cells = cells[~joins | (gap <= _DEEPEST * deepest)]
     changed = contact.copy()
-    changed.ravel()[wrong] ^= True
-    return state.preconditioner.on(changed)
+    changed.ravel()[cells] ^= True
+    return state.on_contact.preconditioner.on(changed)
 
 
-def _after(
-    problem: Problem, state: _State, on_contact: OnContact, start: Array, history: History
-) -> _State:
-    """Return the state after ``state`` with another pressure [Pa] and contact."""
-    measured = _measured(problem, start, on_contact, state.preconditioner, history)
-    progress = state.progress.after(measured.error / measured.scale, history.fewest)
-    return replace(measured, relaxes=state.relaxes, progress=progress)
-
-
-def _measured(
+def _iterate(
     problem: Problem,
-    start: Array,
     on_contact: OnContact,
-    preconditioner: Preconditioner,
-    history: History = History(),
-) -> _State:
-    """Return the state of a pressure [Pa], with the force that is prescribed."""
-    start = with_force(problem, start)
-    displacement = problem.operator(start)
-    pressed = start != 0
-    gap = displacement - problem.profile
-    depth = problem.depth(gap[pressed])
-    gap -= depth
-    inside = float(np.abs(gap[pressed]).max(initial=0.0))
-    scale = problem.height_scale(pressed, depth, float(start.sum()))
-    error = max(inside, -float(gap.min(initial=0.0)))
-    return _State(
+    trial: Array,
+    history: History | None = None,
+    before: _Iterate | None = None,
+) -> _Iterate:
+    """Return the iterate of a pressure [Pa], scaled to the prescribed force if there is one."""
+    history = history or History()
+    trial = with_force(problem, trial)
+    displacement = problem.operator(trial)
+    pressed = trial != 0
+    gap, depth = problem.gap(displacement, pressed)
+    error = max(float(np.abs(gap[pressed]).max(initial=0.0)), -float(gap.min(initial=0.0)))
+    scale = problem.height_scale(pressed, depth, float(trial.sum()))
+    progress = before.progress if before else Progress()
+    return _Iterate(
         problem=problem,
-        start=start,
+        trial=trial,
         displacement=displacement,
         on_contact=on_contact,
         scale=scale,
         error=error,
-        preconditioner=preconditioner,
         history=history,
-        progress=Progress().after(error / scale, history.fewest),
-        relaxes=True,
+        progress=progress.after(error / scale, history.fewest),
+        may_relax=before is None or before.may_relax,
     )
 
 

@@ -1,4 +1,4 @@
-"""The stiffness of the surface on a periodic plane, as quickly as it can be applied."""
+"""The stiffness of the surface on a periodic plane, a circulant matrix."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ Field = NDArray[np.float32]
 
 
 class Stiffness:
-    """K: multiplies by k(q) = 1/G(q), over its greatest value, in single precision.
+    """K: multiplies by the stiffness k(q) = 1/G(q) over its greatest value, in single precision.
 
     Parameters
     ----------
     operator
-        Whose kernel and spacing it takes.
+        Gives the kernel and the spacing of the cells.
     shape
-        Cells of the plane, which is periodic.
+        Cells of the periodic plane.
     """
 
     def __init__(self, operator: Operator, shape: tuple[int, int]) -> None:
         dx, dy = operator.grid.spacing
         plane = Grid(points=shape, size=(shape[0] * dx, shape[1] * dy), boundary="periodic")
         q = np.hypot(*plane.wavenumbers())
-        # At q = 0 half of the lowest stiffness keeps K positive.
+        # At q = 0 half of the stiffness of the longest wave keeps K positive definite.
         q[0, 0] = 2 * np.pi / max(plane.size)
         stiffness = 1 / operator.compliance(q)
         stiffness[0, 0] /= 2
         self.shape = shape
         self.greatest = float(stiffness.max())
-        """[Pa/m]"""
+        """The stiffness of the stiffest wave [Pa/m]."""
         self._symbol = np.asarray(stiffness / self.greatest, dtype=np.float32)
 
     def __call__(self, field: Field) -> Field:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Final, Literal
 
 import numpy as np
 
@@ -12,37 +12,35 @@ from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
 from pellicle.components import Solver
 from pellicle.grid import Grid
+from pellicle.numerics.initial_guess import dot, first_guess, with_force
 from pellicle.numerics.problem import Problem
 from pellicle.numerics.solution import State
 
-from .initial_guess import first_guess, with_force
-from .products import dot
 from .scaling import ScaledSolver
 
-# Contact is added only where penetration is at least this share of the error inside.
-_PROPORTION = 0.3
-# Stands for −inf in products with 0.
-_NO_INDENTER = -1e200
+# Contact is added only where the penetration is at least this share of the error inside.
+_PROPORTION: Final = 0.3
+# Stands for −inf, whose product with 0 is not a number.
+_NO_INDENTER: Final = -1e200
 
 
-@dataclass
-class _State:
-    """Arrays of the grid's shape, reused from step to step."""
+@dataclass(frozen=True)
+class _Iterate:
+    """A pressure and its gap; the next iterate reuses the arrays, all of the grid's shape."""
 
     profile: Array
     pressure: Array
     displacement: Array
-    """A p, by recurrence or afresh."""
-    fresh: bool
-    """Whether the displacement was just computed and not updated."""
+    """A p [m], by recurrence or applied afresh."""
     contact: Mask
     direction: Array
-    energy: float = 0.0
-    """Σ gap² over the contact at the last step; 0 starts from steepest descent."""
-    gap: Array = None  # type: ignore[assignment]
-    inner_gap: Array = None  # type: ignore[assignment]
+    gap: Array
+    """Under force control its mean over the contact is 0."""
+    inner_gap: Array
     """The gap in contact, 0 elsewhere."""
-    scratch: Array = None  # type: ignore[assignment]
+    scratch: Array
+    energy: float = 0.0
+    """Σ gap² over the contact at the last step; 0 restarts with steepest descent."""
     scale: float = 1.0
     """Height range of the indenter in contact [m]."""
     inside: float = 0.0
@@ -50,61 +48,77 @@ class _State:
     outside: float = 0.0
     """Penetration outside the contact [m]."""
 
+    def opened(self, problem: Problem, *, contact_changed: bool = False) -> _Iterate:
+        """Return the iterate with the gap of its displacement, and the errors of that gap."""
+        gap, inner_gap, contact = self.gap, self.inner_gap, self.contact
+        np.subtract(self.displacement, self.profile, out=gap)
+        depth = problem.value
+        if problem.prescribed == "force":
+            np.multiply(gap, contact, out=inner_gap)
+            depth = float(inner_gap.sum()) / float(np.count_nonzero(contact))
+        gap -= depth
+        np.multiply(gap, contact, out=inner_gap)
+        np.subtract(gap, inner_gap, out=self.scratch)
+        scale = self.scale
+        if contact_changed:
+            scale = problem.height_scale(contact, depth, float(self.pressure.sum()))
+        return replace(
+            self,
+            scale=scale,
+            inside=max(float(inner_gap.max()), -float(inner_gap.min())),
+            outside=-float(self.scratch.min(initial=0.0)),
+        )
+
 
 class ConjugateGradient(ScaledSolver):
-    """Polonsky & Keer 1999 for a force, Pohrt & Li 2014 for a depth.
+    """Polonsky & Keer 1999 under force control, Pohrt & Li 2014 under depth control.
 
-    Departures from the papers: (1) the displacement is updated by the recurrence u ← u − τ A t and
-    applied afresh only where pressure was clipped or contact added, and before the end; (2) it
-    ends on the residuals that a run reports, not on the change of the pressure; (3) contact is
-    added only when the penetration is no longer small against the error inside: adding at once
-    lets cells at the edge flip for ever when the tension is high.
+    This differs from the papers in three points:
+
+    1. The displacement is updated by the recurrence u ← u − τ A t. The operator is applied afresh
+       only where pressure was clipped or contact was added, and before the end.
+    2. The iteration ends by the residuals that a run reports, not by the change of the pressure.
+    3. Contact is added only when the penetration is no longer small against the error inside. Under
+       high tension, cells at the edge would otherwise change sides for ever.
     """
 
     type: Literal["conjugate_gradient"] = "conjugate_gradient"
 
-    def begin(self, problem: Problem, start: State | None) -> _State:
-        """Return the state of a first guess: the last step's pressure, or one from the profile."""
+    def begin(self, problem: Problem, start: State | None) -> _Iterate:
+        """Return the iterate of the pressure of the step before, or of a first guess."""
         if start is not None and start.contact.any():
-            pressure = with_force(problem, start.pressure.copy())
+            pressure = np.array(with_force(problem, start.pressure))
         else:
-            pressure = with_force(problem, first_guess(problem))
-        state = _State(
+            pressure = first_guess(problem)
+        first = _Iterate(
             profile=np.maximum(problem.profile, _NO_INDENTER),
             pressure=pressure,
             displacement=problem.operator(pressure),
-            fresh=True,
             contact=pressure > 0,
             direction=np.zeros_like(pressure),
+            gap=np.empty_like(pressure),
+            inner_gap=np.empty_like(pressure),
+            scratch=np.empty_like(pressure),
         )
-        state.gap, state.inner_gap, state.scratch = (np.empty_like(pressure) for _ in range(3))
-        _open_gap(problem, state, contact_changed=True)
-        return state
+        return first.opened(problem, contact_changed=True)
 
-    def residual(self, problem: Problem, state: _State) -> float:
+    def residual(self, problem: Problem, state: _Iterate) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""
-        residual = max(state.inside, state.outside) / state.scale
-        if residual <= self.tolerance and not state.fresh:
-            # The recurrence gathers round-off; only a fresh displacement may end the iteration.
-            state.displacement = problem.operator(state.pressure)
-            state.fresh = True
-            _open_gap(problem, state, contact_changed=False)
-            residual = max(state.inside, state.outside) / state.scale
-        return residual
+        return max(state.inside, state.outside) / state.scale
 
     def arrays(self, grid: Grid) -> float:
-        """Return the seven arrays of the state, the contact, and what changes the displacement."""
+        """Return the seven arrays of the iterate, the contact, and the change of displacement."""
         return 8.5
 
-    def pressure(self, state: _State) -> Array:
-        """Return the pressure of a state."""
+    def pressure(self, state: _Iterate) -> Array:
+        """Return the pressure of an iterate."""
         return state.pressure
 
-    def step(self, problem: Problem, state: _State) -> _State:
-        """Return the state after one projected step along the conjugate direction."""
+    def step(self, problem: Problem, state: _Iterate) -> _Iterate:
+        """Return the iterate after one projected step along the conjugate direction."""
         pressure, direction = state.pressure, state.direction
         energy = dot(state.inner_gap, state.inner_gap)
-        # Directions of cells that left the contact must go even where the search starts anew.
+        # Cells that left the contact have no direction, even where the search restarts.
         direction *= state.contact
         direction *= energy / state.energy if state.energy else 0.0
         direction += state.inner_gap
@@ -115,73 +129,45 @@ class ConjugateGradient(ScaledSolver):
         clipped = bool(pressure.min() < 0)
         if clipped:
             np.maximum(pressure, 0, out=pressure)
-        added = state.outside > _PROPORTION * state.inside and _add(state, length)
-        state.energy = 0.0 if added else energy
+        added = False
+        if state.outside > _PROPORTION * state.inside:
+            penetrating = (state.gap < 0) & (pressure == 0)
+            added = bool(penetrating.any())
+            pressure[penetrating] -= length * state.gap[penetrating]
         factor = 1.0
         if problem.prescribed == "force":
             factor = problem.value / (float(pressure.sum()) * problem.grid.cell_area)
             pressure *= factor
-        state.fresh = clipped or added
-        if state.fresh:
+        state = replace(state, energy=0.0 if added else energy)
+        if clipped or added:
             np.greater(pressure, 0, out=state.contact)
-            state.displacement = problem.operator(pressure)
-        else:
-            change *= length
-            state.displacement -= change
-            state.displacement *= factor
-        _open_gap(problem, state, contact_changed=state.fresh)
+            displacement = problem.operator(pressure)
+            return replace(state, displacement=displacement).opened(problem, contact_changed=True)
+        change *= length
+        displacement = state.displacement
+        displacement -= change
+        displacement *= factor
+        state = state.opened(problem)
+        if self.residual(problem, state) <= self.tolerance:
+            # The recurrence accumulates round-off; only a fresh displacement may end the iteration.
+            state = replace(state, displacement=problem.operator(pressure)).opened(problem)
         return state
 
 
-def _step_length(problem: Problem, state: _State, change: Array) -> float:
-    """Return the step that minimises the energy along the direction, at constant load if given."""
+def _step_length(problem: Problem, state: _Iterate, change: Array) -> float:
+    """Return the step [Pa/m] that minimises the energy along the direction at a given load."""
     slope = dot(state.inner_gap, state.direction)
     curvature = dot(state.direction, change)
     if problem.prescribed == "force":
-        response = dot(change, state.contact)
-        cells = float(np.count_nonzero(state.contact))
-        curvature -= float(state.direction.sum()) * response / cells
+        mean = dot(change, state.contact) / float(np.count_nonzero(state.contact))
+        curvature -= float(state.direction.sum()) * mean
     if curvature > 0:
         return slope / curvature
-    return _cell_stiffness(problem)
-
-
-def _cell_stiffness(problem: Problem) -> float:
-    """Return pressure over displacement [Pa/m] of one cell pressed alone.
-
-    The step where there is no direction: no contact yet, or a single cell under a given force.
-    """
-    alone = np.zeros(problem.grid.shape)
+    # There is no contact yet, or one cell under a given force: the stiffness of a single cell.
+    single = np.zeros(problem.grid.shape)
     lowest = np.unravel_index(int(problem.profile.argmax()), problem.grid.shape)
-    alone[lowest] = 1.0
-    return 1.0 / float(problem.operator(alone)[lowest])
-
-
-def _open_gap(problem: Problem, state: _State, *, contact_changed: bool) -> None:
-    """Set the gap and what follows from it; with a force prescribed its depth is the mean one."""
-    gap, inner_gap = state.gap, state.inner_gap
-    np.subtract(state.displacement, state.profile, out=gap)
-    depth = problem.value
-    if problem.prescribed == "force":
-        np.multiply(gap, state.contact, out=inner_gap)
-        depth = float(inner_gap.sum()) / float(np.count_nonzero(state.contact))
-    gap -= depth
-    np.multiply(gap, state.contact, out=inner_gap)
-    state.inside = max(float(inner_gap.max()), -float(inner_gap.min()))
-    np.subtract(gap, inner_gap, out=state.scratch)
-    state.outside = -float(state.scratch.min(initial=0.0))
-    if contact_changed:
-        total = float(state.pressure.sum())
-        state.scale = problem.height_scale(state.contact, depth, total)
-
-
-def _add(state: _State, length: float) -> bool:
-    """Press where the surface penetrates without pressure; return whether it did anywhere."""
-    overlap = (state.gap < 0) & (state.pressure == 0)
-    if not overlap.any():
-        return False
-    state.pressure[overlap] -= length * state.gap[overlap]
-    return True
+    single[lowest] = 1.0
+    return 1.0 / float(problem.operator(single)[lowest])
 
 
 @hookimpl

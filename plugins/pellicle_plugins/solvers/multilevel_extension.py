@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -16,17 +17,19 @@ Moments = tuple[Field, ...]
 
 _NEAR: Final = np.float32(0.75)
 _FAR: Final = np.float32(0.25)
-# Fine cells that are worked on at a time, so that what is made of them stays in the cache.
+# All but the cells at the ends, by the number of axes.
+_INNER: Final = ((), (slice(1, -1),), (slice(1, -1), slice(1, -1)))
+# Fine cells in a block: its intermediate arrays stay in the cache.
 _BLOCK: Final = 2**17
 
-# Above this order of the stiffness bending decides.
+# Above this order of the stiffness the extension must not have kinks.
 _BENDS: Final = 2.5
 _SWEEPS: Final = 16
-# Δ² of waves from about nine cells to two, in units of the cell.
+# Eigenvalues of Δ² for waves of about nine cells and of two, in units of the cell.
 _SLOWEST, _FASTEST = 0.25, 64.0
-# Roots of the Chebyshev polynomial from both ends in turns: in order their round-off grows.
+# Roots of the Chebyshev polynomial, taken from both ends in turn: in order, round-off grows.
 _ROOTS: Final = np.cos(np.pi * (np.arange(_SWEEPS) + 0.5) / _SWEEPS)
-# Over- and underrelaxation on that range.
+# Relaxation factors of the Chebyshev iteration on that range.
 _DAMPINGS: Final = tuple(
     np.float32(2 / (_FASTEST + _SLOWEST + (_FASTEST - _SLOWEST) * root))
     for pair in zip(_ROOTS[: _SWEEPS // 2], _ROOTS[::-1], strict=False)
@@ -35,25 +38,27 @@ _DAMPINGS: Final = tuple(
 
 
 def bends(order: float) -> bool:
-    """Whether bending decides where the stiffness goes as q^``order``."""
+    """Whether bending dominates where the stiffness goes as q^``order``."""
     return order > _BENDS
 
 
 class Extension:
-    """E: keeps values where ``known`` and continues them elsewhere as the least energy would.
+    """E: keeps values where ``known`` and continues them elsewhere with nearly the least energy.
 
-    A pyramid of fields: each level holds weighted means of 2 × 2 cells of the level above it, with
-    a weight w ≤ 1 that says how much of the cell the contact decides. A lone cell loses weight by
-    2^(α − 2) from level to level, as the displacement round a point force falls, r^(α − 2), where
-    the stiffness goes as q^α: nothing is lost at order 2, half at order 1. Coming up, a cell is its
-    own mean by w and the interpolated level below by 1 − w.
+    A pyramid of fields: each level holds weighted means of 2 × 2 cells of the next finer one, with
+    a weight w ≤ 1 for how far the contact decides the value of the cell. Where the stiffness goes
+    as q^α the displacement around a point force falls as r^(α − 2), so a lone cell loses weight by
+    2^(α − 2) from level to level: not at all at order 2, by half at order 1. On the way back to
+    finer levels a cell is its own mean times w plus the interpolated coarser level times 1 − w.
 
-    A bending energy punishes every kink. Where it decides, a mean is moved from the centroid of
-    what is known to the centre of its cell, along the slope of the interpolated level below, so
-    that E keeps planes; and the waves too short for that level are relaxed towards Δ²u = 0.
+    A bending energy penalises kinks. Where it dominates, a mean is shifted from the centroid of
+    the known cells to the centre of its cell, along the slope of the interpolated coarser level,
+    so that E preserves planes; and waves too short for the coarser level are relaxed towards
+    Δ²u = 0.
 
-    The domain is periodic. On a line of cells, as on a grid one cell across, a mean is over two of
-    them, and a lone cell loses weight by 2^(α − 1). Single precision: it only ever preconditions.
+    The domain is periodic. On a line of cells, as on a grid one cell across, a mean is over two
+    cells, and a lone cell loses weight by 2^(α − 1). Single precision is enough for a
+    preconditioner.
 
     Parameters
     ----------
@@ -63,7 +68,7 @@ class Extension:
         α at the length scale of each level, from the finest; no more levels than both edges can be
         halved.
     stretch
-        What `stretch_of` says of the cells; they are square if it is left out.
+        The aspect ratio of the cells, see `stretch_of`; by default they are square.
     """
 
     def __init__(
@@ -73,7 +78,7 @@ class Extension:
         stretch: tuple[float, float] = (1.0, 1.0),
     ) -> None:
         self.shape = known.shape
-        # Inside, a line has one axis.
+        # A line is squeezed to one axis.
         self._stretch = stretch
         self._levels: list[_Level] = []
         weight = np.squeeze(known.astype(np.float32))
@@ -81,16 +86,16 @@ class Extension:
         moments: Moments | None = None
         for order in orders:
             total = _sum_of_block(weight)
-            kept = 2.0 ** (min(order, weight.ndim) - weight.ndim)
-            below = np.minimum(np.float32(kept) * total, np.float32(1))
-            share = np.divide(below, total, out=total, where=total > 0)
-            moved = moments if bends(order) else None
-            self._levels.append(_Level(1 - weight, share, moved, bends(order)))
+            loss = 2.0 ** (min(order, weight.ndim) - weight.ndim)
+            coarse = np.minimum(np.float32(loss) * total, np.float32(1))
+            share = np.divide(coarse, total, out=total, where=total > 0)
+            shift = moments if bends(order) else None
+            self._levels.append(_Level(1 - weight, share, shift, bends(order)))
             if any_bends:
-                moments = _moments_below(weight, moments, share)
-            weight = below
+                moments = _coarse_moments(weight, moments, share)
+            weight = coarse
 
-    def spread(self, values: Field) -> Field:
+    def apply(self, values: Field) -> Field:
         """Return E applied to ``values``, which are 0 where not known; shape (mx, my)."""
         means = [np.squeeze(values)]
         for level in self._levels:
@@ -106,8 +111,8 @@ class Extension:
                 filled -= change
         return filled.reshape(self.shape)
 
-    def gather(self, values: Field) -> Field:
-        """Return the transpose of E applied to ``values``; of use only where known."""
+    def apply_transpose(self, values: Field) -> Field:
+        """Return Eᵀ applied to ``values``, meaningful where ``known``; shape (mx, my)."""
         means = [np.squeeze(values)]
         for level in self._levels:
             for damping in reversed(_DAMPINGS) if level.relaxes else ():
@@ -115,12 +120,12 @@ class Extension:
                 change *= damping
                 means[-1] = means[-1] - change
             means.append(level.transposed_fill(means[-1]))
-        gathered = means.pop()
+        result = means.pop()
         for level, own in zip(reversed(self._levels), reversed(means), strict=True):
-            gathered *= level.share
-            gathered = _repeat(gathered)
-            gathered += own
-        return gathered.reshape(self.shape)
+            result *= level.share
+            result = _repeat(result)
+            result += own
+        return result.reshape(self.shape)
 
 
 @dataclass(frozen=True)
@@ -128,16 +133,16 @@ class _Level:
     free: Field
     """1 − w."""
     share: Field
-    """What each value counts for in the mean below it."""
+    """Weight of each value in the mean of the coarser level."""
     moments: Moments | None
-    """w × centroid of what is known, in cells from the centre, where means are moved."""
+    """w × centroid of the known cells, in cells from the centre, where means are shifted."""
     relaxes: bool
 
-    def fill(self, below: Field, own: Field) -> Field:
-        """Return this level, from the one below and its own means by their weights."""
+    def fill(self, coarse: Field, own: Field) -> Field:
+        """Return this level from the coarser one and its own means times their weights."""
         if self.moments is None:
-            return _interpolate(below, self.free, own)
-        smooth = _interpolate(below, np.ones_like(own), np.zeros_like(own))
+            return _interpolate(coarse, self.free, own)
+        smooth = _interpolate(coarse, np.ones_like(own), np.zeros_like(own))
         filled = smooth * self.free
         filled += own
         for axis, moment in enumerate(self.moments):
@@ -145,7 +150,7 @@ class _Level:
         return filled
 
     def transposed_fill(self, values: Field) -> Field:
-        """Return the transpose of `fill`'s map from the level below."""
+        """Return the transpose of the map from the coarser level in `fill`."""
         if self.moments is None:
             return _transposed_interpolate(values, self.free)
         smooth = self.free * values
@@ -154,16 +159,16 @@ class _Level:
         return _transposed_interpolate(smooth, np.ones_like(values))
 
 
-def _moments_below(weight: Field, moments: Moments | None, share: Field) -> Moments:
-    """Return Σ ``share`` (w × place + moment) of each 2 × 2 cells, places from their centre.
+def _coarse_moments(weight: Field, moments: Moments | None, share: Field) -> Moments:
+    """Return Σ ``share`` (w × position + moment) over 2 × 2 cells, positions from their centre.
 
-    Cells of the finest level have no ``moments``: what is known is at their centres.
+    Cells of the finest level have no ``moments``: known values are at their centres.
     """
     quarter, half = np.float32(0.25), np.float32(0.5)
-    below = [quarter * _sum_of_block(_alternating(weight, axis)) for axis in range(weight.ndim)]
+    coarse = [quarter * _sum_of_block(_alternating(weight, axis)) for axis in range(weight.ndim)]
     for axis, moment in enumerate(moments or ()):
-        below[axis] += half * _sum_of_block(moment)
-    return tuple(share * moment for moment in below)
+        coarse[axis] += half * _sum_of_block(moment)
+    return tuple(share * moment for moment in coarse)
 
 
 def _alternating(field: Field, axis: int) -> Field:
@@ -180,7 +185,7 @@ def _slope(field: Field, axis: int) -> Field:
 
 
 def _sum_of_block(fine: Field) -> Field:
-    """Return the sum of each 2 × 2 cells, of each two on a line."""
+    """Return the sums over 2 × 2 cells, over two on a line."""
     rows = fine[0::2] + fine[1::2]
     return rows if rows.ndim == 1 else rows[:, 0::2] + rows[:, 1::2]
 
@@ -196,60 +201,56 @@ def _repeat(coarse: Field) -> Field:
 
 
 def _interpolate(coarse: Field, free: Field, own: Field) -> Field:
-    """Return ``own`` + ``free`` × the bilinear interpolation from cells of twice the size."""
-    if coarse.ndim == 1:
-        line = np.repeat(_NEAR * coarse, 2)
-        line[0::2] += _FAR * np.roll(coarse, 1)
-        line[1::2] += _FAR * np.roll(coarse, -1)
-        line *= free
-        line += own
-        return line
-    n, m = coarse.shape
-    fine = np.empty((2 * n, 2 * m), coarse.dtype)
+    """Return ``own`` + ``free`` × the (bi)linear interpolation from cells of twice the size."""
+    fine = np.empty_like(own)
     wide = _wrapped(coarse)
-    for rows in _blocks(n, m):
-        here = slice(2 * rows.start, 2 * rows.stop)
+    for rows, fine_rows in _blocks(coarse.shape):
         block = wide[rows.start : rows.stop + 2]
-        near, far = _NEAR * block[1:-1], _FAR * block
-        tall = np.empty((2 * len(near), m + 2), coarse.dtype)
-        np.add(near, far[:-2], out=tall[0::2])
-        np.add(near, far[2:], out=tall[1::2])
-        near, far = _NEAR * tall[:, 1:-1], _FAR * tall
-        filled = np.empty((len(tall), 2 * m), coarse.dtype)
-        np.add(near, far[:, :-2], out=filled[:, 0::2])
-        np.add(near, far[:, 2:], out=filled[:, 1::2])
-        filled *= free[here]
-        np.add(filled, own[here], out=fine[here])
+        for axis in range(coarse.ndim):
+            block = _refined(block, axis)
+        block *= free[fine_rows]
+        np.add(block, own[fine_rows], out=fine[fine_rows])
     return fine
 
 
 def _transposed_interpolate(fine: Field, free: Field) -> Field:
-    """Return the transpose of `_interpolate`'s map from the coarse cells, applied to ``fine``."""
-    if fine.ndim == 1:
-        even, odd = (free * fine).reshape(-1, 2).T
-        line = _NEAR * (even + odd)
-        line += _FAR * (np.roll(even, -1) + np.roll(odd, 1))
-        return line
-    n, m = fine.shape[0] // 2, fine.shape[1] // 2
-    wide = np.zeros((n + 2, m + 2), fine.dtype)
-    for rows in _blocks(n, m):
-        here = slice(2 * rows.start, 2 * rows.stop)
-        block = fine[here] * free[here]
-        even, odd = block[:, 0::2], block[:, 1::2]
-        tall = np.zeros((len(block), m + 2), fine.dtype)
-        np.add(even, odd, out=tall[:, 1:-1])
-        tall *= _NEAR
-        tall[:, :-2] += _FAR * even
-        tall[:, 2:] += _FAR * odd
-        even, odd = tall[0::2], tall[1::2]
-        wide[rows.start + 1 : rows.stop + 1] += _NEAR * (even + odd)
-        wide[rows.start : rows.stop] += _FAR * even
-        wide[rows.start + 2 : rows.stop + 2] += _FAR * odd
-    wide[1] += wide[-1]
-    wide[-2] += wide[0]
-    wide[:, 1] += wide[:, -1]
-    wide[:, -2] += wide[:, 0]
-    return wide[1:-1, 1:-1]
+    """Return the transpose of the map from ``coarse`` in `_interpolate`, applied to ``fine``."""
+    wide = np.zeros([n // 2 + 2 for n in fine.shape], fine.dtype)
+    for rows, fine_rows in _blocks([n - 2 for n in wide.shape]):
+        block = fine[fine_rows] * free[fine_rows]
+        for axis in reversed(range(fine.ndim)):
+            block = _transposed_refined(block, axis)
+        wide[rows.start : rows.stop + 2] += block
+    for axis in range(fine.ndim):
+        wide[_along(axis, 1, 2)] += wide[_along(axis, -1)]
+        wide[_along(axis, -2, -1)] += wide[_along(axis, 0, 1)]
+    return wide[_INNER[fine.ndim]]
+
+
+def _refined(wide: Field, axis: int) -> Field:
+    """Return twice as many cells along an axis, interpolated; cells at the ends only contribute."""
+    near, far = _NEAR * wide[_along(axis, 1, -1)], _FAR * wide
+    fine = np.empty([n * (2 if i == axis else 1) for i, n in enumerate(near.shape)], near.dtype)
+    np.add(near, far[_along(axis, 0, -2)], out=fine[_along(axis, 0, None, 2)])
+    np.add(near, far[_along(axis, 2)], out=fine[_along(axis, 1, None, 2)])
+    return fine
+
+
+def _transposed_refined(fine: Field, axis: int) -> Field:
+    """Return the transpose of `_refined` applied to ``fine``."""
+    even, odd = fine[_along(axis, 0, None, 2)], fine[_along(axis, 1, None, 2)]
+    wide = np.zeros([n + 2 * (i == axis) for i, n in enumerate(even.shape)], fine.dtype)
+    inner = wide[_along(axis, 1, -1)]
+    np.add(even, odd, out=inner)
+    inner *= _NEAR
+    wide[_along(axis, 0, -2)] += _FAR * even
+    wide[_along(axis, 2)] += _FAR * odd
+    return wide
+
+
+def _along(axis: int, start: int, stop: int | None = None, step: int = 1) -> tuple[slice, ...]:
+    """Return the index of a slice along an axis."""
+    return (slice(None),) * axis + (slice(start, stop, step),)
 
 
 def stretch_of(dx: float, dy: float) -> tuple[float, float]:
@@ -259,7 +260,7 @@ def stretch_of(dx: float, dy: float) -> tuple[float, float]:
 
 
 def biharmonic(field: Field, stretch: tuple[float, float]) -> Field:
-    """Return h⁴ Δ² of a periodic field; no wave has more than 64.
+    """Return h⁴ Δ² of a periodic field; its eigenvalues are at most 64.
 
     ``stretch`` is that of the cells; h is their edge if they are square.
     """
@@ -267,15 +268,13 @@ def biharmonic(field: Field, stretch: tuple[float, float]) -> Field:
 
 
 def _laplacian(field: Field, stretch: tuple[float, float]) -> Field:
-    if field.ndim == 1:
-        line = np.float32(-2) * field
-        line[1:] += field[:-1]
-        line[:-1] += field[1:]
-        line[0] += field[-1]
-        line[-1] += field[0]
-        return line
-    x, y = stretch
     wide = _wrapped(field)
+    if field.ndim == 1:
+        change = np.float32(-2) * field
+        change += wide[:-2]
+        change += wide[2:]
+        return change
+    x, y = stretch
     change = np.float32(-4 / x) * field
     change += wide[:-2, 1:-1]
     change += wide[2:, 1:-1]
@@ -289,17 +288,18 @@ def _laplacian(field: Field, stretch: tuple[float, float]) -> Field:
 
 
 def _wrapped(field: Field) -> Field:
-    """Return a periodic field with one more cell at each end of each axis."""
-    n, m = field.shape
-    wide = np.empty((n + 2, m + 2), field.dtype)
-    wide[1:-1, 1:-1] = field
-    wide[0, 1:-1], wide[-1, 1:-1] = field[-1], field[0]
-    wide[:, 0], wide[:, -1] = wide[:, -2], wide[:, 1]
+    """Return a periodic field padded by one cell at both ends of each axis."""
+    wide = np.empty([n + 2 for n in field.shape], field.dtype)
+    wide[_INNER[field.ndim]] = field
+    for axis in range(field.ndim):
+        wide[_along(axis, 0, 1)] = wide[_along(axis, -2, -1)]
+        wide[_along(axis, -1)] = wide[_along(axis, 1, 2)]
     return wide
 
 
-def _blocks(n: int, m: int) -> Iterator[slice]:
-    """Yield slices of the ``n`` rows of coarse cells, ``m`` to a row, one block each."""
-    rows = max(1, _BLOCK // (4 * m))
-    for start in range(0, n, rows):
-        yield slice(start, min(start + rows, n))
+def _blocks(shape: Sequence[int]) -> Iterator[tuple[slice, slice]]:
+    """Yield slices of the rows of coarse cells and of fine ones, block by block."""
+    rows = max(1, _BLOCK // (4 * math.prod(shape[1:])))
+    for start in range(0, shape[0], rows):
+        stop = min(start + rows, shape[0])
+        yield slice(start, stop), slice(2 * start, 2 * stop)

@@ -11,57 +11,56 @@ from pellicle.components import IterativeSolver, Monitor
 from pellicle.numerics.problem import Problem
 from pellicle.numerics.solution import Solution, State
 
-# Greatest exponent of a unit: what is greater than that by 2^100 is still a number.
-_LARGEST = 900
-# Exponent of what is still a number in single precision, and its square in double.
-_FAR = 100
+# Units are 2^±900 at most, so that 2^100 times a unit is still a number.
+_MAX_EXPONENT = 900
+# 2^±100 is a number in single precision, and so is its square in double precision.
+_SINGLE_EXPONENT = 100
 
 
 class ScaledSolver(IterativeSolver):
     """Iterative solver whose heights and pressures are near 1.
 
-    In single precision, and where squares are summed, numbers below 1e-38 and 1e-308 are lost; a
-    displacement on a domain of 1e-12 m is one. The units are powers of two, which change no digit.
+    Numbers below 1e-38 are lost in single precision, and below 1e-308 where squares are summed;
+    displacements on a domain of 1e-12 m are. The units are powers of two, so no digit changes.
     """
 
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
-        """Iterate until the tolerance is met, or it is plain that it will not be."""
+        """Iterate in scaled units; see `IterativeSolver.solve`."""
         height = height_unit(problem)
         pressure = height / problem.operator.unit
-        scaled = problem.scaled(height, pressure)
-        # Of a pressure beyond all that this step can have, squares are no numbers any more.
-        if start is not None and float(start.pressure.max()) / pressure < 2.0**_FAR:
+        # Squares of a pressure far beyond any of this step would overflow.
+        if start is not None and float(start.pressure.max()) / pressure < 2.0**_SINGLE_EXPONENT:
             before = start.pressure / pressure
             start = State(before, before, start.depth / height)
         else:
             start = None
-        solution = super().solve(scaled, start, monitor)
+        solution = super().solve(problem.scaled(height, pressure), start, monitor)
         return replace(solution, state=solution.pressure * pressure)
 
 
 def height_unit(problem: Problem) -> float:
     """Return a power of two near the heights [m] that decide the contact.
 
-    At a depth that is how far the indenter reaches below the undeformed surface. Under a force it
-    is the geometric mean of its height range and of the displacement that the force would have as
-    the most compliant wave, so that either may be much smaller than the other.
+    At a given depth that is how far the indenter reaches below the undeformed surface. Under force
+    control it is the geometric mean of the indenter's height range and of the displacement of the
+    most compliant wave under the mean pressure; either may be much smaller than the other.
     """
     if problem.prescribed == "depth":
         return 2.0 ** _exponent(problem.value + float(problem.profile.max()))
     finite = problem.profile[np.isfinite(problem.profile)]
-    moved = _exponent(problem.value) + _exponent(problem.operator.unit)
-    moved -= _exponent(problem.grid.cell_area) + _exponent(float(problem.profile.size))
-    reach = float(np.ptp(finite)) if finite.size else 0.0
-    if not reach:
-        return 2.0 ** _within(moved)
-    heights = _exponent(reach)
-    # Single precision goes to 2^127.
-    return 2.0 ** _within(max((heights + moved) // 2, heights - _FAR, moved - _FAR))
+    wave = _exponent(problem.value) + _exponent(problem.operator.unit)
+    wave -= _exponent(problem.grid.cell_area) + _exponent(float(problem.profile.size))
+    height_range = float(np.ptp(finite)) if finite.size else 0.0
+    if not height_range:
+        return 2.0 ** _clipped(wave)
+    heights = _exponent(height_range)
+    lowest = max(heights, wave) - _SINGLE_EXPONENT
+    return 2.0 ** _clipped(max((heights + wave) // 2, lowest))
 
 
 def _exponent(value: float) -> int:
-    return _within(math.frexp(value)[1])
+    return _clipped(math.frexp(value)[1])
 
 
-def _within(exponent: int) -> int:
-    return max(-_LARGEST, min(_LARGEST, exponent))
+def _clipped(exponent: int) -> int:
+    return max(-_MAX_EXPONENT, min(_MAX_EXPONENT, exponent))

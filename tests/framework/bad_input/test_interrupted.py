@@ -53,7 +53,7 @@ def test_interrupt(tmp_path: Path, long_run: subprocess.Popen[str]) -> None:
     long_run.send_signal(signal.SIGINT)
     message = long_run.communicate(timeout=60)[1]
     assert long_run.returncode == 130
-    says(message, "interrupted; what steps were finished are in out")
+    says(message, "interrupted; finished steps are in out")
     assert "Traceback" not in message
     done = pl.load(tmp_path / "out/start.h5").dataset
     assert 1 <= done.sizes["step"] < 20_000

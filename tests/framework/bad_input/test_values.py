@@ -21,14 +21,14 @@ KEYS_AND_TYPES = {
     "key that Python knows": ("self=1", ["self: is not a field here", "kernel"]),
     "unknown type": (
         "kernel.type='tensed_membran'",
-        ["kernel.type: 'tensed_membran' is no kernel", "did you mean 'tensed_membrane'?"],
+        ["kernel.type: 'tensed_membran' is not a kernel", "did you mean 'tensed_membrane'?"],
     ),
     "unknown type in a list": (
         "corrections.0.type='yastrebo'",
-        ["corrections.0.type: 'yastrebo' is no correction", "did you mean 'yastrebov'?"],
+        ["corrections.0.type: 'yastrebo' is not a correction", "did you mean 'yastrebov'?"],
     ),
     "no type": ("kernel={}", ["kernel: has no type", "half_space, tensed_membrane"]),
-    "type is no text": ("kernel.type=1", ["kernel.type: 1 is no kernel", "half_space"]),
+    "type is no text": ("kernel.type=1", ["kernel.type: 1 is not a kernel", "half_space"]),
     "choice": (
         "grid.boundary='perodic'",
         ["grid.boundary: 'perodic' is not allowed", "did you mean 'periodic'?", "free, periodic"],
@@ -38,8 +38,8 @@ KEYS_AND_TYPES = {
         ["outputs.0.formats.0: 'bmp' is not allowed", "pdf, png, svg"],
     ),
     "one output twice": (
-        "outputs=[{type='hdf5'}, {type='csv'}, {type='hdf5'}]",
-        ["outputs.2.type: 'hdf5' would write NAME.h5, as outputs.0 ('hdf5')", "leave one out"],
+        "outputs=[{type='csv'}, {type='hdf5'}, {type='csv'}]",
+        ["outputs.2.type: 'csv' would write NAME.csv, as outputs.0 ('csv')", "leave one out"],
     ),
     "two outputs of one name": (
         "outputs=[{type='maps', name='a'}, {type='maps', name='b'}, {type='maps', name='a'}]",
@@ -163,8 +163,8 @@ def test_numbers_out_of_bounds(refuse: Callable[..., str], change: str, words: l
     ("value", "words"),
     [
         ("'1 m'", ["'1 m' measures [length], not [mass] / [time] ** 2"]),
-        ("'1 mN/n'", ["'1 mN/n' has no unit that is known ('mN/n')"]),
-        ("'1 N/'", ["'1 N/' has no unit that is known ('N/')"]),
+        ("'1 mN/n'", ["'1 mN/n' has an unknown unit ('mN/n')"]),
+        ("'1 N/'", ["'1 N/' has an unknown unit ('N/')"]),
         ("'1'", ["'1' is text without a unit"]),
         ("'N/m'", ["'N/m' is not a number with a unit"]),
         ("''", ["'' is not a number with a unit"]),

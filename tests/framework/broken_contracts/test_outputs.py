@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.plugins import registry
 from tests.framework.broken_contracts.short_run import base, run, study
 
 HalfSpace: Any = base("kernel", "half_space")
@@ -20,6 +19,16 @@ class Output(pl.Output):
     """Output that breaks its contract."""
 
     type: Literal["liar"] = "liar"
+
+    def write(self, runs: Any, stem: Any) -> Any:
+        """Write nothing."""
+        return ()
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Work in a folder of the test: outputs without a directory go to the current one."""
+    monkeypatch.chdir(tmp_path)
 
 
 def writes_pressure(data: Any) -> None:
@@ -57,7 +66,7 @@ CHANGES = [
 ]
 
 
-@pytest.mark.parametrize("method", ["step", "close"])
+@pytest.mark.parametrize("method", ["step", "write"])
 @pytest.mark.parametrize("change", CHANGES)
 def test_an_output_cannot_change_the_result(change: Any, method: str, tmp_path: Path) -> None:
     """What an output writes into its data reaches neither the result nor the outputs after it."""
@@ -65,21 +74,20 @@ def test_an_output_cannot_change_the_result(change: Any, method: str, tmp_path: 
     class Changing(Output):
         """Changes what it is given."""
 
-        def step(self, place: Any, step: Any) -> None:
+        def step(self, record: Any, stem: Any) -> None:
             """Change a step."""
             if method == "step":
-                change(step)
+                change(record)
 
-        def close(self, place: Any, result: Any) -> Any:
+        def write(self, runs: Any, stem: Any) -> Any:
             """Change the result."""
-            if method == "close":
-                change(result.dataset)
+            if method == "write":
+                change(runs.open())
             return ()
 
     untouched = run().dataset
     configuration = pl.Run.from_json(untouched.attrs["configuration"])
-    outputs = (Changing(), registry().make(pl.Output, {"type": "hdf5"}))
-    changed = configuration.model_copy(update={"outputs": outputs})
+    changed = configuration.model_copy(update={"outputs": (Changing(),)})
     refused = pytest.raises(pl.PluginError, match="output 'liar' changes what it is given")
     # Whether coordinates can be written to, and are copies then, depends on the version of pandas.
     with refused if change is writes_pressure else suppress(pl.PluginError):
@@ -102,32 +110,50 @@ def test_the_result_may_be_changed_by_its_owner() -> None:
 
 @pytest.mark.parametrize("returned", [None, "file.txt", ("file.txt",), 3, [None]])
 def test_files_that_are_none_are_refused(returned: Any) -> None:
-    """What close() returns are paths."""
+    """What write() returns are paths."""
 
     class Untrue(Output):
         """Names no files."""
 
-        def close(self, place: Any, result: Any) -> Any:
+        def write(self, runs: Any, stem: Any) -> Any:
             """Return anything but files."""
             return returned
 
-    with pytest.raises(pl.PluginError, match=r"output 'liar': close\(\) returned .* pathlib.Path"):
+    with pytest.raises(
+        pl.PluginError, match=r"'liar': write\(runs, stem\) returned .* pathlib.Path"
+    ):
         run(outputs=[Untrue()])
 
 
+@pytest.mark.parametrize("name", ["other.txt", "../run-liar.txt", "run.txt"])
+def test_files_of_another_stem_are_refused(name: str) -> None:
+    """A file that does not begin with the stem may be that of another output or run."""
+
+    class Astray(Output):
+        """Returns a file that is not its own."""
+
+        def write(self, runs: Any, stem: Any) -> Any:
+            """Return a file of another name."""
+            return (stem.parent / name,)
+
+    with pytest.raises(pl.PluginError, match=r"returned .*; its files have to begin with the stem"):
+        run(outputs=[Astray()])
+
+
 @pytest.mark.parametrize("returned", [".txt", None, (1,)])
-def test_endings_that_are_none_are_refused(returned: Any) -> None:
+def test_suffixes_that_are_none_are_refused(returned: Any) -> None:
     """One text is not a tuple of texts: two outputs could replace each other's files unnoticed."""
 
     class Untrue(Output):
         """Forgets a comma."""
 
-        def endings(self) -> Any:
-            """Return anything but a tuple of text."""
+        @property
+        def suffixes(self) -> Any:
+            """Anything but a tuple of text."""
             return returned
 
-    with pytest.raises(pl.PluginError, match=r"output 'liar': endings\(\) returned"):
-        run(outputs=[Untrue(), {"type": "hdf5"}])
+    with pytest.raises(pl.PluginError, match=r"output 'liar': suffixes is"):
+        run(outputs=[Untrue(), {"type": "csv"}])
 
 
 @pytest.mark.parametrize("change", CHANGES[:1])
@@ -137,9 +163,9 @@ def test_an_output_cannot_change_the_table_of_a_study(change: Any, tmp_path: Pat
     class Changing(Output):
         """Changes the table."""
 
-        def study(self, place: Any, table: Any) -> Any:
+        def write(self, runs: Any, stem: Any) -> Any:
             """Write to the forces."""
-            table["force"].values[...] = 0
+            runs.table["force"].values[...] = 0
             return ()
 
     with pytest.raises(pl.PluginError, match="output 'liar' changes what it is given"):
@@ -152,10 +178,10 @@ def test_each_output_gets_data_of_its_own(tmp_path: Path) -> None:
     class Dropping(Output):
         """Drops the pressure and renames the run."""
 
-        def close(self, place: Any, result: Any) -> Any:
+        def write(self, runs: Any, stem: Any) -> Any:
             """Change the dataset itself, not its arrays."""
-            del result.dataset["pressure"]
-            result.dataset.attrs["title"] = "another"
+            del runs.open()["pressure"]
+            runs.open().attrs["title"] = "another"
             return ()
 
     class Looking(pl.Output):
@@ -164,9 +190,10 @@ def test_each_output_gets_data_of_its_own(tmp_path: Path) -> None:
         type: Literal["looking"] = "looking"
         seen: ClassVar[list[Any]] = []
 
-        def close(self, place: Any, result: Any) -> Any:
+        def write(self, runs: Any, stem: Any) -> Any:
             """Keep what is there."""
-            self.seen.append(("pressure" in result.dataset, result.dataset.attrs["title"]))
+            data = runs.open()
+            self.seen.append(("pressure" in data, data.attrs["title"]))
             return ()
 
     run(title="ours", outputs=[Dropping(), Looking()])
@@ -189,7 +216,7 @@ def test_a_component_cannot_end_the_process(code: int) -> None:
     class LeavingAtTheEnd(Output):
         """Ends the process when the run is done."""
 
-        def close(self, place: Any, result: Any) -> Any:
+        def write(self, runs: Any, stem: Any) -> Any:
             """Leave."""
             raise SystemExit(code)
 
@@ -205,25 +232,10 @@ def test_a_file_system_that_is_read_only_is_no_lie() -> None:
     class Unlucky(Output):
         """Cannot write."""
 
-        def close(self, place: Any, result: Any) -> Any:
+        def write(self, runs: Any, stem: Any) -> Any:
             """Raise what the system raises."""
             raise OSError("the volume is read-only")
 
     with pytest.raises(OSError, match="the volume is read-only") as error:
         run(outputs=[Unlucky()])
     assert error.value.__notes__[0].startswith("output 'liar' failed")
-
-
-@pytest.mark.parametrize("returned", ["nothing", 3, {"step": 1}])
-def test_steps_that_are_none_are_refused(returned: Any) -> None:
-    """What resume() returns is a dataset of steps, or None."""
-
-    class Resuming(Output):
-        """Has no steps."""
-
-        def resume(self, place: Any) -> Any:
-            """Return anything but steps."""
-            return returned
-
-    with pytest.raises(pl.PluginError, match=r"output 'liar': resume\(\) returned"):
-        run(outputs=[Resuming()])

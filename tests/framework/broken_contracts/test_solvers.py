@@ -196,7 +196,9 @@ SOLVERS = {
 }
 
 
-@pytest.mark.parametrize("loading", [{"depth": ["2 um", "4 um"]}, {"contact_radius": "60 um"}])
+@pytest.mark.parametrize(
+    "loading", [{"depth": ["2 um", "4 um"]}, {"contact_radius": ["60 um", "70 um"]}]
+)
 @pytest.mark.parametrize("lie", SOLVERS)
 def test_a_solver_that_lies_is_refused(lie: Any, loading: dict[str, Any]) -> None:
     """No number of a result comes from a problem that the solver changed, or from no pressure."""

@@ -329,7 +329,7 @@ def test_retract_on_request() -> None:
         (("nothing.csv", *OPTIONS), "cannot be read"),
         (("curve.csv", "-i", "paraboloid"), "indenter.radius: is missing"),
         (("curve.csv", "-i", "paraboloid", "--radius", "10"), "text without a unit"),
-        (("curve.csv", "-i", "ball", "--radius", "10 um"), "'ball' is no indenter"),
+        (("curve.csv", "-i", "ball", "--radius", "10 um"), "'ball' is not an indenter"),
         (("curve.csv", "-i", "self_affine", "--radius", "10 um"), "indenter"),
         (("curve.csv", *OPTIONS, "--fix", "tension"), "name=value"),
         (("curve.csv", *OPTIONS, "--fix", "modulus=1"), "is not a parameter"),

@@ -239,9 +239,9 @@ def test_radius_of_each(cli: Cli, listed: bool) -> None:
     [
         (("empty", *OPTIONS), "holds no file of a known kind"),
         (("a.csv", "b.csv", *OPTIONS, "--radius", "1 um", "--radius", "2 um"), "3 values for 2"),
-        (("a.csv", "b.csv", "-i", "ball", "--radius", "1 um"), "'ball' is no indenter"),
+        (("a.csv", "b.csv", "-i", "ball", "--radius", "1 um"), "'ball' is not an indenter"),
         (("a.csv", "b.csv", "-i", "paraboloid"), "a.csv: indenter.radius: is missing"),
-        (("a.csv", "b.csv", *OPTIONS, "--executor", "abacus"), "'abacus' is no executor"),
+        (("a.csv", "b.csv", *OPTIONS, "--executor", "abacus"), "'abacus' is not an executor"),
         (("a.csv", "b.csv", *OPTIONS, "--fix", "tension=1 V"), "[mass]"),
         (("list.csv", *OPTIONS), "has a row without a file"),
         (("a.csv", *OPTIONS, "--spring-constant", "1 m"), "spring_constant"),

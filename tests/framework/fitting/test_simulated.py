@@ -132,7 +132,7 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         assert estimate.high / estimate.low < 1.5
     assert "the force curve is simulated" in fit.messages[-1]
     assert fit.to_dict()["model"]["kernel"] == {"type": "tensed_membrane"}
-    monkeypatch.setattr(simulation, "carry_out", None)
+    monkeypatch.setattr(simulation, "execute", None)
     again = pl.fit(
         depth * 1e3,
         force * 1e6,
@@ -165,7 +165,7 @@ def test_simulated_curve_is_an_indenter(exact_nodes: SimulatedCurve) -> None:
         ("bonded_layer", "put it under a skin"),
         ({"type": "tensed_membrane", "tension": 1}, "kernel.tension: is what the fit finds"),
         ({"type": "coated", "substrate": LAYER}, "kernel.substrate.poissons_ratio: is missing"),
-        ({"type": "bendy"}, "'bendy' is no kernel"),
+        ({"type": "bendy"}, "'bendy' is not a kernel"),
         (
             {"type": "coated", "substrate": LAYER | {"youngs_modulus": 1e3}},
             "kernel.substrate.youngs_modulus: is what the fit finds",

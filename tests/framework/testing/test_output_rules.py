@@ -1,7 +1,8 @@
 """For each rule of outputs: an output that breaks it, and only it, by a little."""
 
 import json
-from typing import Any, Literal
+from pathlib import Path
+from typing import Any, ClassVar, Literal
 
 import pytest
 
@@ -13,61 +14,64 @@ class Output(pl.Output):
     """Text with the depth of each step, to be broken."""
 
     type: Literal["broken"] = "broken"
+    scope: ClassVar[Literal["run", "study", "both"]] = "run"
 
-    def endings(self) -> tuple[str, ...]:
+    @property
+    def suffixes(self) -> tuple[str, ...]:
         return (".json",)
 
-    def close(self, place: Any, result: Any) -> Any:
-        path = place.file(".json")
-        path.write_text(json.dumps(self.told(result.dataset["depth"].values.tolist())))
+    def write(self, runs: Any, stem: Any) -> Any:
+        path = Path(f"{stem}.json")
+        path.write_text(json.dumps(self.shown(runs.table["depth"].values.tolist())))
         return (path,)
 
-    def told(self, depths: list[float]) -> list[Any]:
+    def shown(self, depths: list[float]) -> list[Any]:
         return depths
 
 
 class LosesFirst(Output):
     """Forgets the first step."""
 
-    def told(self, depths: list[float]) -> list[Any]:
+    def shown(self, depths: list[float]) -> list[Any]:
         return depths[1:] or ["none"]
 
 
 class LosesLast(Output):
     """Forgets the last step."""
 
-    def told(self, depths: list[float]) -> list[Any]:
+    def shown(self, depths: list[float]) -> list[Any]:
         return depths[:-1] or ["none"]
 
 
 class Nameless(Output):
-    """Does not name what it leaves."""
+    """Does not return what it leaves."""
 
-    def close(self, place: Any, result: Any) -> Any:
-        super().close(place, result)
+    def write(self, runs: Any, stem: Any) -> Any:
+        super().write(runs, stem)
         return ()
 
 
 class Littering(Output):
-    """Leaves more than it names."""
+    """Leaves more than it returns."""
 
-    def close(self, place: Any, result: Any) -> Any:
-        place.file(".log").write_text("done")
-        return super().close(place, result)
+    def write(self, runs: Any, stem: Any) -> Any:
+        Path(f"{stem}.log").write_text("done")
+        return super().write(runs, stem)
 
 
 class Untold(Output):
-    """Leaves and names a file that it tells nobody of beforehand."""
+    """Leaves and returns a file that is not among its suffixes."""
 
-    def endings(self) -> tuple[str, ...]:
+    @property
+    def suffixes(self) -> tuple[str, ...]:
         return ("-*.json",)
 
 
 class Empty(Output):
     """Leaves a file with nothing in it."""
 
-    def close(self, place: Any, result: Any) -> Any:
-        (path,) = super().close(place, result)
+    def write(self, runs: Any, stem: Any) -> Any:
+        (path,) = super().write(runs, stem)
         path.write_text("")
         return (path,)
 
@@ -75,75 +79,76 @@ class Empty(Output):
 class Own(Output):
     """Leaves a file of a name that another run would have too."""
 
-    def close(self, place: Any, result: Any) -> Any:
-        (path,) = super().close(place, result)
+    def write(self, runs: Any, stem: Any) -> Any:
+        (path,) = super().write(runs, stem)
         return (path.replace(path.with_name("result.json")),)
 
 
 class Once(Output):
     """Refuses to replace its own file."""
 
-    def open(self, place: Any) -> None:
-        super().open(place)
-        if place.file(".json").exists():
-            raise pl.StorageError(f"{place.file('.json')} exists")
+    def write(self, runs: Any, stem: Any) -> Any:
+        if Path(f"{stem}.json").exists():
+            raise pl.StorageError(f"{stem}.json exists")
+        return super().write(runs, stem)
 
 
-class Optimistic(Output):
-    """Finds out after the computation that it cannot write."""
+class Jealous(Output):
+    """Wants the folder to itself."""
 
-    def open(self, place: Any) -> None:
-        pass
-
-    def close(self, place: Any, result: Any) -> Any:
-        place.directory.mkdir(parents=True, exist_ok=True)
-        return super().close(place, result)
+    def write(self, runs: Any, stem: Any) -> Any:
+        if any(not path.name.startswith(stem.name) for path in stem.parent.iterdir()):
+            raise pl.StorageError(f"{stem.parent} is not empty")
+        return super().write(runs, stem)
 
 
-class Resuming(Output):
-    """Goes on from a file that need not be there."""
+class OneRun(Output):
+    """Shows a study as if it were a run."""
 
-    def resume(self, place: Any) -> Any:
-        json.loads(place.file(".json").read_text())
+    scope: ClassVar[Literal["run", "study", "both"]] = "both"
+
+    def write(self, runs: Any, stem: Any) -> Any:
+        runs.open(runs.table["run"].item())
+        return super().write(runs, stem)
 
 
 class Normalising(Output):
     """Divides the pressure by its maximum, in place."""
 
-    def step(self, place: Any, step: Any) -> None:
-        step["pressure"].values[...] /= step["pressure"].values.max()
+    def step(self, record: Any, stem: Any) -> None:
+        record["pressure"].values[...] /= record["pressure"].values.max()
 
 
 class Renaming(Output):
     """Takes the data for its own."""
 
-    def close(self, place: Any, result: Any) -> Any:
-        result.dataset.attrs["title"] = "mine"
-        return super().close(place, result)
+    def write(self, runs: Any, stem: Any) -> Any:
+        runs.open().attrs["title"] = "mine"
+        return super().write(runs, stem)
 
 
 class Spoken(Output):
-    """Says the name of its file."""
+    """Returns the name of its file as a text."""
 
-    def close(self, place: Any, result: Any) -> Any:
-        (path,) = super().close(place, result)
+    def write(self, runs: Any, stem: Any) -> Any:
+        (path,) = super().write(runs, stem)
         return str(path)
 
 
 OUTPUTS = {
     Normalising: "leaves_its_data_as_they_are",
     Renaming: "leaves_its_data_as_they_are",
-    Spoken: "leaves_the_files_it_names",
+    Spoken: "leaves_the_files_it_returns",
+    Own: "leaves_the_files_it_returns",
     LosesFirst: "loses_no_step",
     LosesLast: "loses_no_step",
-    Nameless: "leaves_the_files_it_names",
-    Littering: "leaves_the_files_it_names",
-    Untold: "leaves_the_files_it_names",
-    Empty: "leaves_the_files_it_names",
-    Own: "leaves_the_files_it_names",
-    Once: "leaves_the_files_it_names",
-    Optimistic: "hopeless_folder_is_known_before_computing",
-    Resuming: "works_in_a_run",
+    Nameless: "leaves_the_files_it_returns",
+    Littering: "leaves_the_files_it_returns",
+    Untold: "leaves_the_files_it_returns",
+    Empty: "leaves_the_files_it_returns",
+    Once: "leaves_the_files_it_returns",
+    Jealous: "works_in_a_run",
+    OneRun: "works_in_a_study",
 }
 
 

@@ -114,6 +114,23 @@ class Wide(Solver):
         return super().response(problem, state, monitor) + 1e-3
 
 
+class Working(Solver):
+    """Applies the operator to know its residual."""
+
+    def residual(self, problem: Any, state: Any) -> Any:
+        problem.operator(state.pressure)
+        return super().residual(problem, state)
+
+
+class Wearing(Solver):
+    """Shrinks its error a little with each look."""
+
+    def residual(self, problem: Any, state: Any) -> Any:
+        residual = super().residual(problem, state)
+        object.__setattr__(state, "scale", (1 + 1e-9) * state.scale)
+        return residual
+
+
 class Mute(Solver):
     """Returns nothing."""
 
@@ -158,8 +175,10 @@ SOLVERS = {
     Shared: "start_belongs_to_the_caller",
     Stale: "start_does_not_matter",
     Absolute: "pressure_is_proportional_to_the_stiffness",
-    Silent: "progress_is_told",
-    Miscounting: "progress_is_told",
+    Working: "residual_only_looks",
+    Wearing: "residual_only_looks",
+    Silent: "monitor_is_called",
+    Miscounting: "monitor_is_called",
     Round: "response_is_that_of_a_flat_punch",
     Wide: "response_is_that_of_a_flat_punch",
 }

@@ -160,9 +160,9 @@ def test_interpolation_is_of_fourth_order(tmp_path: Path) -> None:
 def test_rough_run_under_tension_converges() -> None:
     """A run from a file, with a tension, converges and touches with the peaks.
 
-    That a scan is no period is said.
+    A warning says that a scan is not periodic.
     """
-    with pytest.warns(UserWarning, match="no period along [xy]"):
+    with pytest.warns(UserWarning, match="not periodic along [xy]"):
         result = pl.run(
             {
                 "grid": {"points": [39, 33], "size": ["1.3 mm", "1.1 mm"], "boundary": "periodic"},

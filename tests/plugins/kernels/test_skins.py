@@ -183,7 +183,10 @@ def test_coated_takes_its_substrate_in_any_form() -> None:
     [
         ({"thickness": "-1 mm"}, "substrate.thickness: '-1 mm' is not allowed"),
         ({"thicknes": 1}, "substrate.thicknes: is not a field here; did you mean 'thickness'"),
-        ({"type": "bonded"}, "substrate.type: 'bonded' is no kernel; did you mean 'bonded_layer'"),
+        (
+            {"type": "bonded"},
+            "substrate.type: 'bonded' is not a kernel; did you mean 'bonded_layer'",
+        ),
     ],
 )
 def test_what_is_wrong_with_a_substrate_is_named(change: dict[str, Any], message: str) -> None:

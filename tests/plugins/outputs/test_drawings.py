@@ -82,7 +82,7 @@ def test_fields_of_one_run_of_a_study_say_which(tmp_path: Path) -> None:
 
 def test_an_output_that_fails_keeps_no_other_from_drawing(tmp_path: Path) -> None:
     """The one that fails is named by its place among the outputs."""
-    with pytest.raises(pl.ConfigError, match=r"^outputs\.1\.by: 'nothing' is no axis"):
+    with pytest.raises(pl.ConfigError, match=r"^outputs\.1\.by: 'nothing' is not an axis"):
         carried(
             tmp_path,
             {"type": "hdf5"},
@@ -115,9 +115,9 @@ def test_wrong_derived_columns_are_known_before_running(text: str, message: str)
 @pytest.mark.parametrize(
     ("output", "message"),
     [
-        ({"type": "curves", "by": "kernel.tensoin"}, "no axis of the table; did you mean"),
+        ({"type": "curves", "by": "kernel.tensoin"}, "not an axis of the table; did you mean"),
         ({"type": "curves", "by": TENSION}, "would go over indenter.radius and step"),
-        ({"type": "maps", "by": "seed"}, "no axis of the table"),
+        ({"type": "maps", "by": "seed"}, "not an axis of the table"),
         ({"type": "profiles", "y": "presure"}, "did you mean 'pressure'"),
     ],
 )
@@ -189,9 +189,8 @@ def test_symbol_is_drawn_of_the_runs_that_are_there(tmp_path: Path) -> None:
     table = carried(tmp_path)
     gone = str(table["run"].values[0, 0])
     (tmp_path / "runs" / f"{gone}.h5").unlink()
-    place = pl.Place(tmp_path, "study", table.attrs["configuration"])
     output = registry().make(pl.Output, {"type": "compliance", "by": TENSION})
-    output.study(place, table)
+    output.write(pl.Runs.of_study(table, tmp_path), tmp_path / "study-compliance")
     assert {row["curve"] for row in rows(tmp_path / "study-compliance.csv")} == {
         "kernel.tension = 1 N/m"
     }

@@ -107,7 +107,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
     """Return the page of a run, and its result."""
     folder = tmp_path_factory.mktemp("run")
     result = pl.run(RUN, directory=folder, progress=False, threads=1)
-    (path,) = folder.iterdir()
+    (path,) = folder.glob("*.html")
     return path, result.dataset
 
 

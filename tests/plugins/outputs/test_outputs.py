@@ -1,4 +1,4 @@
-"""What each output leaves behind."""
+"""The files of each output."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import csv
 import re
 import zlib
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ FIGURES = {
 """The colours of the lines in each figure."""
 
 
-def _run(outputs: list[dict[str, Any]] | None, **changes: Any) -> pl.Run:
+def _run(outputs: list[Any] | None, **changes: Any) -> pl.Run:
     return pl.Run(
         **{
             "title": "Two Steps",
@@ -70,9 +70,10 @@ def test_csv_starts_afresh(tmp_path: Path) -> None:
 def test_csv_goes_on_below_the_header_that_is_there(tmp_path: Path) -> None:
     """Steps of an earlier version, which had fewer columns, do not move those of the later ones."""
     result = pl.run(_run([]), progress=False)
-    output, place = _run([{"type": "csv"}]).outputs[0], pl.Place(tmp_path, "steps", "{}")  # type: ignore[index]
-    output.step(place, result.dataset.isel(step=[0]).drop_vars(["patches", "perimeter"]))
-    output.step(place, result.dataset.isel(step=[1]))
+    output = _run([{"type": "csv"}]).outputs[0]  # type: ignore[index]
+    stem = tmp_path / "steps"
+    output.step(result.dataset.isel(step=[0]).drop_vars(["patches", "perimeter"]), stem)
+    output.step(result.dataset.isel(step=[1]), stem)
     rows = _read_csv(tmp_path / "steps.csv")
     assert [float(row["force [N]"]) for row in rows] == list(result.dataset["force"].values)
     assert [row["status"] for row in rows] == ["converged", "converged"]
@@ -117,8 +118,8 @@ def test_figures(tmp_path: Path, format_: str) -> None:
     """Every figure is drawn in the format that is asked for."""
     outputs = [{"type": "figures", "formats": [format_]}]
     pl.run(_run(outputs), directory=tmp_path, progress=False)
-    names = sorted(path.name for path in tmp_path.iterdir())
-    assert names == sorted(f"two-steps-{figure}.{format_}" for figure in FIGURES)
+    figures = [tmp_path / f"two-steps-{figure}.{format_}" for figure in FIGURES]
+    assert {*tmp_path.iterdir()} == {*figures, tmp_path / "two-steps.h5"}
     for figure, colours in FIGURES.items():
         assert colours <= _line_colours(tmp_path / f"two-steps-{figure}.{format_}")
     if format_ == "png":
@@ -142,7 +143,7 @@ def test_figures_of_odd_results(tmp_path: Path, changes: dict[str, Any]) -> None
     """Results without contact, without width or with infinite gaps are drawn as well."""
     outputs = [{"type": "figures"}]
     pl.run(_run(outputs, **changes), directory=tmp_path, progress=False)
-    assert len(list(tmp_path.iterdir())) == len(FIGURES)
+    assert len(list(tmp_path.glob("*.png"))) == len(FIGURES)
 
 
 def test_figures_have_units(tmp_path: Path) -> None:
@@ -163,14 +164,54 @@ def test_figures_have_units(tmp_path: Path) -> None:
     assert np.asarray(axes.lines[0].get_xdata()) == pytest.approx([5.0, 10.0])
 
 
-def test_hdf5(tmp_path: Path) -> None:
-    """The file holds the very result that the run returned."""
-    result = pl.run(_run([{"type": "hdf5"}]), directory=tmp_path, progress=False)
-    assert [path.name for path in tmp_path.iterdir()] == ["two-steps.h5"]
-    xr.testing.assert_identical(pl.load(tmp_path / "two-steps.h5").dataset, result.dataset)
+EVERYTHING: list[dict[str, Any]] = [
+    {"type": "hdf5"},
+    {"type": "csv"},
+    {"type": "figures"},
+    {"type": "maps"},
+    {"type": "maps", "formats": ["svg"]},
+    {"type": "maps", "name": "gap"},
+    *({"type": type_} for type_ in ("curves", "profiles", "compliance", "patches", "spectrum")),
+    *({"type": type_} for type_ in ("distributions", "vtk", "html")),
+]
+WITH_NUMBERS = "curves", "profiles", "compliance", "patches", "spectrum", "distributions"
+NAMES = {
+    *(".h5", ".csv", ".html", ".pvd", "-0001.vts", "-0002.vts"),
+    *("-maps.png", "-maps.svg", "-gap.png"),
+    *(f"-{type_}.{suffix}" for type_ in WITH_NUMBERS for suffix in ("png", "csv")),
+}
+OF_RUNS = {".h5", ".csv", ".pvd", "-0001.vts", "-0002.vts"}
 
 
-def test_hdf5_is_whole_after_each_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_names_of_files(tmp_path: Path) -> None:
+    """Every output writes files of the names that users know."""
+    pl.run(_run(EVERYTHING), directory=tmp_path, progress=False)
+    names = {path.name.removeprefix("two-steps") for path in tmp_path.iterdir()}
+    assert names == NAMES | {f"-{figure}.png" for figure in FIGURES}
+
+
+def test_names_of_files_of_a_study(tmp_path: Path) -> None:
+    """The table and the figures lie in the folder of a study, what shows single runs in runs."""
+    study = pl.Study(run=_run(EVERYTHING), vary={"indenter.radius": [1e-3, 2e-3]})
+    table = pl.run_study(study, tmp_path, progress=False)
+    names = {path.name.removeprefix("study") for path in tmp_path.glob("study*")}
+    of_study = NAMES - OF_RUNS | {".h5", ".csv"}
+    assert names == of_study | {"-force.png", "-contact_fraction.png"}
+    runs = {path.name for path in (tmp_path / "runs").iterdir()}
+    assert runs == {f"{run}{suffix}" for run in table["run"].values for suffix in OF_RUNS}
+
+
+def test_any_run_leaves_its_result(tmp_path: Path) -> None:
+    """The file holds the very result that the run returned, whichever outputs are named."""
+    for number, outputs in enumerate(([], [{"type": "hdf5"}], [{"type": "csv"}])):
+        folder = tmp_path / str(number)
+        result = pl.run(_run(outputs), directory=folder, progress=False)
+        names = {path.suffix for path in folder.iterdir()}
+        assert names == {".h5", *(f".{one['type']}" for one in outputs)} - {".hdf5"}
+        xr.testing.assert_identical(pl.load(folder / "two-steps.h5").dataset, result.dataset)
+
+
+def test_result_is_whole_after_each_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """While a step is solved, the file with those before it can be read."""
     from pellicle.runs import steps
 
@@ -183,22 +224,66 @@ def test_hdf5_is_whole_after_each_step(tmp_path: Path, monkeypatch: pytest.Monke
         return solve(*arguments)
 
     monkeypatch.setattr(steps, "solve_step", look_and_solve)
-    run = _run([{"type": "hdf5"}], loading={"depth": ["6 um", "8 um", "10 um"]})
+    run = _run([], loading={"depth": ["6 um", "8 um", "10 um"]})
     pl.run(run, directory=tmp_path, progress=False)
     assert found == [0, 1, 2]
 
 
-def test_hdf5_replaces_its_own_result_only(tmp_path: Path) -> None:
+def test_result_replaces_its_own_only(tmp_path: Path) -> None:
     """The same run may be repeated; another one only replaces it when told to."""
-    run = _run([{"type": "hdf5"}])
+    run = _run([])
     for _ in range(2):
         pl.run(run, directory=tmp_path, progress=False)
-    other = _run([{"type": "hdf5"}], loading={"depth": ["7 um"]})
+    other = _run([], loading={"depth": ["7 um"]})
     with pytest.raises(pl.StorageError, match=r"another configuration.*--overwrite"):
         pl.run(other, directory=tmp_path, progress=False)
     assert pl.load(tmp_path / "two-steps.h5").dataset.sizes["step"] == 2
     pl.run(other, directory=tmp_path, progress=False, overwrite=True)
     assert pl.load(tmp_path / "two-steps.h5").dataset.sizes["step"] == 1
+
+
+class Recording(pl.Output):
+    """Keeps the steps that it is given, and fails at the end of the first run."""
+
+    type: Literal["recording"] = "recording"
+    seen: ClassVar[list[tuple[int, str]]] = []
+
+    def step(self, record: xr.Dataset, stem: Path) -> None:
+        """Keep the number of the step."""
+        self.seen.append((record["step"].item(), stem.name))
+
+    def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
+        """Write nothing."""
+        return ()
+
+
+def test_steps_come_once_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of an earlier process come first, with the stem of the output."""
+    from pellicle.runs import steps
+
+    monkeypatch.setattr(Recording, "seen", [])
+    run = _run([Recording()])
+    with monkeypatch.context() as context:
+        _interrupt_in_step(2, context, steps)
+        with pytest.raises(KeyboardInterrupt):
+            pl.run(run, directory=tmp_path, progress=False)
+    assert Recording.seen == [(1, "two-steps-recording")]
+    Recording.seen.clear()
+    pl.run(run, directory=tmp_path, progress=False)
+    assert [number for number, _ in Recording.seen] == [1, 2]
+
+
+def test_a_folder_that_cannot_be_written_is_known_before_solving(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The message has the name of the file and what to do."""
+    from pellicle.runs import steps
+
+    monkeypatch.setattr(steps, "solve_step", None)
+    (tmp_path / "file").write_text("in the way")
+    message = r"two-steps.*cannot be written.*choose another folder"
+    with pytest.raises(pl.StorageError, match=message):
+        pl.run(_run([]), directory=tmp_path / "file" / "folder", progress=False)
 
 
 def test_library_writes_nothing_unasked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -523,9 +523,11 @@ def test_a_contact_that_all_cells_have_left_is_joined_by_what_penetrates() -> No
     problem = make(16, "free", skin(0.02), paraboloid, "depth", 0.05)
     nowhere = Preconditioner(problem.operator).on(np.zeros(problem.grid.shape, dtype=bool))
     nothing = np.zeros(problem.grid.shape)
-    found = inner_solve(problem, nowhere, nothing, nothing, 1e-10, doubt=1.0)
+    found = inner_solve(problem, nowhere, nothing, nothing, 1e-10, certainty=1.0)
     assert found.error == 0
-    np.testing.assert_array_equal(found.wrong, np.flatnonzero(problem.profile + 0.05 > 1e-10))
+    np.testing.assert_array_equal(
+        found.misclassified, np.flatnonzero(problem.profile + 0.05 > 1e-10)
+    )
 
 
 def test_history_counts_contacts_that_come_back_until_fewer_are_wrong() -> None:
@@ -562,7 +564,7 @@ def test_an_inner_solve_may_end_at_a_share_of_its_error(boundary: Boundary) -> N
     for reduction in (0.1, 1e-3, 0.0):
         done = problem.operator.applications
         found = inner_solve(
-            problem, on_contact, nothing, nothing, 1e-9, doubt=np.inf, reduction=reduction
+            problem, on_contact, nothing, nothing, 1e-9, certainty=np.inf, reduction=reduction
         )
         assert found.error <= max(reduction * before, 1e-5 * before)
         applications.append(problem.operator.applications - done)

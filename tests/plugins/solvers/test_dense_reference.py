@@ -57,7 +57,7 @@ class Programme:
             unit.flat[cell] = 0.0
         matrix = np.array(columns)
         matrix = (matrix + matrix.T) / 2
-        kappa = 0.0 if problem.operator.fixes_mean else float(matrix.diagonal().mean())
+        kappa = 0.0 if problem.operator.has_mean_compliance else float(matrix.diagonal().mean())
         factor = cholesky(matrix + kappa, lower=True)
         return cls(matrix, problem.profile.ravel()[there], kappa, factor)
 

@@ -33,12 +33,12 @@ def lone_cell(number: int, orders: list[float]) -> NDArray[np.float32]:
     """Return E of 1 in one cell of a square of ``number``² cells; that cell is in the middle."""
     known = np.zeros((number, number), dtype=bool)
     known[number // 2, number // 2] = True
-    return Extension(known, orders).spread(known.astype(np.float32))
+    return Extension(known, orders).apply(known.astype(np.float32))
 
 
 @pytest.mark.parametrize("shape", [(8, 8), (32, 64), (96, 16), (160, 112), (64, 1), (1, 40)])
 @pytest.mark.parametrize("share", [0.01, 0.3, 0.9, 1.0])
-def test_gather_is_the_transpose_of_spread(shape: tuple[int, int], share: float) -> None:
+def test_apply_transpose_is_the_transpose_of_apply(shape: tuple[int, int], share: float) -> None:
     """⟨E x, y⟩ = ⟨x, Eᵀ y⟩ to single precision, for any set, shape and order, level by level."""
     random = np.random.default_rng(7)
     for levels in range(4):
@@ -47,7 +47,7 @@ def test_gather_is_the_transpose_of_spread(shape: tuple[int, int], share: float)
         extension = Extension(known, list(random.choice(ORDERS, levels)))
         x = np.where(known, random.normal(size=shape), 0).astype(np.float32)
         y = random.normal(size=shape).astype(np.float32)
-        spread, gathered = extension.spread(x), extension.gather(y)
+        spread, gathered = extension.apply(x), extension.apply_transpose(y)
         size = product(np.abs(spread), np.abs(y))
         assert product(spread, y) == pytest.approx(product(x, gathered), abs=10 * SINGLE * size)
 
@@ -60,10 +60,10 @@ def test_known_values_are_kept(shape: tuple[int, int], order: float) -> None:
     known = random.uniform(size=shape) < 0.2
     extension = Extension(known, [order] * 4)
     values = np.where(known, random.normal(size=known.shape), 0).astype(np.float32)
-    spread = extension.spread(values)
+    spread = extension.apply(values)
     np.testing.assert_array_equal(spread[known], values[known])
     assert (spread[~known] != 0).any()
-    assert not extension.spread(np.zeros_like(values)).any()
+    assert not extension.apply(np.zeros_like(values)).any()
 
 
 @pytest.mark.parametrize(("order", "least"), [(1.0, 0.85), (1.5, 0.9), (2.0, 1.0)])
@@ -71,7 +71,7 @@ def test_constant_on_a_large_contact_goes_on_as_it_is(order: float, least: float
     """Next to a contact much wider than the cells E of 1 is nearly 1, and falls off outwards."""
     known = np.zeros((128, 128), dtype=bool)
     known[32:96, 32:96] = True
-    spread = Extension(known, [order] * 6).spread(known.astype(np.float32))
+    spread = Extension(known, [order] * 6).apply(known.astype(np.float32))
     outwards = spread[31:16:-1, 64]
     assert outwards[0] >= least  # 0.88, 0.93, 1
     assert (np.diff(outwards) <= 0).all()
@@ -184,7 +184,7 @@ def test_planes_go_on_where_bending_decides() -> None:
     plane = (i + 2 * j).astype(np.float32)
     within = np.maximum(np.abs(i), np.abs(j)) < 48
     known = within & (np.random.default_rng(0).uniform(size=plane.shape) < 0.3)
-    spread = Extension(known, [4.0] * 4).spread(np.where(known, plane, 0).astype(np.float32))
+    spread = Extension(known, [4.0] * 4).apply(np.where(known, plane, 0).astype(np.float32))
     inner = np.maximum(np.abs(i), np.abs(j)) < 40
     assert np.abs(spread - plane)[inner].max() < 0.2  # 0.08; with means left where they are 1.4
 
@@ -197,16 +197,16 @@ def test_a_line_is_a_line_wherever_it_lies(order: float) -> None:
     values = np.where(known, random.normal(size=known.shape), 0).astype(np.float32)
     along = Extension(known, [order] * 4)
     across = Extension(known.T, [order] * 4)
-    np.testing.assert_array_equal(across.spread(values.T), along.spread(values).T)
-    np.testing.assert_array_equal(across.gather(values.T), along.gather(values).T)
-    ones = along.spread(known.astype(np.float32))
+    np.testing.assert_array_equal(across.apply(values.T), along.apply(values).T)
+    np.testing.assert_array_equal(across.apply_transpose(values.T), along.apply_transpose(values).T)
+    ones = along.apply(known.astype(np.float32))
     if order >= 1:
         np.testing.assert_allclose(ones, 1.0, rtol=8 * SINGLE)
     else:
         assert ones.min() < 0.95
     if order == 4:
         plane = (np.arange(128, dtype=np.float32) - 64)[:, None]
-        spread = along.spread(np.where(known, plane, np.float32(0)))
+        spread = along.apply(np.where(known, plane, np.float32(0)))
         assert np.abs(spread - plane)[16:-16].max() < 0.3
 
 

@@ -11,7 +11,7 @@ from pellicle.operators import make_operator
 from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.solvers import relaxation
 from pellicle_plugins.solvers.circulant_stiffness import Stiffness
-from pellicle_plugins.solvers.contact_cg import Inner
+from pellicle_plugins.solvers.contact_cg import InnerSolution
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 from pellicle_plugins.solvers.relaxation import relaxed
 
@@ -28,12 +28,11 @@ def plate(dx: float, dy: float, shape: tuple[int, int] = SHAPE) -> Problem:
 
 
 def settle(
-    problem: Problem, contact: NDArray[np.bool_], found: Inner, margin: float = MARGIN
+    problem: Problem, contact: NDArray[np.bool_], found: InnerSolution, margin: float = MARGIN
 ) -> tuple[NDArray[np.bool_], Array]:
     """Return what `relaxed` makes of what an inner solve found on a contact."""
-    preconditioner = Preconditioner(problem.operator)
-    on_contact = preconditioner.on(contact)
-    return relaxed(problem, preconditioner.settling, on_contact, found, margin)
+    on_contact = Preconditioner(problem.operator).on(contact)
+    return relaxed(problem, on_contact, found, margin)
 
 
 def stiffness_matrix(problem: Problem) -> Array:
@@ -44,7 +43,7 @@ def stiffness_matrix(problem: Problem) -> Array:
     return np.array(columns, dtype=np.float64) * stiffness.greatest
 
 
-def loaded(contact: NDArray[np.bool_], seed: int, left: float = 0.0) -> Inner:
+def loaded(contact: NDArray[np.bool_], seed: int, left: float = 0.0) -> InnerSolution:
     """Return pressures on a contact, of which one in four pulls, and a gap that is in part < 0.
 
     On the contact the gap is up to ``left``, of either sign.
@@ -53,7 +52,7 @@ def loaded(contact: NDArray[np.bool_], seed: int, left: float = 0.0) -> Inner:
     pressure = np.where(contact, random.uniform(-1, 3, contact.shape), 0.0)
     gap = np.where(contact, 0.0, random.uniform(-0.05, 1, contact.shape))
     gap += np.where(contact, random.uniform(-left, left, contact.shape), 0.0)
-    return Inner(pressure, gap, left, np.flatnonzero((pressure < 0) | (gap < -MARGIN)))
+    return InnerSolution(pressure, gap, left, np.flatnonzero((pressure < 0) | (gap < -MARGIN)))
 
 
 def test_stiffness_undoes_the_operator() -> None:
@@ -136,7 +135,7 @@ def test_turned_by_a_right_angle() -> None:
     before = np.random.default_rng(7).uniform(size=SHAPE) < 0.5
     found = loaded(before, 7, 0.01)
     contact, forces = settle(plate(2.0, 3.0), before, found)
-    turned = Inner(found.pressure.T, found.displacement.T, 0.0, found.wrong)
+    turned = InnerSolution(found.pressure.T, found.displacement.T, 0.0, found.misclassified)
     contact_turned, forces_turned = settle(plate(3.0, 2.0, SHAPE[::-1]), before.T, turned)
     np.testing.assert_array_equal(contact_turned, contact.T)
     np.testing.assert_allclose(forces_turned, forces.T, atol=1e-4 * forces.max())

@@ -19,7 +19,7 @@ from pellicle.config.study import Study
 from pellicle.errors import ConfigError, ConvergenceError
 from pellicle.grid import Grid
 from pellicle.plugins import registry
-from pellicle.studies.runner import carry_out, is_table, read
+from pellicle.studies.runner import execute, is_table, read
 from pellicle.studies.summary import failures
 
 from .interpolated import SCALE, SimulatedCurve, stretched
@@ -218,7 +218,7 @@ def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:
         cached, _ = read(folder)
         if not failures(cached):
             return cached
-    table = carry_out(study, folder, progress=progress).table
+    table = execute(study, folder, progress=progress).table
     if reasons := failures(table):
         raise ConvergenceError(
             f"the force curve needs the study in {folder}: {reasons}; another number of grid "

@@ -1,14 +1,16 @@
-"""Outputs that would write the same files."""
+"""Outputs that would write the same file are refused before anything is computed."""
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any, ClassVar, Literal
 
 import pytest
 
 import pellicle as pl
 from pellicle.components import Output
-from pellicle.config.output_conflicts import matches, refuse_clashes
+from pellicle.components.output import refuse_shared_files
 from pellicle.plugins import registry
 
 RUN: dict[str, Any] = {
@@ -20,39 +22,55 @@ RUN: dict[str, Any] = {
 
 
 class Silent(pl.Output):
-    """Says nothing of its files."""
+    """Writes any file that begins with its stem."""
 
     type: Literal["silent"] = "silent"
 
+    def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
+        """Write nothing."""
+        return ()
+
 
 class Named(Silent):
-    """Says nothing either, but has a name."""
+    """Has a name, by which its stem differs."""
 
     name: str = ""
 
 
 class Plain(Silent):
-    """Writes what the table of numbers is."""
+    """Writes the file of another output."""
 
-    def endings(self) -> tuple[str, ...]:
-        """Return one that csv has."""
+    scope: ClassVar[Literal["run"]] = "run"
+    shares_stem: ClassVar[bool] = True
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """One that csv has."""
         return "-more.txt", ".csv"
 
 
 class OfStudies(Plain):
-    """Is called by studies."""
+    """Shows studies too."""
 
-    def study(self, place: pl.Place, table: Any) -> tuple[Any, ...]:
-        """Leave nothing."""
-        return ()
+    scope: ClassVar[Literal["both"]] = "both"  # type: ignore[assignment]
 
 
-class Fields(Silent):
+class Fields(Plain):
     """Writes a file of its own for all fields."""
 
-    def endings(self) -> tuple[str, ...]:
-        """Return that of the result."""
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """That of the result."""
         return (".h5",)
+
+
+class Careless(Plain):
+    """Takes the stem of the run and does not name its files."""
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Any."""
+        return ("*",)
 
 
 def made(type_: str, **fields: Any) -> Output:
@@ -101,32 +119,36 @@ def test_outputs_of_one_file_are_refused(outputs: list[Output], message: str) ->
 def test_outputs_that_share_no_file() -> None:
     """Every built-in output stands beside all others, and one type twice by name or by format."""
     every = [made(type_) for type_ in registry().components["output"]]
-    refuse_clashes([*every, made("maps", name="gap"), made("maps", formats=["pdf"]), Silent()])
+    refuse_shared_files([*every, made("maps", name="gap"), made("maps", formats=["pdf"]), Silent()])
 
 
-@pytest.mark.parametrize(
-    ("output", "message"),
-    [
-        (OfStudies(), r"outputs\.1\.type: 'silent' would write study\.csv, the table of the study"),
-        (Fields(), r"outputs\.1\.type: 'silent' would write NAME\.h5, the result that each run"),
-    ],
-)
-def test_what_a_study_writes_itself_is_not_replaced(output: Output, message: str) -> None:
-    """An output alone in a run is refused in a study whose own files it would replace."""
-    run = RUN | {"outputs": [made("figures"), output]}
+def test_the_table_of_a_study_is_not_replaced() -> None:
+    """An output that may stand in a run is refused in a study whose own table it would replace."""
+    run = RUN | {"outputs": [made("figures"), OfStudies()]}
     pl.Run(**run)
+    message = r"outputs\.1\.type: 'silent' would write study\.csv, the table of the study; leave it"
     with pytest.raises(pl.ConfigError, match=message):
         pl.Study(run=run, vary={"indenter.radius": [1e-3, 2e-3]})
 
 
+@pytest.mark.parametrize("output", [Fields(), Careless()])
+def test_the_result_of_a_run_is_not_replaced(output: Output) -> None:
+    """Every run has a result file, so no output may write one of its name."""
+    message = (
+        r"outputs\.1\.type: 'silent' would write NAME\.h5, the result of the run; leave it out"
+    )
+    with pytest.raises(pl.ConfigError, match=message):
+        pl.Run(**RUN, outputs=[made("figures"), output])
+
+
 def test_standard_outputs_in_a_study() -> None:
-    """Its own table does not clash with the results and tables of its runs."""
+    """The table of a study is another file than the results and tables of its runs."""
     run = RUN | {"outputs": [made(type_) for type_ in ("hdf5", "csv", "figures", "html", "vtk")]}
     pl.Study(run=run, vary={"indenter.radius": [1e-3, 2e-3]})
 
 
 @pytest.mark.parametrize(
-    ("ending", "told", "same"),
+    ("one", "other", "same"),
     [
         (".csv", ".csv", True),
         ("-0003.vts", "-*.vts", True),
@@ -135,6 +157,19 @@ def test_standard_outputs_in_a_study() -> None:
         ("-0003.vtk", "-*.vts", False),
     ],
 )
-def test_endings_are_compared(ending: str, told: str, same: bool) -> None:
-    """By the whole ending, with * for anything and whatever the case."""
-    assert matches(ending, told) is same
+def test_suffixes_are_compared(one: str, other: str, same: bool) -> None:
+    """By the whole suffix, with * for anything and whatever the case."""
+
+    class Writes(Plain):
+        """Writes a file of one suffix."""
+
+        suffix: str
+
+        @property
+        def suffixes(self) -> tuple[str, ...]:
+            """The one."""
+            return (self.suffix,)
+
+    outputs = [Writes(suffix=one), Writes(suffix=other)]
+    with pytest.raises(pl.ConfigError, match="leave one out") if same else nullcontext():
+        refuse_shared_files(outputs)

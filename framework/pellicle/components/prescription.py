@@ -1,0 +1,118 @@
+"""The contract of prescriptions: what a load step prescribes."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.grid import Grid
+from pellicle.numerics.initial_guess import overlap_pressure
+from pellicle.numerics.operators import Operator
+from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
+from pellicle.numerics.solution import State
+from pellicle.results.variables import Variable
+from pellicle.units import Quantity
+
+from .base import Component
+from .indenter import Footprint
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What a prescription may know of a run and of the step before."""
+
+    grid: Grid
+    operator: Operator
+    """From pressure [Pa] to displacement [m]."""
+    profile: Array
+    """Indenter profile f ≤ 0 [m] of the grid's shape; −inf where there is no indenter."""
+    footprint: Footprint
+    state: State | None = None
+    """The state at the end of the step before; None at the first step."""
+
+    @property
+    def mean_height(self) -> float:
+        """Height [m] of the indenter's mean plane over its lowest point, ≤ 0.
+
+        −inf where the indenter does not fill its domain.
+        """
+        return float(self.profile.mean())
+
+    def problem(self, control: Depth | Force) -> Problem:
+        """Return the problem of a load step."""
+        return Problem(self.grid, self.operator, self.profile, control)
+
+    def force_at(self, depth: float) -> float:
+        """Return an estimate of the force [N] at a depth [m], by one application of the operator.
+
+        The pressure is the multiple of the overlap of indenter and undeformed surface whose
+        displacement comes nearest to the overlap in energy.
+        """
+        overlap = np.maximum(self.profile + depth, 0.0)
+        return self.grid.cell_area * float(overlap_pressure(self.operator, overlap).sum())
+
+
+@dataclass(frozen=True)
+class Search:
+    """The control at which a measured quantity has a given value."""
+
+    goal: float
+    measure: Callable[[Equilibrium], float]
+    """The quantity; it must not fall as the control grows."""
+    control: type[Depth] | type[Force] = Force
+    resolution: float = 0.0
+    """The difference from the goal that counts as none."""
+    width: float = 1e-9
+    """Relative width of controls within which the quantity counts as jumping."""
+    guess: float | None = None
+    """Control of the first trial [m or N]; None for that of the step before."""
+    quantity: str = "quantity"
+    """What messages call it."""
+    unit: str = ""
+    """Its SI unit in messages."""
+
+
+class Prescription(Component):
+    """Says what depth or force a prescribed value means."""
+
+    family: ClassVar[str] = "prescription"
+    unit: ClassVar[str]
+    """SI unit of its values."""
+    at_least: ClassVar[float | None] = None
+    """The least value that makes sense."""
+    needs_period: ClassVar[bool] = False
+    """Whether it is defined on periodic grids only."""
+    variables: ClassVar[tuple[Variable, ...]] = ()
+    """What it adds to a result. One of kind ``residual`` is the relative error of its search."""
+
+    @classmethod
+    def quantity(cls) -> Quantity:
+        """Return unit and range of its values."""
+        return Quantity(cls.unit, at_least=cls.at_least)
+
+    @abstractmethod
+    def target(self, setting: Setting, value: float) -> Depth | Force | Search:
+        """Return what is solved for at a prescribed ``value``."""
+
+    def check(self, setting: Setting, value: float) -> None:
+        """Refuse a value that cannot be reached, before any step is solved.
+
+        Raises
+        ------
+        ConfigError
+            The value is not allowed in this setting.
+        """
+
+    def report(self, setting: Setting, step: Equilibrium) -> dict[str, float]:
+        """Return the `variables` of a solved step, except that of kind ``residual``."""
+        return {}
+
+
+def in_unit(value: float, unit: str) -> str:
+    """Return a number and its unit, as messages have them."""
+    return f"{value:g} {unit.replace('**', '')}".rstrip()

@@ -1,0 +1,107 @@
+"""The runs that an output shows: one run, or all runs of a study."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellicle.errors import ConfigError, StorageError, shown
+from pellicle.model.expression import evaluate, names_in
+
+from . import storage
+from .derived import CELLS, REDUCTIONS, as_array, names
+from .variables import FIELDS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Runs:
+    """A run or a study: a table of numbers, and the fields of each run, read when asked for."""
+
+    table: xr.Dataset
+    """Numbers of each run and step: over ``step`` of a run, over the axes too of a study.
+
+    ``run`` names the runs; what a run that is not finished lacks is NaN.
+    """
+    source: Callable[[str], xr.Dataset]
+    """Returns the dataset of a run by its name; raises StorageError where there is none."""
+    configuration: str = "{}"
+    """The run or study as JSON in SI, with paths as they were given."""
+
+    @classmethod
+    def of_run(cls, dataset: xr.Dataset, configuration: str = "{}") -> Runs:
+        """Return the one run whose result is ``dataset``, as a table of its steps."""
+        return cls(dataset.drop_dims(CELLS).assign(run=((), "")), lambda _: dataset, configuration)
+
+    @classmethod
+    def of_study(cls, table: xr.Dataset, directory: Path, configuration: str = "{}") -> Runs:
+        """Return the runs of the study whose folder is ``directory``."""
+        return cls(
+            table, lambda name: storage.read(directory / "runs" / f"{name}.h5"), configuration
+        )
+
+    @property
+    def axes(self) -> tuple[str, ...] | None:
+        """The dimensions of a study; None for a run."""
+        axes = self.table.attrs.get("axes")
+        return None if axes is None else tuple(json.loads(axes))
+
+    def open(self, name: str = "") -> xr.Dataset:
+        """Return all numbers and fields of a run, by its name in the table of a study.
+
+        Raises
+        ------
+        StorageError
+            The run has no file, or one that cannot be read.
+        """
+        return self.source(name)
+
+    def datasets(self) -> Iterator[tuple[tuple[int, ...], xr.Dataset | None]]:
+        """Yield the index in the table and the dataset of each run, None for one without a file."""
+        for index, name in np.ndenumerate(self.table["run"].values):
+            try:
+                yield index, self.open(str(name))
+            except StorageError:
+                yield index, None
+
+    def column(self, text: str) -> xr.DataArray:
+        """Return an expression over the table, with fields reduced to a number for each step.
+
+        Raises
+        ------
+        ConfigError
+            It is not arithmetic, or names an unknown variable.
+        """
+        if names_in(text) & {*FIELDS, *CELLS}:
+            return self.from_each(lambda run: _by_step(text, run))
+        return as_array(text, self.table)
+
+    def from_each(self, function: Callable[[xr.Dataset], Any]) -> xr.DataArray:
+        """Return the value of ``function`` for each step of each run; NaN where there is no run."""
+        import xarray as xr
+
+        runs, steps = self.table["run"], self.table.sizes["step"]
+        values = np.full((*runs.shape, steps), np.nan)
+        for index, data in self.datasets():
+            if data is not None:
+                values[index][: data.sizes["step"]] = function(data)
+        coords = {dim: self.table[dim] for dim in (*runs.dims, "step")}
+        return xr.DataArray(values, coords, (*runs.dims, "step"))
+
+
+def _by_step(text: str, run: xr.Dataset) -> Any:
+    """Return an expression over a run whose fields are reduced to a number for each step."""
+    value = evaluate(text, names(run), REDUCTIONS)
+    if set(getattr(value, "dims", ())) & set(CELLS):
+        raise ConfigError(
+            f"{shown(text)} has a value for each cell, and one for each step is drawn; put fields, "
+            f"x and y inside {', '.join(REDUCTIONS)}, such as mean(pressure)"
+        )
+    return value

@@ -1,0 +1,80 @@
+"""The result file of a run as its journal: whole after every load step, and where a run resumes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pellicle.errors import StorageError
+from pellicle.files import check_writable
+from pellicle.results import storage
+from pellicle.results.result import load
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Journal:
+    """The file ``<stem>.h5`` of one run; it pickles to workers."""
+
+    stem: Path
+    """Folder and file name of the run, without a suffix."""
+    identity: str
+    """The run's `Run.identity`: the result of another run is not replaced."""
+    overwrite: bool = False
+    """Whether to start over, in place of whatever file there is."""
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return self.stem.with_name(f"{self.stem.name}.h5")
+
+    def numbers(self) -> xr.Dataset | None:
+        """Return the numbers of the steps in the file; None if it is not a file of this run.
+
+        Raises
+        ------
+        StorageError
+            There is a file, but it cannot be read or resumed.
+        """
+        if self.overwrite or not self.path.exists():
+            return None
+        numbers = storage.scalars(self.path)
+        if numbers.attrs.get("identity") != self.identity:
+            return None
+        storage.require_consecutive(numbers, self.path)
+        return numbers
+
+    def resume(self) -> list[xr.Dataset]:
+        """Return the steps that an earlier process finished, one by one.
+
+        Raises
+        ------
+        StorageError
+            The file cannot be written, is damaged, or holds the result of another run.
+        """
+        check_writable(self.path)
+        if self.overwrite or not self.path.exists():
+            return []
+        try:
+            if storage.attributes(self.path).get("identity") != self.identity:
+                raise StorageError(f"{self.path} holds the result of another configuration")
+            steps = load(self.path).dataset
+        except StorageError as error:
+            raise StorageError(f"{error}; {storage.REPLACING}") from None
+        storage.require_consecutive(steps, self.path)
+        return [steps.isel(step=[index]) for index in range(steps.sizes["step"])]
+
+    def append(self, step: xr.Dataset) -> None:
+        """Write a step behind those before it, the first in place of any old file."""
+        if step["step"].item() == 1:
+            storage.write(step, self.path)
+        else:
+            storage.append(step, self.path)
+
+    def close(self) -> tuple[Path, ...]:
+        """Make the steps one file, and return it."""
+        storage.close(self.path)
+        return (self.path,)

@@ -1,0 +1,167 @@
+"""What every prescription keeps: a step has the value that was prescribed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+from pellicle.components import Force, Prescription, Search, Setting, Solver
+from pellicle.components.calls import check_value, report_of, solution_of, target_of
+from pellicle.config.run import Run
+from pellicle.errors import ConfigError
+from pellicle.numerics.problem import Equilibrium, measure
+from pellicle.results.step import step_dataset
+from pellicle.runs.compose import compose
+from pellicle.runs.target_search import reach
+
+from .component import check
+from .rules import Rule, require, require_close
+
+_ROUGH = {
+    "grid": {"points": 32, "size": "1 mm", "boundary": "periodic"},
+    "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
+    "indenter": {
+        "type": "self_affine",
+        "rms_height": "10 um",
+        "hurst": 0.7,
+        "cutoff_wavelength": "0.125 mm",
+        "seed": 5,
+    },
+    "loading": {"force": ["0.1 mN", "0.2 mN"]},
+}
+# Whole cells miss a contact area by more than other quantities are missed.
+_NEAR = 0.05
+
+
+def check_prescription(prescription: Prescription, values: Sequence[float] = ()) -> None:
+    """Check that a prescription keeps its contract.
+
+    Beside what all components keep: ``target`` is pure and returns finite numbers; what cannot be
+    reached is refused by a ConfigError; ``report`` has the variables that are declared; the
+    quantity of a search does not fall as the force grows; and a step at the value that a known
+    step has is that step again.
+
+    Parameters
+    ----------
+    prescription
+        What is checked, on a rough surface of 1 mm × 1 mm and 10 µm root mean square height on a
+        periodic half-space of 10 kPa, under 0.1 and 0.2 mN.
+    values
+        Its values [its unit] under these two forces. They can be left out if a result has a
+        variable of the prescription's type, be it by ``report``.
+
+    Raises
+    ------
+    AssertionError
+        It does not; says what was asked and what was found.
+    """
+    check(prescription, "prescription", RULES, tuple(values))
+
+
+@cache
+def _known() -> tuple[Setting, tuple[Equilibrium, ...], Solver]:
+    """Return the setting, the two steps that are known, and their solver."""
+    run = Run(**_ROUGH)
+    setting = compose(run)
+    problems = [setting.problem(Force(force)) for force in run.loading.values]
+    steps = [measure(p, solution_of(run.solver, p, None, _ignore).pressure) for p in problems]
+    return setting, tuple(steps), run.solver
+
+
+def _ignore(iteration: int, residual_ratio: float) -> None:
+    pass
+
+
+def _value(prescription: Prescription, step: Equilibrium) -> float | None:
+    """Return the prescribed quantity of a step, if a result has it."""
+    setting, _, _ = _known()
+    report = report_of(prescription, setting, step)
+    name = prescription.type_name
+    if name in report:
+        return report[name]
+    data = step_dataset(setting.grid, 1, step, {})
+    return float(data[name].item()) if name in data and data[name].size == 1 else None
+
+
+def _values(prescription: Prescription, given: Sequence[float]) -> list[float]:
+    _, steps, _ = _known()
+    values: Sequence[float | None] = given or [_value(prescription, s) for s in steps]
+    known = [value for value in values if value is not None]
+    require(
+        len(known) == len(steps),
+        f"no variable {prescription.type_name!r} in a result; report it, or call "
+        "check_prescription with two values",
+    )
+    return known
+
+
+def report_is_as_declared(prescription: Prescription, values: Sequence[float]) -> None:
+    """report() returns numbers under the names of `variables`, the same if asked twice."""
+    setting, steps, _ = _known()
+    for step in steps:
+        report = report_of(prescription, setting, step)
+        require(report == report_of(prescription, setting, step), "the second report differs")
+
+
+def target_is_pure(prescription: Prescription, values: Sequence[float]) -> None:
+    """target() returns a Depth, Force or Search of finite numbers, the same if asked twice."""
+    setting, _, _ = _known()
+    for value in _values(prescription, values):
+        check_value(prescription, setting, value, "")
+        one, other = (_numbers(target_of(prescription, setting, value)) for _ in range(2))
+        require(one == other, f"{other} after {one}")
+
+
+def _numbers(target: object) -> dict[str, Any]:
+    return {name: value for name, value in vars(target).items() if name != "measure"}
+
+
+def values_are_refused_in_words(prescription: Prescription, values: Sequence[float]) -> None:
+    """At 0 and far beyond what can be reached, check() raises a ConfigError or target() works."""
+    setting, _, _ = _known()
+    for value in (0.0, 1e12 * max(map(abs, _values(prescription, values)))):
+        try:
+            check_value(prescription, setting, value, "")
+        except ConfigError:
+            continue
+        target_of(prescription, setting, value)
+
+
+def search_does_not_fall(prescription: Prescription, values: Sequence[float]) -> None:
+    """The quantity of a search is a number that is no less under twice the force."""
+    setting, steps, _ = _known()
+    target = target_of(prescription, setting, _values(prescription, values)[0])
+    if isinstance(target, Search):
+        low, high = (target.measure(step) for step in steps)
+        require(low <= high, f"{low:g} under 0.1 mN and {high:g} under 0.2 mN; return its negative")
+
+
+def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[float]) -> None:
+    """At the value of a known step the force is the one of that step, and so is the value."""
+    setting, steps, solver = _known()
+    for value, known in zip(_values(prescription, values), steps, strict=True):
+        target = target_of(prescription, setting, value)
+        if isinstance(target, Search):
+            step = reach(setting, target, solver, _ignore).equilibrium
+        else:
+            problem = setting.problem(target)
+            step = measure(problem, solution_of(solver, problem, None, _ignore).pressure)
+        require_close(
+            step.force,
+            known.force,
+            f"the force [N] at {value:g} {prescription.unit}",
+            relative=_NEAR,
+        )
+        again = _value(prescription, step)
+        if again is not None:
+            require_close(again, value, f"{prescription.type_name} prescribed", relative=_NEAR)
+
+
+RULES: list[Rule] = [
+    report_is_as_declared,
+    target_is_pure,
+    values_are_refused_in_words,
+    search_does_not_fall,
+    step_has_what_is_prescribed,
+]

@@ -1,0 +1,45 @@
+"""The displacement of a base that holds the indenter by a spring, such as a cantilever."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.components import Depth, Prescription, Setting
+from pellicle.numerics.problem import Equilibrium
+from pellicle.results.variables import Variable
+from pellicle.units import Quantity
+
+
+class BaseDisplacement(Prescription):
+    """Displacement z [m] of a base that holds the indenter by a spring: F = k (z − δ)."""
+
+    type: Literal["base_displacement"] = "base_displacement"
+    unit: ClassVar[str] = "m"
+    at_least: ClassVar[float | None] = 0.0
+    variables: ClassVar[tuple[Variable, ...]] = (
+        Variable("base_displacement", "m", "displacement of the base, 0 at first touch"),
+    )
+
+    spring_constant: Annotated[
+        float,
+        Quantity("N/m", above=0),
+        Field(description="spring constant k of what holds the indenter [N/m]"),
+    ]
+
+    def target(self, setting: Setting, value: float) -> Depth:
+        """Return the depth less the deflection of the spring."""
+        return Depth(value, 1 / self.spring_constant)
+
+    def report(self, setting: Setting, step: Equilibrium) -> dict[str, float]:
+        """Return the displacement of the base."""
+        return {"base_displacement": step.depth + step.force / self.spring_constant}
+
+
+@hookimpl
+def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
+    """Register the prescription."""
+    register(BaseDisplacement)

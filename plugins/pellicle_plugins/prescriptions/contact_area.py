@@ -1,0 +1,94 @@
+"""The area of the cells in contact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from pellicle import hookimpl
+from pellicle.components import Force, Prescription, Search, Setting
+from pellicle.components.prescription import in_unit
+from pellicle.errors import ConfigError
+from pellicle.numerics.problem import Equilibrium
+from pellicle.results.variables import Variable
+
+RESIDUAL = Variable(
+    "residual_area", "1", "relative error of the prescribed contact area or radius", "residual"
+)
+
+
+class ContactArea(Prescription):
+    """Area of the cells in contact [m²], met to the nearest whole cells."""
+
+    type: Literal["contact_area"] = "contact_area"
+    unit: ClassVar[str] = "m**2"
+    at_least: ClassVar[float | None] = 0.0
+    variables: ClassVar[tuple[Variable, ...]] = (RESIDUAL,)
+
+    def check(self, setting: Setting, value: float) -> None:
+        """Refuse an area that the indenter cannot have on this grid."""
+        if problem := unreachable(setting, value):
+            raise ConfigError(f"{in_unit(value, self.unit)} is {problem}")
+
+    def target(self, setting: Setting, value: float) -> Force | Search:
+        """Return the search for as many cells; no force without any."""
+        return area_search(setting, value)
+
+
+def unreachable(setting: Setting, area: float) -> str:
+    """Return why the indenter cannot have a contact area [m²] on this grid; empty if it can."""
+    cell, profile = setting.grid.cell_area, setting.profile
+    covered = int(np.count_nonzero(np.isfinite(profile)))
+    first = int(np.count_nonzero(profile == profile.max()))
+    if area > (covered + 0.5) * cell:
+        whose = "the domain" if covered == profile.size else "the indenter"
+        return f"more than {whose} has, {covered * cell:g} m²; give less"
+    if area > 0 and first == covered:
+        return (
+            f"not within reach: the indenter is flat, and all its {covered * cell:g} m² touch at "
+            "once, under any load; prescribe depth or force"
+        )
+    if 0 < area < (first - 0.5) * cell:
+        return (
+            f"less than the {first} cells of {cell:g} m² that touch first, all at once; give "
+            "more, or use more points"
+        )
+    return ""
+
+
+def area_search(setting: Setting, area: float) -> Force | Search:
+    """Return the search for a contact area [m²]; it starts near the force of the step before."""
+    if not area > 0:
+        return Force(0.0)
+    cell, state = setting.grid.cell_area, setting.state
+    if state is not None and state.contact.any():
+        before = float(np.count_nonzero(state.contact)) * cell
+        guess = float(state.pressure.sum()) * cell * math.pow(area / before, 1.5)
+    else:
+        heights = np.sort(setting.profile[np.isfinite(setting.profile)])[::-1]
+        lowest = heights[min(math.ceil(area / cell + 0.5), heights.size - 1)]
+        # Slightly deeper: at the very height of a cell round-off decides whether it touches.
+        guess = setting.force_at(-1.01 * float(lowest))
+
+    def measure(step: Equilibrium) -> float:
+        return float(np.count_nonzero(step.contact)) * cell
+
+    # A jump to 1e-4 of the force is the jump; half a cell is the nearest whole number of cells.
+    return Search(
+        goal=area,
+        measure=measure,
+        resolution=cell / 2,
+        width=1e-4,
+        guess=guess,
+        quantity="contact area",
+        unit="m**2",
+    )
+
+
+@hookimpl
+def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
+    """Register the prescription."""
+    register(ContactArea)

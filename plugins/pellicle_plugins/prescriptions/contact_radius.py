@@ -1,0 +1,39 @@
+"""The radius of the contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from pellicle import hookimpl
+from pellicle.components import Force, Prescription, Search, Setting
+from pellicle.errors import ConfigError
+from pellicle.results.variables import Variable
+
+from .contact_area import RESIDUAL, area_search, unreachable
+
+
+class ContactRadius(Prescription):
+    """Radius [m] of the circle of the same area as the cells in contact."""
+
+    type: Literal["contact_radius"] = "contact_radius"
+    unit: ClassVar[str] = "m"
+    at_least: ClassVar[float | None] = 0.0
+    variables: ClassVar[tuple[Variable, ...]] = (RESIDUAL,)
+
+    def check(self, setting: Setting, value: float) -> None:
+        """Refuse a radius that the contact cannot have on this grid."""
+        if problem := unreachable(setting, np.pi * value**2):
+            raise ConfigError(f"{value:g} m is {problem}")
+
+    def target(self, setting: Setting, value: float) -> Force | Search:
+        """Return the search for the area of the circle."""
+        return area_search(setting, np.pi * value**2)
+
+
+@hookimpl
+def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
+    """Register the prescription."""
+    register(ContactRadius)

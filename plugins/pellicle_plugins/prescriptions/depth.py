@@ -1,0 +1,54 @@
+"""The depth of the indenter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar, Literal
+
+from pellicle import hookimpl
+from pellicle.components import Depth, Prescription, Setting
+from pellicle.components.prescription import in_unit
+from pellicle.errors import ConfigError
+
+
+class IndenterDepth(Prescription):
+    """Depth of the indenter's lowest point [m] below the undeformed surface; 0 at first touch.
+
+    It is measured from the mean plane of the surface on a periodic grid whose mean displacement is
+    0, as that of a half-space.
+    """
+
+    type: Literal["depth"] = "depth"
+    unit: ClassVar[str] = "m"
+    at_least: ClassVar[float | None] = 0.0
+
+    def check(self, setting: Setting, value: float) -> None:
+        """Refuse a depth that no load reaches."""
+        refuse_beyond_full_contact(setting, value, value)
+
+    def target(self, setting: Setting, value: float) -> Depth:
+        """Return the depth itself."""
+        return Depth(value)
+
+
+def refuse_beyond_full_contact(setting: Setting, depth: float, value: float) -> None:
+    """Refuse a ``depth`` [m] that no load reaches; ``value`` [m] is what the user prescribed.
+
+    Raises
+    ------
+    ConfigError
+        The depth is that of full contact or more, where the mean displacement is 0.
+    """
+    mean = setting.mean_height
+    if depth >= -mean and not setting.operator.has_mean_compliance:
+        raise ConfigError(
+            f"{in_unit(value, 'm')} is beyond full contact: on a periodic grid the depth is "
+            f"measured from the mean plane, and this indenter's is {-mean:g} m above its lowest "
+            "point, at any load; give less, or prescribe mean_pressure"
+        )
+
+
+@hookimpl
+def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
+    """Register the prescription."""
+    register(IndenterDepth)

@@ -1,0 +1,27 @@
+"""The force on the indenter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar, Literal
+
+from pellicle import hookimpl
+from pellicle.components import Force, Prescription, Setting
+
+
+class NormalForce(Prescription):
+    """Force on the domain [N]."""
+
+    type: Literal["force"] = "force"
+    unit: ClassVar[str] = "N"
+    at_least: ClassVar[float | None] = 0.0
+
+    def target(self, setting: Setting, value: float) -> Force:
+        """Return the force itself."""
+        return Force(value)
+
+
+@hookimpl
+def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
+    """Register the prescription."""
+    register(NormalForce)

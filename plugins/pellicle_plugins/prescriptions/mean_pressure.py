@@ -1,0 +1,28 @@
+"""The mean pressure on a periodic domain."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import ClassVar, Literal
+
+from pellicle import hookimpl
+from pellicle.components import Force, Prescription, Setting
+
+
+class MeanPressure(Prescription):
+    """Force over the area of a periodic domain [Pa]."""
+
+    type: Literal["mean_pressure"] = "mean_pressure"
+    unit: ClassVar[str] = "Pa"
+    at_least: ClassVar[float | None] = 0.0
+    needs_period: ClassVar[bool] = True
+
+    def target(self, setting: Setting, value: float) -> Force:
+        """Return the force on one period."""
+        return Force(value * setting.grid.area)
+
+
+@hookimpl
+def register_prescriptions(register: Callable[[type[Prescription]], None]) -> None:
+    """Register the prescription."""
+    register(MeanPressure)

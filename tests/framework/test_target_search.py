@@ -1,0 +1,136 @@
+"""The search for a measured quantity, on staircases that are known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+from pellicle.components import Solver
+from pellicle.numerics.solution import State
+from pellicle.operators import make_operator
+from pellicle.problem import Problem
+from pellicle.runs.target_search import Reached, reach
+
+GRID = pl.Grid(points=11, size=11.0, boundary="periodic")
+
+
+class Staircase(Solver):
+    """Puts as many cells in contact as a function of the control says."""
+
+    cells: Any
+    starts: ClassVar[list[Any]] = []
+
+    def solve(self, problem: Problem, start: Any, monitor: Any) -> pl.Solution:
+        """Return a pressure on the first cells."""
+        self.starts.append(start)
+        pressure = np.zeros(problem.grid.points)
+        pressure.ravel()[: self.cells(problem.control.value)] = 1.0
+        return pl.Solution(pressure, 2)
+
+
+def setting(start: float | None = None) -> pl.Setting:
+    """Return that of a paraboloid on springs, after a step with a force on four cells."""
+    x, y = GRID.coordinates()
+    kernel = pl.kernel("winkler", foundation=1.0)
+    profile = np.asarray(-(x**2 + y**2))
+    state = None
+    if start is not None:
+        before = np.zeros(GRID.shape)
+        before.ravel()[:4] = start / 4
+        state = State(before, before, 1.0)
+    return pl.Setting(GRID, make_operator(kernel, GRID), profile, "unbounded", state)
+
+
+def search(cells: Callable[[float], int], area: float, start: float | None = None) -> Reached:
+    """Return what is reached on a staircase of areas."""
+    here = setting(start)
+    target = pl.registry().find("prescription", "contact_area")().target(here, area)  # type: ignore[attr-defined]
+    Staircase.starts.clear()
+    return reach(here, target, Staircase(cells=cells), lambda *_: None)
+
+
+@pytest.mark.parametrize("start", [None, 1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("power", [0.4, 1.0])
+def test_whole_cells_are_met(power: float, start: float | None) -> None:
+    """Where each number of cells can be had, the number is met from wherever it starts."""
+
+    def cells(force: float) -> int:
+        return int(min(max(round(40 * force**power), 1), 100))
+
+    for area in (0.5, 3.0, 40.4, 99.6):
+        found = search(cells, area, start)
+        assert found.how == "met"
+        count = cells(found.equilibrium.problem.control.value)
+        assert abs(count - area) <= 0.5
+        assert found.missed == pytest.approx(abs(count - area) / area)
+        assert found.iterations % 2 == 0
+
+
+@pytest.mark.parametrize(("area", "side"), [(32.0, 30), (37.0, 40)])
+def test_jump_is_found(area: float, side: int) -> None:
+    """Where the area jumps across what is wanted, the force is the jump's, on the nearer side."""
+    jump = 7.3
+    found = search(lambda force: 30 if force < jump else 40, area)
+    assert found.how == "nearest"
+    assert found.equilibrium.problem.control.value == pytest.approx(jump, rel=2e-4)
+    assert np.count_nonzero(found.equilibrium.pressure) == side
+    assert found.missed == pytest.approx(abs(side - area) / area)
+    assert found.between == (30.0, 40.0)
+
+
+@pytest.mark.parametrize("area", [20.0, 60.0])
+def test_area_that_no_force_brings(area: float) -> None:
+    """The search ends, and says that it found nothing."""
+    found = search(lambda force: 30, area)
+    assert found.how == "not found"
+    assert found.missed == pytest.approx(abs(30 - area) / area)
+
+
+def test_every_trial_starts_from_the_step_before() -> None:
+    """A trial that lost contact, or has too much of it, is the start of no other."""
+    search(lambda force: 30 if force < 7.3 else 40, 37.0, 1.0)
+    starts = Staircase.starts
+    assert len(starts) > 5
+    assert all(start.pressure.sum() == pytest.approx(1.0) for start in starts)
+
+
+@pytest.mark.parametrize("goal", [-30.0, 0.0, 55.5])
+@pytest.mark.parametrize("guess", [None, -20.0, 3.0])
+def test_any_quantity_by_depth(goal: float, guess: float | None) -> None:
+    """A quantity of either sign is found at the depth that has it, before first touch too."""
+    target = pl.Search(
+        goal,
+        lambda step: 4.0 * step.problem.control.value - 2.0,
+        control=pl.Depth,
+        resolution=1e-6,
+        guess=guess,
+    )
+    found = reach(setting(), target, Staircase(cells=lambda depth: 5), lambda *_: None)
+    assert found.how == "met"
+    assert found.equilibrium.problem.control.value == pytest.approx((goal + 2) / 4, abs=1e-6)
+
+
+def test_quantity_that_is_lost_is_not_found() -> None:
+    """A pressure that is not finite ends in a status, not in an error."""
+
+    class Lost(Solver):
+        """Divides by zero."""
+
+        def solve(self, problem: Problem, start: Any, monitor: Any) -> pl.Solution:
+            """Return no numbers."""
+            return pl.Solution(np.full(problem.grid.shape, np.nan), 1)
+
+    run = pl.Run(
+        grid={"points": 8, "size": 1e-3, "boundary": "periodic"},
+        kernel={"type": "half_space", "reduced_modulus": 1e4},
+        indenter={"type": "paraboloid", "radius": 1e-3},
+        loading={"contact_area": 1e-7},
+        solver=Lost(),
+    )
+    with pytest.warns(pl.ConvergenceWarning, match="NaN"):
+        result = pl.run(run, progress=False)
+    assert result.dataset["status_code"].item() == "NOT_FINITE"

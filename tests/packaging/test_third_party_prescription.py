@@ -1,0 +1,116 @@
+"""A stranger's prescription: built, installed, checked by the kit, and run."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+
+SOURCE = Path(__file__).with_name("mean_gap")
+Command = Callable[..., subprocess.CompletedProcess[str]]
+CHECK = """
+from pellicle.testing import check_prescription
+from pellicle_mean_gap import MeanGap
+for share in (1.0, 0.5):
+    check_prescription(MeanGap(share=share))
+"""
+
+
+@pytest.fixture(scope="module")
+def python(tmp_path_factory: pytest.TempPathFactory) -> Command:
+    """Return the interpreter of an environment in which the package is installed."""
+    wheels, site = tmp_path_factory.mktemp("wheels"), tmp_path_factory.mktemp("site")
+    build = [sys.executable, "-m", "build", "--wheel", "--no-isolation", f"--outdir={wheels}"]
+    subprocess.run([*build, SOURCE], check=True, capture_output=True)
+    install = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index"]
+    subprocess.run(
+        [*install, f"--target={site}", *wheels.iterdir()], check=True, capture_output=True
+    )
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("PELLICLE_")}
+    path = os.pathsep.join([str(site), *filter(None, [os.environ.get("PYTHONPATH")])])
+
+    def run(*arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, *arguments],
+            env=environment | {"PYTHONPATH": path, "PYTHONUTF8": "1"} | more,
+            cwd=tmp_path_factory.mktemp("empty"),
+            capture_output=True,
+            encoding="utf-8",
+            check=False,
+        )
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def pellicle(python: Command) -> Command:
+    """Return the command ``pellicle`` of that environment."""
+    return partial(python, "-m", "pellicle")
+
+
+def test_keeps_its_contract(python: Command) -> None:
+    """The kit that checks our own prescriptions has nothing to say."""
+    done = python("-c", CHECK)
+    assert done.returncode == 0, done.stderr
+
+
+def test_runs_and_is_on_record(pellicle: Command, tmp_path: Path) -> None:
+    """Its file runs to the gaps prescribed; the result names the distribution; a rerun resumes."""
+    run = ("run", str(SOURCE / "squeeze.toml"), "-o", str(tmp_path), "--set")
+    done = pellicle(*run, "outputs=[{type='hdf5'}]")
+    assert done.returncode == 0, done.stderr
+    result = pl.load(tmp_path / "squeeze.h5")
+    assert result.converged
+    assert result.configuration["loading"]["share"] == 0.5
+    assert "pellicle-mean-gap 0.3.0" in result.dataset.attrs["versions"].split(", ")
+    np.testing.assert_allclose(result.dataset["mean_gap"], [1.5e-5, 1e-5, 5e-6], rtol=1e-6)
+    inner = result.dataset["gap"][:, 8:24, 8:24].mean(["x", "y"])
+    np.testing.assert_allclose(inner, result.dataset["mean_gap"], rtol=1e-12)
+    assert result.dataset["mean_gap"].attrs["units"] == "m"
+    again = pellicle(*run, "outputs=[{type='hdf5'}]")
+    assert again.returncode == 0, again.stderr
+    shown = pellicle("show", str(tmp_path / "squeeze.h5"))
+    assert "mean_gap [m]" in shown.stdout
+
+
+def test_is_in_the_schema(pellicle: Command) -> None:
+    """An editor completes its key, its field and the options of the loading."""
+    file = json.loads(pellicle("schema").stdout)
+    choices = file["$defs"]["Loading"]["oneOf"]
+    (mine,) = (c for c in choices if "mean_gap" in c["properties"])
+    assert mine["properties"].keys() == {"mean_gap", "share", "stiffness"}
+    assert mine["required"] == ["mean_gap"]
+
+
+@pytest.mark.parametrize(
+    ("loading", "words"),
+    [
+        ("{mean_gap='-1 um'}", "loading.mean_gap: '-1 um' is not allowed; give a value ≥ 0 m"),
+        ("{mean_gap='1 um', share=2}", "loading.share: 2 is not allowed"),
+        ("{mean_gap='1 um', shore=2}", "loading.shore: is not a field here; did you mean 'share'"),
+        ("{mean_gop='1 um'}", "loading.mean_gop: is not a field here; did you mean 'mean_gap'"),
+    ],
+)
+def test_bad_values_are_refused_like_our_own(pellicle: Command, loading: str, words: str) -> None:
+    """Its key and its fields are checked, without a traceback."""
+    done = pellicle("run", str(SOURCE / "squeeze.toml"), "--set", f"loading={loading}")
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_can_be_switched_off(pellicle: Command, tmp_path: Path) -> None:
+    """With strangers off, its file says what is switched off; its results can still be shown."""
+    done = pellicle("run", str(SOURCE / "squeeze.toml"), PELLICLE_DISABLE_PLUGINS="1")
+    assert done.returncode == 2
+    assert "switched off by PELLICLE_DISABLE_PLUGINS" in done.stderr
+    pellicle("run", str(SOURCE / "squeeze.toml"), "-o", str(tmp_path))
+    shown = pellicle("show", str(tmp_path / "squeeze.h5"), PELLICLE_DISABLE_PLUGINS="1")
+    assert shown.returncode == 0, shown.stderr

@@ -1,0 +1,274 @@
+"""A cantilever and a volume of the gap, against closed forms, limits and what a result has."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.optimize import brentq
+
+import pellicle as pl
+from pellicle.components.calls import solution_of
+from pellicle.operators import make_operator
+from pellicle.problem import Problem, measure
+from pellicle_plugins.analytic.axisymmetric import indent
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+
+SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.1}
+BARE = {"type": "half_space", "reduced_modulus": 1e4}
+TIP = {"type": "paraboloid", "radius": 1e-3}
+ROUGH: dict[str, Any] = {
+    "type": "self_affine",
+    "rms_height": 1e-5,
+    "hurst": 0.7,
+    "cutoff_wavelength": 1.25e-4,
+    "seed": 5,
+}
+pytestmark = pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
+
+
+def _base(boundary: str, kernel: dict[str, Any], indenter: dict[str, Any]) -> dict[str, Any]:
+    grid = {"points": 32, "size": 1e-3, "boundary": boundary}
+    return {"grid": grid, "kernel": kernel, "indenter": indenter}
+
+
+CASES = {
+    f"{boundary} {kernel['type']} {indenter['type']}": _base(boundary, kernel, indenter)
+    for boundary in ("free", "periodic")
+    for kernel in (BARE, SKIN)
+    for indenter in (TIP, ROUGH)
+}
+
+
+def _solved(base: dict[str, Any], solver: str = "active_set", **loading: Any) -> xr.Dataset:
+    run = {**base, "loading": loading, "solver": {"type": solver, "tolerance": 1e-9}}
+    data = pl.run(run, progress=False).dataset
+    assert data["converged"].all(), data["status"].values
+    return data
+
+
+@pytest.mark.parametrize("base", CASES.values(), ids=CASES)
+def test_cantilever_is_in_balance(base: dict[str, Any], solver: str) -> None:
+    """F = k (z − δ) to rounding, for a spring a tenth to ten times as stiff as the contact."""
+    by_depth = _solved(base, solver, depth=1.2e-5, stiffness=True)
+    contact = by_depth["stiffness"].item()
+    for ratio in (0.1, 1.0, 10.0):
+        spring, base_at = contact * ratio, [4e-6, 2e-5]
+        data = _solved(base, solver, base_displacement=base_at, spring_constant=spring)
+        force = spring * (np.array(base_at) - data["depth"].values)
+        np.testing.assert_allclose(data["force"], force, rtol=0, atol=1e-14 * spring * 2e-5)
+        np.testing.assert_allclose(data["base_displacement"], base_at, rtol=1e-14)
+        # The displacement is that of the surface, without the deflection of the spring.
+        for step in data["step"].values:
+            fields = data.sel(step=step)
+            again = pl.displacement(
+                fields["pressure"].values,
+                kernel=pl.Run(**base, loading={"depth": 0}).kernel,
+                grid=pl.Grid(**base["grid"]),
+            )
+            np.testing.assert_array_equal(fields["displacement"], again)
+
+
+@pytest.mark.parametrize("base", CASES.values(), ids=CASES)
+def test_spring_adds_nothing_to_the_state(base: dict[str, Any], solver: str) -> None:
+    """At the base's displacement of a known depth the state is that of the depth, stiffness too."""
+    known = _solved(base, solver, depth=1.2e-5, stiffness=True)
+    force, contact = known["force"].item(), known["stiffness"].item()
+    for ratio in (1e-5, 1e-2, 1.0, 100.0):
+        spring = contact / ratio
+        data = _solved(
+            base,
+            solver,
+            base_displacement=1.2e-5 + force / spring,
+            spring_constant=spring,
+            stiffness=True,
+        )
+        assert data["force"].item() == pytest.approx(force, rel=1e-7)
+        assert data["depth"].item() == pytest.approx(1.2e-5, rel=1e-7)
+        assert data["contact_area"].item() == known["contact_area"].item()
+        assert data["stiffness"].item() == pytest.approx(contact, rel=1e-6)
+
+
+@pytest.mark.parametrize("base", CASES.values(), ids=CASES)
+def test_stiff_and_soft_springs(base: dict[str, Any]) -> None:
+    """A spring that does not yield prescribes the depth, one that only yields the force."""
+    known = _solved(base, depth=1.2e-5)
+    force = known["force"].item()
+    stiff = _solved(base, base_displacement=1.2e-5, spring_constant=1e12)
+    assert stiff["force"].item() == pytest.approx(force, rel=1e-9)
+    soft = _solved(base, base_displacement=1.0, spring_constant=force)
+    assert soft["force"].item() == pytest.approx(force, rel=1e-4)
+    assert soft["depth"].item() == pytest.approx(1.2e-5, rel=1e-3)
+
+
+@pytest.mark.parametrize("base", CASES.values(), ids=CASES)
+def test_cantilever_costs_what_a_depth_costs(base: dict[str, Any]) -> None:
+    """For springs soft and stiff, applications of the operator are as many, within 4.
+
+    A grid that is not coarsened has no better start than an overlap by all of z.
+    """
+    base = base | {"grid": base["grid"] | {"points": 64}}
+    known = _solved(base, depth=1.2e-5, stiffness=True)
+    for ratio in (1e-2, 1.0, 1e2):
+        spring = known["stiffness"].item() * ratio
+        z = 1.2e-5 + known["force"].item() / spring
+        data = _solved(base, base_displacement=z, spring_constant=spring)
+        allowed = known["operator_applications"].item() + 4
+        assert data["operator_applications"].item() <= allowed, ratio
+
+
+def test_cantilever_with_hertz(solver: str) -> None:
+    """On a half-space δ solves 4/3 E* √R δ^(3/2) = k (z − δ)."""
+    modulus, radius, spring, z = 1e4, 1e-3, 0.5, 3e-5
+
+    def excess(depth: float) -> float:
+        force: float = 4 / 3 * modulus * radius**0.5 * depth**1.5
+        return force - spring * (z - depth)
+
+    depth = brentq(excess, 0, z)
+    base = _base("free", BARE, TIP) | {"grid": {"points": 64, "size": 4e-4}}
+    data = _solved(base, solver, base_displacement=z, spring_constant=spring)
+    assert data["depth"].item() == pytest.approx(depth, rel=2e-3)
+    assert data["force"].item() == pytest.approx(spring * (z - depth), rel=2e-3)
+
+
+def test_cantilever_on_a_tensed_skin(solver: str) -> None:
+    """Under tension δ solves F(δ) = k (z − δ), F by the axisymmetric integral equation."""
+    spring, z = 2.0, 3e-5
+
+    def excess(depth: float) -> float:
+        return indent(Paraboloid(radius=1e-3), 1e4, 0.1, depth=depth).force - spring * (z - depth)
+
+    depth = brentq(excess, 1e-6, z, xtol=1e-12)
+    base = _base("free", SKIN, TIP) | {"grid": {"points": 64, "size": 4e-4}}
+    data = _solved(base, solver, base_displacement=z, spring_constant=spring)
+    assert data["depth"].item() == pytest.approx(depth, rel=5e-3)
+    assert data["force"].item() == pytest.approx(spring * (z - depth), rel=5e-3)
+
+
+def test_cantilever_in_full_contact(solver: str) -> None:
+    """Where no load moves the mean plane the spring takes all of the displacement beyond it."""
+    base = _base("periodic", BARE, ROUGH)
+    run = pl.Run(**base, loading={"depth": 0})
+    full = -float(run.indenter.profile(*run.grid.coordinates()).mean())
+    with pytest.raises(pl.ConfigError, match="beyond full contact"):
+        _solved(base, solver, depth=full + 1e-6)
+    data = _solved(base, solver, base_displacement=full + 0.1, spring_constant=1.0, stiffness=True)
+    assert data["contact"].all()
+    assert data["depth"].item() == pytest.approx(full, rel=1e-7)
+    assert data["force"].item() == pytest.approx(0.1, rel=1e-9)
+    assert data["stiffness"].item() == np.inf
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_coarser_problem_has_the_same_spring(boundary: str) -> None:
+    """The deflection under a uniform pressure, and so the force, stay those of the fine grid."""
+    run = pl.Run(**_base(boundary, SKIN, TIP), loading={"depth": 0})
+    profile = run.indenter.profile(*run.grid.coordinates())
+    operator = make_operator(run.kernel, run.grid)
+    fine = Problem(run.grid, operator, profile, pl.Depth(2e-5, compliance=0.7))
+    coarse = fine.coarsened()
+    for problem in (fine, coarse, fine.scaled(2.0**-20, 2.0**5).scaled(2.0**20, 2.0**-5)):
+        uniform = np.ones(problem.grid.shape)
+        bare = problem.operator.held(0.0)(uniform)
+        deflection = problem.operator(uniform) - bare
+        np.testing.assert_allclose(deflection, 0.7 * run.grid.area, rtol=1e-12)
+    assert fine.operator is not operator
+    assert fine.operator.held(0.0)(profile * 0 + 1.0) == pytest.approx(operator(profile * 0 + 1.0))
+    depths = [
+        measure(p, solution_of(run.solver, p, None, lambda *_: None).pressure).depth
+        for p in (fine, coarse)
+    ]
+    assert depths[1] == pytest.approx(depths[0], rel=0.05)
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_cantilever_at_any_scale(boundary: str) -> None:
+    """Lengths times a factor make forces times its square, springs times the factor."""
+    results = []
+    for length in (1.0, 1e-12, 1e6):
+        base = {
+            "grid": {"points": 32, "size": length, "boundary": boundary},
+            "kernel": BARE,
+            "indenter": {"type": "paraboloid", "radius": length},
+        }
+        data = _solved(base, base_displacement=0.05 * length, spring_constant=1e3 * length)
+        results.append((data["force"].item() / length**2, data["depth"].item() / length))
+    for scaled in results[1:]:
+        assert scaled == pytest.approx(results[0], rel=1e-9)
+
+
+@pytest.mark.parametrize("base", [CASES[name] for name in CASES if ROUGH["type"] in name])
+def test_gap_volume_is_met(base: dict[str, Any], solver: str) -> None:
+    """The sum of the gaps of a result times the area of a cell is the volume prescribed."""
+    known = _solved(base, solver, depth=[6e-6, 1.2e-5])
+    cell = (1e-3 / 32) ** 2
+    volumes = known["gap"].sum(["x", "y"]).values * cell
+    assert volumes[1] < volumes[0]
+    data = _solved(base, solver, gap_volume=volumes[::-1])
+    np.testing.assert_allclose(data["gap"].sum(["x", "y"]) * cell, volumes[::-1], rtol=2e-6)
+    np.testing.assert_allclose(data["gap_volume"], volumes[::-1], rtol=2e-6)
+    np.testing.assert_allclose(data["residual_gap_volume"], 0, atol=2e-6)
+    np.testing.assert_allclose(data["depth"], known["depth"][::-1], rtol=1e-4)
+
+
+def test_no_gap_is_full_contact(solver: str) -> None:
+    """A volume of 0 is full contact, that of first touch no force worth speaking of."""
+    base = _base("periodic", BARE, ROUGH)
+    data = _solved(base, solver, gap_volume=0)
+    assert data["contact"].all()
+    assert data["gap_volume"].item() == pytest.approx(0, abs=1e-18)
+
+
+@pytest.mark.parametrize(
+    ("loading", "words"),
+    [
+        ({"gap_volume": "1 mm**3"}, r"loading\.gap_volume\.0: 1e-09 m3 is before first touch"),
+        ({"gap_volume": -1e-12}, r"loading\.gap_volume: -1e-12 is not allowed"),
+        ({"base_displacement": "1 um"}, r"loading\.spring_constant: is missing; give it: spring"),
+        (
+            {"base_displacement": "1 um", "spring_constant": "-1 N/m"},
+            r"loading\.spring_constant: '-1 N/m' is not allowed; give a value > 0 N/m",
+        ),
+        ({"depth": "1 um", "spring_constant": 1.0}, r"loading\.spring_constant: is not a field"),
+        (
+            {"base_displacement": "1 um", "depth": "1 um", "spring_constant": 1.0},
+            r"prescribes depth and base_displacement; give exactly one of depth, force",
+        ),
+        ({"base_displacment": "1 um"}, r"base_displacment: .* did you mean 'base_displacement'"),
+        ({"depht": "1 um", "stifness": True}, r"depht: .* 'depth'\?(.|\n)*stifness: .* 'stiffness"),
+    ],
+)
+def test_what_is_refused(loading: dict[str, Any], words: str) -> None:
+    """The message names the field, and what is known."""
+    with pytest.raises(pl.ConfigError, match=words):
+        pl.run({**_base("free", BARE, ROUGH), "loading": loading}, progress=False)
+
+
+def test_punch_has_no_volume_of_its_gap() -> None:
+    """Beside an indenter that does not fill its domain the gap has no end."""
+    base = _base("free", BARE, {"type": "flat_punch", "radius": 2e-4})
+    with pytest.raises(pl.ConfigError, match=r"^loading\.gap_volume: is not defined"):
+        pl.run({**base, "loading": {"gap_volume": 1e-12}}, progress=False)
+
+
+def test_study_of_springs(tmp_path: Path) -> None:
+    """Spring constants and displacements of the base are axes with units."""
+    vary = {
+        "loading.spring_constant": ["0.5 N/m", "5 N/m"],
+        "loading.base_displacement": ["10 um", "20 um"],
+    }
+    run = _base("free", BARE, TIP) | {"loading": {"base_displacement": 1, "spring_constant": 1}}
+    table = pl.run_study(
+        pl.Study(run=run | {"outputs": []}, vary=vary), directory=tmp_path, progress=False
+    )
+    assert table["loading.spring_constant"].attrs["units"] == "N/m"
+    assert table["loading.base_displacement"].attrs["units"] == "m"
+    force = table["force"].isel(step=0) if "step" in table["force"].dims else table["force"]
+    expected = table["loading.spring_constant"] * (
+        table["loading.base_displacement"] - table["depth"]
+    )
+    np.testing.assert_allclose(force.values, expected.values.reshape(force.shape), rtol=1e-12)
