@@ -14,6 +14,7 @@ import pellicle as pl
 
 SOURCE = Path(__file__).with_name("third_party")
 SYMBOL_ONLY = Path(__file__).with_name("symbol_only")
+ONE_OUTPUT = Path(__file__).with_name("one_output")
 CELLS = Path(__file__).parents[1] / "data" / "kernel_cells.csv"
 Command = Callable[..., subprocess.CompletedProcess[str]]
 
@@ -23,7 +24,7 @@ def python(tmp_path_factory: pytest.TempPathFactory) -> Command:
     """Return the interpreter of an environment in which the packages are installed."""
     wheels, site = tmp_path_factory.mktemp("wheels"), tmp_path_factory.mktemp("site")
     build = [sys.executable, "-m", "build", "--wheel", "--no-isolation", f"--outdir={wheels}"]
-    for source in (SOURCE, SYMBOL_ONLY):
+    for source in (SOURCE, SYMBOL_ONLY, ONE_OUTPUT):
         subprocess.run([*build, source], check=True, capture_output=True)
     install = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index"]
     subprocess.run(
@@ -98,6 +99,30 @@ def test_a_membrane_known_by_its_symbol_has_the_reference_coefficients(python: C
     for of_length in errors.values():
         assert len(of_length) == 9
         assert max(map(abs, of_length)) < 1e-7
+
+
+def test_an_output_is_one_method(python: Command) -> None:
+    """Installed, a class with the method write() alone keeps the contract of outputs."""
+    done = python(str(ONE_OUTPUT / "check.py"))
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("studied", [False, True])
+def test_an_output_shows_a_run_and_a_study(
+    studied: bool, pellicle: Command, tmp_path: Path
+) -> None:
+    """Its file has the highest pressure of each step, beside the result and nothing else."""
+    vary = ["--set", 'study.vary={"kernel.tension" = ["0.1 N/m", "0.2 N/m"]}'] if studied else []
+    done = pellicle("run", str(ONE_OUTPUT / "hottest.toml"), *vary, "-o", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    name = "study" if studied else "hottest"
+    files = {path.name for path in tmp_path.iterdir()} - {"runs", "study.csv"}
+    assert files == {f"{name}.h5", f"{name}-hottest.txt"}
+    runs = sorted(tmp_path.glob("runs/*.h5")) if studied else [tmp_path / "hottest.h5"]
+    highest = {x for run in runs for x in pl.load(run).dataset["pressure"].max(["x", "y"]).values}
+    lines = (tmp_path / f"{name}-hottest.txt").read_text().split()
+    assert len(lines) == (4 if studied else 2)
+    assert {float(line) for line in lines} == highest
 
 
 def test_bad_values_are_refused_like_our_own(pellicle: Command) -> None:

@@ -1,4 +1,4 @@
-"""Fields over the domain, packed for a page: a map each, in frames that are shown in turn."""
+"""Maps of fields over the domain, packed for a page, in frames that are shown in turn."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ _FEWEST = 32
 
 
 class Field(NamedTuple):
-    """What a map shows."""
+    """A field that is mapped."""
 
     name: str
     unit: str
-    """SI."""
+    """SI unit."""
     colours: str = "viridis"
     """A colour map of matplotlib."""
     blank: bool = False
-    """Whether nothing is drawn where it is 0."""
+    """Whether cells where it is 0 stay empty."""
     power: float = 1.0
-    """Of the values as the colours go: 0.5 tells small ones apart."""
+    """Exponent applied to the values before colours are assigned: 0.5 separates small ones."""
 
 
 class _Packed(NamedTuple):
@@ -47,15 +47,15 @@ class Frame:
     label: str
     grid: Grid
     factors: tuple[int, int]
-    """Cells that make a pixel, along x and y."""
+    """Number of cells in a pixel along x and y."""
     shape: tuple[int, int]
     packed: tuple[_Packed, ...]
 
 
 def side(points: int, maps: int) -> int:
-    """Return how many pixels a side maps have, at most ``points``, where there are so many maps.
+    """Return the number of pixels along each side of a map, at most ``points``.
 
-    Together they have three million at most, which keeps a page to some megabytes.
+    All maps together have at most three million, which keeps a page to some megabytes.
     """
     return min(points, max(_FEWEST, int(sqrt(_PIXELS / max(maps, 1)))))
 
@@ -63,8 +63,7 @@ def side(points: int, maps: int) -> int:
 def frame(label: str, grid: Grid, fields: Sequence[Array], points: int) -> Frame:
     """Return fields of the grid's shape as maps of at most ``points`` pixels a side.
 
-    A pixel is the mean over a block of cells; values that are not finite do not count, and where
-    there are no others it is empty.
+    A pixel is the mean of the finite values in a block of cells; without any it is empty.
     """
     nx, ny = (-(-n // points) for n in grid.shape)
     coarse = [_means(field, (nx, ny)) for field in fields]
@@ -79,32 +78,32 @@ class Maps:
     kind: ClassVar[str] = "maps"
     caption: str
     what: str
-    """What a frame is: ``"load step"``."""
+    """What a frame shows, such as ``"load step"``."""
     fields: Sequence[Field]
     frames: Sequence[Frame]
     begin: int = 0
-    """The frame that is shown at first."""
+    """Index of the frame that is shown at first."""
     shared: bool = True
-    """Whether the colours go over the values of all frames, not over those of each."""
+    """Whether all frames share one range of colours."""
 
     @property
     def remark(self) -> str:
-        """How the pixels came about, if they are not the cells."""
-        factors = {each.factors for each in self.frames} - {(1, 1)}
+        """A sentence on the size of the pixels, empty if they are the cells."""
+        factors = {frame.factors for frame in self.frames} - {(1, 1)}
         if not factors:
             return ""
         most = " × ".join(map(str, max(factors)))
-        same = len({each.factors for each in self.frames}) == 1
+        same = len({frame.factors for frame in self.frames}) == 1
         return f"Each pixel is the mean over {'' if same else 'up to '}{most} cells."
 
     @property
     def data(self) -> dict[str, Any]:
-        """What the script of the page reads; lengths and values in the units that it names."""
-        sizes = np.array([each.grid.size for each in self.frames])
+        """The input of the page's script; lengths and values are in the units that it names."""
+        sizes = np.array([frame.grid.size for frame in self.frames])
         length, length_unit = axis_unit(sizes / 2, "m")
         fields, scales = [], []
         for number, field in enumerate(self.fields):
-            ends = [(each.packed[number].low, each.packed[number].high) for each in self.frames]
+            ends = [(frame.packed[number].low, frame.packed[number].high) for frame in self.frames]
             scale, unit = axis_unit(np.array(ends), field.unit)
             scales.append(scale)
             fields.append(
@@ -124,25 +123,25 @@ class Maps:
             "fields": fields,
             "frames": [
                 {
-                    "label": each.label,
-                    "shape": each.shape,
-                    "size": [edge * length for edge in each.grid.size],
+                    "label": frame.label,
+                    "shape": frame.shape,
+                    "size": [edge * length for edge in frame.grid.size],
                     "pixel": [
                         edge * factor * length
-                        for edge, factor in zip(each.grid.spacing, each.factors, strict=True)
+                        for edge, factor in zip(frame.grid.spacing, frame.factors, strict=True)
                     ],
                     "fields": [
                         {"low": p.low * scale, "high": p.high * scale, "data": p.data}
-                        for p, scale in zip(each.packed, scales, strict=True)
+                        for p, scale in zip(frame.packed, scales, strict=True)
                     ],
                 }
-                for each in self.frames
+                for frame in self.frames
             ],
         }
 
 
 def _means(field: Array, factors: tuple[int, int]) -> Array:
-    """Return the mean of what is finite in each block; NaN where nothing is."""
+    """Return the mean of the finite values in each block; NaN where there is none."""
     (nx, ny), (fx, fy) = field.shape, factors
     padded = np.pad(field, ((0, -nx % fx), (0, -ny % fy)), constant_values=np.nan)
     blocks = padded.reshape(padded.shape[0] // fx, fx, padded.shape[1] // fy, fy)
@@ -154,9 +153,9 @@ def _means(field: Array, factors: tuple[int, int]) -> Array:
 
 
 def _pack(values: Array) -> _Packed:
-    """Return values in steps of 1/65534 of their range, as the differences of each to that before.
+    """Return values in steps of 1/65534 of their range, as differences of neighbours.
 
-    Both bytes of these are small where the field is smooth, and so compress well apart.
+    High and low bytes are stored apart: they compress well where the field is smooth.
     """
     finite = np.isfinite(values)
     low, high = (values[finite].min(), values[finite].max()) if finite.any() else (0.0, 0.0)
@@ -168,7 +167,7 @@ def _pack(values: Array) -> _Packed:
 
 
 def _colours(name: str) -> str:
-    """Return the 256 colours of a colour map, three bytes each."""
+    """Return the 256 colours of a colour map, three bytes frame."""
     import matplotlib
 
     table = matplotlib.colormaps[name](np.arange(256), bytes=True)[:, :3]

@@ -1,6 +1,6 @@
-"""One self-contained web page: text, tables, pictures, and maps that can be zoomed.
+"""A self-contained web page of text, tables, pictures, and maps that can be zoomed.
 
-Whatever it is given as text is shown as text. The page loads nothing: style, script, pictures and
+Every text is shown literally, markup included. The page loads nothing: style, script, pictures and
 the values of the maps are in it, and it forbids the browser to fetch anything else.
 """
 
@@ -48,13 +48,13 @@ class Text:
 
 @dataclass(frozen=True)
 class Notice:
-    """What a reader must see first."""
+    """The sentence that a reader must see first."""
 
     kind: ClassVar[str] = "notice"
     text: str
     good: bool
     details: Sequence[str] = ()
-    """A line each, below."""
+    """Lines below it."""
 
 
 @dataclass(frozen=True)
@@ -64,18 +64,18 @@ class Column:
     name: str
     unit: str = ""
     meaning: str = ""
-    """Shown where the mouse rests on the head."""
+    """Shown while the pointer rests on the head."""
     words: bool = False
-    """Whether it holds words, not numbers."""
+    """Whether its cells are words, not numbers."""
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell of a table that is more than its text."""
+    """A cell of a table with a link or a mark."""
 
     text: str
     frame: int | None = None
-    """Frame of the first maps of the page that a click shows."""
+    """Index of the frame of the page's first maps that a click shows."""
     bad: bool = False
 
 
@@ -91,28 +91,28 @@ class Table:
     @property
     def cells(self) -> list[list[Cell]]:
         """The rows, every cell a `Cell`."""
-        return [[each if isinstance(each, Cell) else Cell(each) for each in r] for r in self.rows]
+        return [[c if isinstance(c, Cell) else Cell(c) for c in row] for row in self.rows]
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A drawing that does not change."""
+    """A static drawing."""
 
     kind: ClassVar[str] = "picture"
     svg: bytes
     caption: str
     description: str
-    """What it shows, for those who do not see it."""
+    """Text for readers who do not see it."""
 
     @property
     def source(self) -> str:
-        """The drawing as a ``data:`` address: its ids are none of the page's."""
+        """The drawing as a ``data:`` address, which keeps its ids apart from those of the page."""
         return f"data:image/svg+xml;base64,{base64.b64encode(self.svg).decode()}"
 
 
 @dataclass(frozen=True)
 class Code:
-    """Text to be typed or saved, as it is."""
+    """Text to be typed or saved literally."""
 
     kind: ClassVar[str] = "code"
     text: str
@@ -133,7 +133,7 @@ Block = Text | Notice | Table | Picture | Code | Maps
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and what is under it."""
+    """A heading and the blocks below it."""
 
     title: str
     blocks: Sequence[Block]

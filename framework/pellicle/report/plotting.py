@@ -1,4 +1,4 @@
-"""Figures of a result, drawn on matplotlib Axes in real units."""
+"""Figures of a result or a study on matplotlib Axes, with units."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ _MOST_NAMED = 10
 
 
 def without_round_off(step: xr.Dataset) -> xr.Dataset:
-    """Return the fields of a load step for drawing: gaps that its tolerance allows are 0.
+    """Return a load step for drawing, with gaps below its tolerance set to 0.
 
-    A gap counts as 0 up to ``solver.tolerance`` times the length by which the residuals of the step
-    are judged, so that full contact is not drawn as a landscape of femtometres.
+    The tolerance is ``solver.tolerance`` times the length that scales the residuals of the step;
+    otherwise full contact would be drawn as a landscape of femtometres.
     """
     solver = json.loads(step.attrs.get("configuration", "{}")).get("solver", {})
     tolerance = float(solver.get("tolerance", Solver.model_fields["tolerance"].default))
     gap, depth = step["gap"].values, float(step["depth"])
-    # A step that failed may hold infinite numbers of both signs.
+    # A step that failed may have infinite values of both signs.
     with np.errstate(invalid="ignore"):
         profile = step["displacement"].values - depth - gap
     closed = np.abs(gap) <= tolerance * height_scale(profile, step["contact"].values, depth)
@@ -56,7 +56,7 @@ def pressure_map(result: Result, axes: Axes, step: int = -1) -> None:
         cmap="viridis",
         vmin=0.0,
         interpolation="nearest",
-        # The other stage makes a colour of each cell before it takes those to show.
+        # The other stage converts every cell to a colour before it resamples.
         interpolation_stage="data",
     )
     axes.set_facecolor("0.93")
@@ -77,7 +77,7 @@ def profile(result: Result, axes: Axes, step: int = -1) -> None:
     length, length_name = axis_unit(line["x"].values, "m")
     scale, name = axis_unit(line["pressure"].values, "Pa")
     opens = bool(gap[near].any())
-    # A gap of 0 everywhere has no unit of its own; beside the depth it is seen to be nothing.
+    # A gap of 0 everywhere has no scale of its own, and is drawn on that of the depth.
     gap_scale, gap_name = axis_unit(gap[near] if opens else data["depth"].values, "m")
     x = line["x"].values * length
     axes.plot(x, line["pressure"].values * scale, color="C0")
@@ -116,9 +116,9 @@ FIGURES: dict[str, Callable[[Result, Axes], None]] = {
     "force_depth": force_depth,
     "area_force": area_force,
 }
-"""What is drawn of a run, by the ending of the file name."""
+"""Figures of a run, by the suffix of the file name."""
 STUDY_FIGURES = "force", "contact_fraction"
-"""Variables that are drawn of a study, by the same."""
+"""Variables drawn for a study, which are the suffixes of the file names too."""
 
 
 def save_figures(
@@ -162,19 +162,19 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
     against = "depth" if table.sizes["step"] > 1 or not numbers else numbers[0]
     along = "step" if against == "depth" else against
-    # Seeds are repetitions, not what is compared.
+    # Seeds are repetitions, not values to compare.
     rest = [d for d in dimensions if d != along]
     compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
     scale, name = _unit_near_one(table[variable])
     x_scale, x_name = _unit_near_one(table[against])
     stacked = [d for d in table["status"].dims if d not in (along, *compared)]
     many = table.sizes[compared[0]] if compared else 1
-    for number, part in enumerate(_each(table, compared)):
+    for number, part in enumerate(_parts(table, compared)):
         colour = _colour(number, many)
-        # Of many values some are named: the colours go evenly from one to the other.
+        # Of many values only some are named: colours change evenly between them.
         named = compared and number % -(-many // _MOST_NAMED) == 0
         label = _label(part, compared[0]) if named else ""
-        for line in _each(part, stacked):
+        for line in _parts(part, stacked):
             x, y = line[against].values * x_scale, line[variable].values * scale
             axes.plot(x, y, "o-", color=colour, label=label, markersize=4, mfc="white")
             good = line["converged"].values
@@ -188,7 +188,7 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     axes.set_ylim(bottom=0.0)
     axes.grid(alpha=0.3)
     if compared:
-        # Where there is much to look at, matplotlib takes long to find the best place.
+        # matplotlib takes long to find the best place among many curves.
         axes.legend(fontsize="small", loc="upper left" if many > _MOST_NAMED else "best")
 
 
@@ -252,14 +252,14 @@ def _figure(draw: Callable[[Figure], None], size: tuple[float, float]) -> Iterat
     with matplotlib.style.context("default"):
         figure = Figure(figsize=size, dpi=150, layout="constrained")
         draw(figure)
-        # SVG writes every text into its XML as well, as a comment.
+        # SVG repeats every text in a comment of its XML.
         for text in figure.findobj(Text):
             text.set_text(for_document(text.get_text()))
         yield figure
 
 
-def _each(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Dataset]:
-    """Yield the parts of a table at each combination of places along dimensions."""
+def _parts(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Dataset]:
+    """Yield the part of a table at each combination of indices along dimensions."""
     for index in np.ndindex(*(table.sizes[d] for d in dimensions)):
         yield table.isel(dict(zip(dimensions, index, strict=True)))
 
@@ -322,7 +322,7 @@ def _caption(result: Result, step: int) -> str:
 
 
 def extent(x: Array, y: Array) -> tuple[float, float, float, float]:
-    """Return the outer edges of cells by their centres, as ``Axes.imshow`` takes them."""
+    """Return the outer edges of the domain from its cell centres, for ``Axes.imshow``."""
     return (*_edges(x), *_edges(y))
 
 

@@ -84,7 +84,7 @@ def said_of_steps(steps: Sequence[tuple[int, str]]) -> str:
 
 
 def load(path: str | Path) -> Result:
-    """Return the result in a file that `Result.save` or the output ``hdf5`` wrote.
+    """Return the result in a file that `Result.save` or a run wrote.
 
     Raises
     ------

@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack, closing
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -168,11 +169,9 @@ def _written(
     run: Run, result: Result, outputs: Sequence[Output], journal: Journal
 ) -> tuple[Path, ...]:
     def runs() -> Runs:
-        dataset = read_only_dataset(result.dataset)
-        return Runs.of_run(dataset, run.to_json(as_given=True))
+        return Runs.of_run(read_only_dataset(result.dataset), run.to_json(as_given=True))
 
-    files = all_done([journal.close, *writers(outputs, runs, journal.stem, run)])
-    return tuple(path for paths in files for path in paths)
+    return tuple(chain(*all_done([journal.close, *writers(outputs, runs, journal.stem, run)])))
 
 
 def writers(
@@ -195,13 +194,7 @@ def writers(
 
 
 def all_done(calls: Iterable[Callable[[], Value]]) -> list[Value]:
-    """Return what all calls return; one that raises does not keep the others from being made.
-
-    Raises
-    ------
-    Exception
-        The first that was raised.
-    """
+    """Make all calls, even where one raises; return the values, or raise the first exception."""
     values: list[Value] = []
     errors: list[Exception] = []
     for call in calls:
