@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from importlib.metadata import entry_points
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -69,7 +70,7 @@ def start_dask(tmp_path_factory: pytest.TempPathFactory) -> StartDask:
         forked = "forkserver" in multiprocessing.get_all_start_methods()
         method = "forkserver" if forked else "spawn"
         here = {"DASK_DISTRIBUTED__WORKER__MULTIPROCESSING_METHOD": method}
-        common = {
+        common: dict[str, Any] = {
             "env": os.environ | here | environment,
             "stdout": subprocess.DEVNULL,
             "stderr": subprocess.DEVNULL,
@@ -80,7 +81,7 @@ def start_dask(tmp_path_factory: pytest.TempPathFactory) -> StartDask:
         with ExitStack() as processes:
 
             def run(*command: str) -> None:
-                process = subprocess.Popen(command, **common)  # type: ignore[call-overload]
+                process = subprocess.Popen(command, **common)
                 processes.callback(end, process)
 
             run(*scheduler, *loopback, "--scheduler-file", str(file))

@@ -101,9 +101,9 @@ def measure(
             )
             for in_own in (False, True)
         )
-    found = measure_pressure(given, solution.pressure)
+    state = measure_pressure(given, solution.pressure)
     return {
-        "solved": solution.stop.name == "DONE" and found.residual_contact <= tolerance,
+        "solved": solution.stop.name == "DONE" and state.residual_contact <= tolerance,
         "iterations": solution.iterations,
         "applications": used,
         "seconds": seconds,
@@ -111,7 +111,7 @@ def measure(
         "own": seconds / own,
         "setup": setup / one,
         "peak": peak / (8 * np.prod(_plane_of_operator(operator))),
-        "contact": float(found.contact.mean()),
+        "contact": float(state.contact.mean()),
     }
 
 

@@ -42,11 +42,11 @@ def main() -> None:
     for type_ in ("paraboloid", "sphere"):
         indenter = pl.indenter(type_, radius=_RADIUS)
         assert isinstance(indenter, HasForceCurve)
-        first = _seconds(lambda made=indenter: made.force_curve(depth, _LENGTH))  # type: ignore[misc]
+        first = _seconds(lambda body=indenter: body.force_curve(depth, _LENGTH))  # type: ignore[misc]
         print(f"{type_}: master curve loaded in {1e3 * first:.1f} ms")
         for points in (60, 2000):
             times = [
-                _seconds(lambda made=indenter, n=points, k=seed: _fit_one(made, n, k))  # type: ignore[misc]
+                _seconds(lambda body=indenter, n=points, k=seed: _fit_one(body, n, k))  # type: ignore[misc]
                 for seed in range(CURVES)
             ]
             print(

@@ -88,13 +88,13 @@ def main() -> None:
     for points in (2000, 60):
         for tensed in (True, False):
             began = process_time()
-            found = list(scores(curves, seed, points=points, tensed=tensed))
+            sample = list(scores(curves, seed, points=points, tensed=tensed))
             modulus, tension = (
-                float(np.sqrt(np.mean([getattr(each, name) ** 2 for each in found])))
+                float(np.sqrt(np.mean([getattr(score, name) ** 2 for score in sample])))
                 for name in ("modulus", "tension")
             )
             shares = [
-                100 * float(np.mean([getattr(each, name) for each in found]))
+                100 * float(np.mean([getattr(score, name) for score in sample]))
                 for name in ("covers_modulus", "covers_tension", "claims_tension")
             ]
             print(

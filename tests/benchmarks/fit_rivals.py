@@ -193,16 +193,16 @@ def main() -> None:
     print(f"{curves} curves each | claimed | silent | flagged | checks that fail")
     print("--- | --- | --- | --- | ---")
     for name, kind in (RIVALS | CONTROLS).items():
-        found = list(outcomes(kind, curves, seed))
+        results = list(outcomes(kind, curves, seed))
         claimed, silent, flagged = (
             100 * sum(values) / curves
             for values in (
-                [outcome.claims for outcome in found],
-                [outcome.is_silent for outcome in found],
-                [bool(outcome.failed) for outcome in found],
+                [outcome.claims for outcome in results],
+                [outcome.is_silent for outcome in results],
+                [bool(outcome.failed) for outcome in results],
             )
         )
-        codes = sorted({code for outcome in found for code in outcome.failed})
+        codes = sorted({code for outcome in results for code in outcome.failed})
         print(
             f"{name} | {claimed:.0f} % | {silent:.0f} % | {flagged:.0f} % | {', '.join(codes)}",
             flush=True,

@@ -53,10 +53,10 @@ def with_known_contact(problem: Problem, tolerance: float, start: Array, answer:
     on_contact = Preconditioner(problem.operator).on(contact)
     error = float(np.abs(aloft[contact] - depth).max())
     while error > tolerance * scale:
-        found = inner_solve(
+        inner = inner_solve(
             problem, on_contact, pressure, displacement, tolerance / 2 * scale, certainty=np.inf
         )
-        pressure, displacement = found.pressure, problem.operator(found.pressure)
+        pressure, displacement = inner.pressure, problem.operator(inner.pressure)
         aloft = (displacement - problem.profile)[contact]
         error = float(np.abs(aloft - problem.depth(aloft)).max())
     return problem.operator.applications - before

@@ -111,8 +111,8 @@ def pellicle(solver: str, case: Case, tolerance: float) -> Answer:
         raise UnsolvedError("not registered")
     operator = make_operator(case.problem.operator.kernel, case.problem.grid)
     method = pl.solver(solver, tolerance=tolerance)
-    found = method.solve(replace(case.problem, operator=operator), None, lambda *progress: None)
-    return found.pressure, found.iterations, operator.applications
+    outcome = method.solve(replace(case.problem, operator=operator), None, lambda *progress: None)
+    return outcome.pressure, outcome.iterations, operator.applications
 
 
 def tamaas(case: Case, tolerance: float) -> Answer:
@@ -149,8 +149,8 @@ def contact_mechanics(case: Case, tolerance: float) -> Answer:
     half_space = FreeFFTElasticHalfSpace if case.boundary == "free" else Tensed
     substrate = half_space((case.points, case.points), 1.0, (1.0, 1.0))
     aim = {"external_force": case.problem.value, "pentol": tolerance * RMS_HEIGHT}
-    found = constrained_conjugate_gradients(substrate, case.problem.profile, **aim)
-    return found.jac / substrate.area_per_pt, found.nit, found.nfev
+    outcome = constrained_conjugate_gradients(substrate, case.problem.profile, **aim)
+    return outcome.jac / substrate.area_per_pt, outcome.nit, outcome.nfev
 
 
 def aspher(case: Case, tolerance: float) -> Answer:
@@ -162,10 +162,10 @@ def aspher(case: Case, tolerance: float) -> Answer:
     backend = "fft" if case.boundary == "free" else "periodic"
     nesting = {"backend": backend, "coarsest": 32, "precond_engine": "fft", "tol": tolerance}
     gap, load = -case.problem.profile.ravel(), case.problem.value
-    found = peer.solve_nested(case.points, gap, load, **nesting)
-    if not found.converged:
-        raise UnsolvedError(f"{found.status} at its tolerance {tolerance:.1e}")
-    return found.pressure, found.iterations, found.matvec_count
+    outcome = peer.solve_nested(case.points, gap, load, **nesting)
+    if not outcome.converged:
+        raise UnsolvedError(f"{outcome.status} at its tolerance {tolerance:.1e}")
+    return outcome.pressure, outcome.iterations, outcome.matvec_count
 
 
 def tensed(compliance: Any, skin_length: float) -> Any:
@@ -206,14 +206,14 @@ def measure(code: Code, case: Case, repeats: int, target: float) -> dict[str, An
             pressure, iterations, applications = code.solve(case, tolerance)
             elapsed = clock() - started
             if not seconds:
-                found = judge(problem, pressure)
-                if not max(found.residual_complementarity, found.residual_load) <= target:
+                outcome = judge(problem, pressure)
+                if not max(outcome.residual_complementarity, outcome.residual_load) <= target:
                     tolerance /= 2
                     if tolerance < code.tolerance / 256:
-                        raise UnsolvedError(f"reaches {found.residual_complementarity:.1e} only")
+                        raise UnsolvedError(f"reaches {outcome.residual_complementarity:.1e} only")
                     continue
             seconds.append(elapsed)
-    residuals = {name: getattr(found, f"residual_{name}") for name in RESIDUALS}
+    residuals = {name: getattr(outcome, f"residual_{name}") for name in RESIDUALS}
     median = sorted(seconds)[len(seconds) // 2]
     counts = {"iterations": iterations, "applications": applications}
     return {"version": version(code.module), "seconds": median, **counts, **residuals}
@@ -236,20 +236,24 @@ def row(name: str, case: Case, options: argparse.Namespace) -> dict[str, Any]:
         return {"note": f"not done after {options.limit:g} s"}
     if done.returncode:
         return {"note": f"failed: {(done.stderr.strip() or str(done.returncode)).splitlines()[-1]}"}
-    found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    outcome: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
     if logged := re.findall(r"^ *(\d+)(?: +\S+e[-+]\d+){2}$", done.stderr, re.MULTILINE):
-        found["iterations"] = int(logged[-1])  # only the log of tamaas says them
-    return found
+        outcome["iterations"] = int(logged[-1])  # only the log of tamaas says them
+    return outcome
 
 
-def line(name: str, case: Case, found: dict[str, Any], reference: float | None) -> str:
+def line(name: str, case: Case, outcome: dict[str, Any], reference: float | None) -> str:
     """Return a row of the table; its ratio is that to ``reference`` [s]."""
-    start = (name, found.get("version", ""), case.boundary, case.points, case.skin_length)
-    if "note" in found:
-        return f"{ROW.format(*start, case.threads, *[''] * 7).rstrip()}  {found['note']}"
-    counts = (found["iterations"] or "–", found["applications"] or "–", f"{found['seconds']:.2f}")
-    ratio = f"{found['seconds'] / reference:.2f}" if reference else "–"
-    residuals = (f"{found[name]:.1e}" for name in RESIDUALS)
+    start = (name, outcome.get("version", ""), case.boundary, case.points, case.skin_length)
+    if "note" in outcome:
+        return f"{ROW.format(*start, case.threads, *[''] * 7).rstrip()}  {outcome['note']}"
+    counts = (
+        outcome["iterations"] or "–",
+        outcome["applications"] or "–",
+        f"{outcome['seconds']:.2f}",
+    )
+    ratio = f"{outcome['seconds'] / reference:.2f}" if reference else "–"
+    residuals = (f"{outcome[name]:.1e}" for name in RESIDUALS)
     return ROW.format(*start, case.threads, *counts, *residuals, ratio)
 
 
@@ -277,23 +281,23 @@ def main() -> None:
     if options.one:
         name, case = options.one[0], Case(**json.loads(options.one[1]))
         try:
-            found = measure(code_of(name), case, options.repeats, options.target)
+            outcome = measure(code_of(name), case, options.repeats, options.target)
         except UnsolvedError as error:
-            found = {"note": str(error)}
-        print(json.dumps(found))
+            outcome = {"note": str(error)}
+        print(json.dumps(outcome))
         return
     print(ROW.format(*HEADER, "seconds", *RESIDUALS, "ratio"))
-    surfaces = [("periodic", *each) for each in product(options.points, options.skin_length)]
+    surfaces = [("periodic", *choice) for choice in product(options.points, options.skin_length)]
     surfaces += [("free", points, 0.0) for points in options.free]
     names = [*(f"pellicle {solver}" for solver in options.solvers), *options.peers]
     for threads, (boundary, points, skin_length) in product(options.threads, surfaces):
         case = Case(boundary, points, skin_length, threads, options.cutoff)
         reference = None
         for name in names:
-            found = row(name, case, options)
+            outcome = row(name, case, options)
             if name.startswith("pellicle "):
-                reference = reference or found.get("seconds")
-            print(line(name, case, found, reference), flush=True)
+                reference = reference or outcome.get("seconds")
+            print(line(name, case, outcome, reference), flush=True)
     print(FOOTER)
 
 

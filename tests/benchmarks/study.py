@@ -77,10 +77,10 @@ def carry_out(options: argparse.Namespace) -> dict[str, float]:
     import pellicle as pl
 
     run = run_of(options.cases[0], options.points[0], options.tension[0], options.steps)
-    made = study_of(run, options.runs, options.executor, options.workers, options.address)
+    study = study_of(run, options.runs, options.executor, options.workers, options.address)
     with tempfile.TemporaryDirectory() as folder:
         started = time.perf_counter()
-        table = pl.run_study(made, folder, progress=False, threads=1)
+        table = pl.run_study(study, folder, progress=False, threads=1)
         seconds = time.perf_counter() - started
     assert table["converged"].all()
     return {"seconds": seconds, "solving": float(table["wall_time"].sum())}
@@ -124,10 +124,10 @@ def print_efficiency(options: argparse.Namespace) -> None:
         alone = 0.0
         for executor in options.executors:
             workers = 1 if executor == "serial" else options.workers
-            found = _measured("carry_out", options, **_EQUAL, points=[points], executor=executor)
-            alone = found["seconds"] if executor == "serial" else alone
-            share = alone / (workers * found["seconds"])
-            _row(executor, workers, points, options.runs, f"{found['seconds']:.2f}", f"{share:.3f}")
+            costs = _measured("carry_out", options, **_EQUAL, points=[points], executor=executor)
+            alone = costs["seconds"] if executor == "serial" else alone
+            share = alone / (workers * costs["seconds"])
+            _row(executor, workers, points, options.runs, f"{costs['seconds']:.2f}", f"{share:.3f}")
 
 
 def print_overhead(options: argparse.Namespace) -> None:
@@ -139,8 +139,8 @@ def print_overhead(options: argparse.Namespace) -> None:
         one = _measured("carry_out", options, **tiny, runs=1)
         all_ = _measured("carry_out", options, **tiny)
         solving = all_["solving"] - one["solving"]
-        each = (workers * (all_["seconds"] - one["seconds"]) - solving) / (options.runs - 1)
-        shown = f"{one['seconds']:.2f}", f"{all_['seconds']:.2f}", f"{each * 1e3:.1f}"
+        overhead = (workers * (all_["seconds"] - one["seconds"]) - solving) / (options.runs - 1)
+        shown = f"{one['seconds']:.2f}", f"{all_['seconds']:.2f}", f"{overhead * 1e3:.1f}"
         _row(executor, workers, options.runs, *shown)
 
 
@@ -152,13 +152,13 @@ def print_cost(options: argparse.Namespace) -> None:
     )
     for case, tension, points in product(options.cases, options.tension, options.points):
         one = {"cases": [case], "tension": [tension], "points": [points]}
-        found = _measured("run_alone", options, **one)
+        costs = _measured("run_alone", options, **one)
         boundary = run_of(case, points, tension)["grid"]["boundary"]
         _row(
-            boundary if found["converged"] else f"{boundary} not converged",
-            *(f"{tension:g}", points, options.steps, f"{found['contact']:.3f}"),
-            *(f"{found['applications']:.1f}", f"{found['seconds']:.3f}"),
-            *(f"{found['peak'] / 1e6:.0f}", f"{found['estimate'] / 1e6:.0f}"),
+            boundary if costs["converged"] else f"{boundary} not converged",
+            *(f"{tension:g}", points, options.steps, f"{costs['contact']:.3f}"),
+            *(f"{costs['applications']:.1f}", f"{costs['seconds']:.3f}"),
+            *(f"{costs['peak'] / 1e6:.0f}", f"{costs['estimate'] / 1e6:.0f}"),
         )
 
 

@@ -27,8 +27,8 @@ def test_result_has_the_periodic_area() -> None:
             loading={"mean_pressure": 10.0},
             corrections=[{"type": "yastrebov"}],
         )
-        found = solve(run).dataset
-        return found["contact_area"].item(), found["contact_area_yastrebov"].item()
+        data = solve(run).dataset
+        return data["contact_area"].item(), data["contact_area_yastrebov"].item()
 
     (cells, inside), (cells_across, across) = areas(12), areas(0)
     assert cells == cells_across

@@ -64,26 +64,26 @@ def misbehave(job: Job, say: Say) -> Any:
 def test_whatever_tasks_do(executor: Executor, tmp_path: Path) -> None:
     """What is raised comes whole, and what cannot travel is said; closed early, the rest waits."""
     jobs = [Job(i, tmp_path) for i in range(4 + WAITING)]
-    outcomes = executor.map(misbehave, jobs, lambda job, said: None)
-    found: dict[int, Any] = {}
+    outcomes: Any = executor.map(misbehave, jobs, lambda job, text: None)
+    values: dict[int, Any] = {}
     for job, outcome in outcomes:
-        found[job.number] = outcome
-        if found.keys() >= {0, 1, 2, 3}:
+        values[job.number] = outcome
+        if values.keys() >= {0, 1, 2, 3}:
             break
-    outcomes.close()  # type: ignore[attr-defined]
+    outcomes.close()
     begun = {int(path.name) for path in tmp_path.iterdir()}
-    assert found.keys() >= {0, 1, 2, 3}
-    assert found.keys() <= begun
+    assert values.keys() >= {0, 1, 2, 3}
+    assert values.keys() <= begun
     assert len(begun) < len(jobs)
-    assert all(found[number] == number for number in found.keys() - {0, 1, 2, 3})
-    assert isinstance(found[0], ConfigError)
-    assert str(found[0]) == "job.number: it is odd"
-    assert isinstance(found[1], Exception)
-    assert "job 1" in str(found[1])
-    if isinstance(found[2], Exception):
-        assert "job 2" in str(found[2])
-        assert "pickle" in str(found[2])
+    assert all(values[number] == number for number in values.keys() - {0, 1, 2, 3})
+    assert isinstance(values[0], ConfigError)
+    assert str(values[0]) == "job.number: it is odd"
+    assert isinstance(values[1], Exception)
+    assert "job 1" in str(values[1])
+    if isinstance(values[2], Exception):
+        assert "job 2" in str(values[2])
+        assert "pickle" in str(values[2])
     else:
-        assert isinstance(found[2], type(threading.Lock()))
-    assert isinstance(found[3], Exception)
-    assert "two parts" in str(found[3])
+        assert isinstance(values[2], type(threading.Lock()))
+    assert isinstance(values[3], Exception)
+    assert "two parts" in str(values[3])

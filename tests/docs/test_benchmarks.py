@@ -18,9 +18,9 @@ SCRIPTS = {
 
 
 @pytest.mark.parametrize(("script", "asked"), SCRIPTS.items(), ids=SCRIPTS)
-def test_table(script: str, asked: tuple[list[str], int]) -> None:
+def test_table(script: str, size: tuple[list[str], int]) -> None:
     """A heading, the line under it, and as many rows as were asked for, of as many columns."""
-    options, rows = asked
+    options, rows = size
     command = [sys.executable, str(BENCHMARKS / script), *options]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr

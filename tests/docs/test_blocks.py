@@ -83,10 +83,10 @@ class Reader:
         """Execute an interactive session and compare what it shows."""
         test = doctest.DocTestParser().get_doctest(block.text, {}, str(block), None, block.line)
         test.globs = self.names
-        said: list[str] = []
+        lines: list[str] = []
         runner = doctest.DocTestRunner(optionflags=_OPTIONS)
-        runner.run(test, out=said.append, clear_globs=False)
-        assert not runner.summarize(verbose=False).failed, "".join(said)
+        runner.run(test, out=lines.append, clear_globs=False)
+        assert not runner.summarize(verbose=False).failed, "".join(lines)
 
     def toml(self, block: Block) -> None:
         """Solve a complete run or study; check the tables of a part of one."""

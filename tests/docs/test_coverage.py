@@ -29,10 +29,10 @@ def _page(name: str) -> str:
 
 def _section(page: str, heading: str) -> str:
     """Return the text under a heading, up to the next one of its level or above."""
-    found = re.search(rf"^(##+) {re.escape(heading)}$", page, re.MULTILINE)
-    assert found, f"no section {heading!r}"
-    text = page[found.end() :]
-    return re.split(rf"^#{{1,{len(found[1])}}} ", text, maxsplit=1, flags=re.MULTILINE)[0]
+    title = re.search(rf"^(##+) {re.escape(heading)}$", page, re.MULTILINE)
+    assert title, f"no section {heading!r}"
+    text = page[title.end() :]
+    return re.split(rf"^#{{1,{len(title[1])}}} ", text, maxsplit=1, flags=re.MULTILINE)[0]
 
 
 @pytest.mark.parametrize("hook", HOOKS)
@@ -81,9 +81,9 @@ def test_public_name_is_documented(name: str) -> None:
 
 
 @pytest.mark.parametrize("each", [*pl.Status, *pl.Stop], ids=str)
-def test_status_is_documented(each: pl.Status | pl.Stop) -> None:
+def test_status_is_documented(member: pl.Status | pl.Stop) -> None:
     """The theory page lists every way in which a step or a solver can end."""
-    assert f"| `{each.name}` |" in _page("theory.md")
+    assert f"| `{member.name}` |" in _page("theory.md")
 
 
 def test_every_page_is_reachable() -> None:

@@ -128,11 +128,11 @@ def test_fig5_force_and_depth_follow_the_semi_analytic_solution(tmp_path: Path) 
     run("fig5.toml", tmp_path, "grid.points=64", tensions)
     for name, tolerance in (("force", 0.02), ("depth", 0.02)):
         path = tmp_path / f"study-{name}.csv"
-        found = drawn(path, series="boundary elements")
+        curve = drawn(path, series="boundary elements")
         true = drawn(path, series="boundary elements, semi-analytic")
         for axis in ("x", "y"):
-            np.testing.assert_allclose(column(found, axis), column(true, axis), rtol=tolerance)
-        assert (np.diff(column(found, "y")) > 0).all()
+            np.testing.assert_allclose(column(curve, axis), column(true, axis), rtol=tolerance)
+        assert (np.diff(column(curve, "y")) > 0).all()
 
 
 def test_fig6_the_ellipse_is_more_slender_with_tension(tmp_path: Path) -> None:

@@ -71,25 +71,25 @@ def test_patches_sum_to_the_contact(rough: pl.Result) -> None:
     """Areas and forces of the patches are those of the contact; the table counts them."""
     for index in range(2):
         step = rough.dataset.isel(step=index)
-        found = patches(step["contact"], rough.grid)
-        assert found.count == step["patches"] >= 2
-        assert found.area.sum() == pytest.approx(step["contact_area"].item(), rel=1e-12)
-        assert np.array_equal(found.labels > 0, step["contact"])
-        assert (np.diff(found.area) <= 0).all()
-        cells = np.bincount(found.labels.ravel())[1:]
-        np.testing.assert_allclose(cells * rough.grid.cell_area, found.area, rtol=1e-12)
+        result = patches(step["contact"], rough.grid)
+        assert result.count == step["patches"] >= 2
+        assert result.area.sum() == pytest.approx(step["contact_area"].item(), rel=1e-12)
+        assert np.array_equal(result.labels > 0, step["contact"])
+        assert (np.diff(result.area) <= 0).all()
+        cells = np.bincount(result.labels.ravel())[1:]
+        np.testing.assert_allclose(cells * rough.grid.cell_area, result.area, rtol=1e-12)
 
 
 def test_no_two_patches_touch(rough: pl.Result) -> None:
     """Cells in contact that share an edge are of one patch, across periodic edges too."""
     labels = patches(rough.dataset["contact"][-1], rough.grid).labels
     for axis in (0, 1):
-        here, there = labels, np.roll(labels, 1, axis)
+        here, opposite = labels, np.roll(labels, 1, axis)
         if rough.grid.boundary == "free":
-            here, there = (np.delete(each, 0, axis) for each in (here, there))
-        both = (here > 0) & (there > 0)
+            here, opposite = (np.delete(side, 0, axis) for side in (here, opposite))
+        both = (here > 0) & (opposite > 0)
         assert both.any()
-        assert np.array_equal(here[both], there[both])
+        assert np.array_equal(here[both], opposite[both])
 
 
 @pytest.mark.parametrize(
@@ -203,10 +203,10 @@ def test_ellipse_of_a_turned_indenter(elliptic: pl.Result) -> None:
     given = elliptic.configuration
     indenter = {"type": "rotated", "angle": "30 degree", "part": given["indenter"]}
     turned = pl.run({**given, "indenter": indenter, "loading": {"depth": 50e-6}}, progress=False)
-    there, here = elliptic.dataset.isel(step=-1), turned.dataset.isel(step=-1)
+    original, here = elliptic.dataset.isel(step=-1), turned.dataset.isel(step=-1)
     for name in ("semi_major_axis", "semi_minor_axis"):
         cell = elliptic.grid.spacing[0]
-        assert here[name].item() == pytest.approx(there[name].item(), abs=cell / 4)
+        assert here[name].item() == pytest.approx(original[name].item(), abs=cell / 4)
     assert np.degrees(here["major_axis_angle"].item()) == pytest.approx(-60, abs=1)
 
 
@@ -223,20 +223,20 @@ def test_a_step_without_contact(elliptic: pl.Result) -> None:
 def test_ellipse_turns_with_the_contact(degrees: float) -> None:
     """Semi-axes stay, and the angle is that by which the ellipse was turned."""
     grid = pl.Grid(points=(80, 64), size=(80.0, 80.0))
-    found = ellipse(filled(grid, 30, 15, np.radians(degrees)), grid)
-    assert found.semi_major_axis == pytest.approx(30, abs=0.3)
-    assert found.semi_minor_axis == pytest.approx(15, abs=0.3)
-    assert np.degrees(found.angle) == pytest.approx(degrees, abs=1)
+    result = ellipse(filled(grid, 30, 15, np.radians(degrees)), grid)
+    assert result.semi_major_axis == pytest.approx(30, abs=0.3)
+    assert result.semi_minor_axis == pytest.approx(15, abs=0.3)
+    assert np.degrees(result.angle) == pytest.approx(degrees, abs=1)
 
 
 def test_ellipse_across_a_periodic_edge() -> None:
     """A contact that lies across the edges has the ellipse of the same contact in the middle."""
     grid = pl.Grid(points=(40, 50), size=(40.0, 50.0), boundary="periodic")
     middle = filled(grid, 15, 9, 0.5)
-    there, moved = ellipse(middle, grid), ellipse(np.roll(middle, (20, 22), (0, 1)), grid)
-    assert moved.semi_major_axis == pytest.approx(there.semi_major_axis, rel=1e-12)
-    assert moved.semi_minor_axis == pytest.approx(there.semi_minor_axis, rel=1e-12)
-    assert moved.angle == pytest.approx(there.angle, rel=1e-12)
+    middle_ellipse, moved = ellipse(middle, grid), ellipse(np.roll(middle, (20, 22), (0, 1)), grid)
+    assert moved.semi_major_axis == pytest.approx(middle_ellipse.semi_major_axis, rel=1e-12)
+    assert moved.semi_minor_axis == pytest.approx(middle_ellipse.semi_minor_axis, rel=1e-12)
+    assert moved.angle == pytest.approx(middle_ellipse.angle, rel=1e-12)
     assert abs(moved.x) == pytest.approx(20, abs=1e-9)
     assert moved.y == pytest.approx(22, abs=1e-9)
 
@@ -251,9 +251,9 @@ def test_coordination_of_a_lattice() -> None:
     periodic, free = square(32, "periodic"), square(32)
     labels = patches(contact, periodic).labels
     assert set(coordination(labels, periodic)) == {6}
-    found = coordination(labels, free)
-    assert found.max() == 6
-    assert found.mean() < 6
+    result = coordination(labels, free)
+    assert result.max() == 6
+    assert result.mean() < 6
 
 
 @pytest.mark.parametrize("points", [(24, 24), (24, 15), (17, 32), (24, 1)])
@@ -279,10 +279,10 @@ def test_spectrum_of_a_wave() -> None:
     grid = pl.Grid(points=64, size=2.0, boundary="periodic")
     x, y = grid.coordinates()
     wave = 3e-3 * np.cos(2 * np.pi * 5 * x / 2.0) + 0 * y
-    found = spectrum(wave, grid)
-    strongest = int(np.argmax(found.density))
-    assert found.wavenumber[strongest] == pytest.approx(5 * np.pi, rel=0.03)
-    total = found.density * found.count / grid.area
+    result = spectrum(wave, grid)
+    strongest = int(np.argmax(result.density))
+    assert result.wavenumber[strongest] == pytest.approx(5 * np.pi, rel=0.03)
+    total = result.density * result.count / grid.area
     assert total[strongest] == pytest.approx(3e-3**2 / 2, rel=1e-12)
     assert np.delete(total, strongest).max() < 1e-12 * total[strongest]
     windowed = spectrum(wave, grid.model_copy(update={"boundary": "free"}))
@@ -298,13 +298,13 @@ def test_spectrum_of_a_self_affine_punch() -> None:
     punch = pl.indenter(
         "self_affine", rms_height="10 um", hurst=0.7, cutoff_wavelength="0.0625 mm", seed=1
     )
-    found = spectrum(punch.profile(*grid.coordinates()), grid)
-    assert found.mean_square == pytest.approx(10e-6**2, rel=1e-9)
-    modes = found.wavenumber * 1e-3 / (2 * np.pi)
+    result = spectrum(punch.profile(*grid.coordinates()), grid)
+    assert result.mean_square == pytest.approx(10e-6**2, rel=1e-9)
+    modes = result.wavenumber * 1e-3 / (2 * np.pi)
     inside = (modes > 3) & (modes < 15)
-    slope = np.polyfit(np.log(found.wavenumber[inside]), np.log(found.density[inside]), 1)[0]
+    slope = np.polyfit(np.log(result.wavenumber[inside]), np.log(result.density[inside]), 1)[0]
     assert slope == pytest.approx(-3.4, abs=0.05)
-    assert found.density[modes > 17].max() < 1e-20 * found.density.max()
+    assert result.density[modes > 17].max() < 1e-20 * result.density.max()
 
 
 def test_heights_without_end_have_no_spectrum() -> None:
@@ -335,17 +335,17 @@ def test_distributions_integrate(rough: pl.Result) -> None:
 def test_distribution_of_hertz_is_linear(elliptic: pl.Result) -> None:
     """Under a paraboloid the pressure has the density 2p/p₀²: an ellipse without tension too."""
     step = elliptic.dataset.isel(step=-1)
-    found = distribution(step["pressure"].values[step["contact"].values], bins=5)
+    result = distribution(step["pressure"].values[step["contact"].values], bins=5)
     peak = hertz.ellipse(1e-3, 2e-3, 1e4, depth=50e-6).peak_pressure
-    middle = found.edges[:-1] + found.width / 2
-    np.testing.assert_allclose(found.density, 2 * middle / peak**2, atol=0.12 / peak)
+    middle = result.edges[:-1] + result.width / 2
+    np.testing.assert_allclose(result.density, 2 * middle / peak**2, atol=0.12 / peak)
 
 
 def test_distribution_of_nothing() -> None:
     """No samples, or zeros and infinite ones only, have no bins."""
     for samples in (np.empty(0), np.array([0.0, np.inf])):
-        found = distribution(samples)
-        assert found.density.size == found.mean.size == found.width.size == 0
+        result = distribution(samples)
+        assert result.density.size == result.mean.size == result.width.size == 0
 
 
 @pytest.mark.parametrize("exponent", [0.5, 1.0, 1.7, 3.0])
@@ -354,30 +354,30 @@ def test_extrapolation_finds_a_power_law(exponent: float) -> None:
     for points in ([32, 64, 128], [20, 32, 64, 100, 128]):
         h = 1e-3 / np.array(points)
         values = 4e-8 - 3e-8 * (h / h[0]) ** exponent
-        found = extrapolate(h, values)
-        assert found.exponent == pytest.approx(exponent, rel=1e-5)
-        assert found.limit == pytest.approx(4e-8, rel=1e-6)
-        np.testing.assert_allclose(found(h), values, rtol=1e-7)
+        result = extrapolate(h, values)
+        assert result.exponent == pytest.approx(exponent, rel=1e-5)
+        assert result.limit == pytest.approx(4e-8, rel=1e-6)
+        np.testing.assert_allclose(result(h), values, rtol=1e-7)
         if len(points) > 3:
-            assert [found.lowest, found.highest] == pytest.approx([4e-8, 4e-8], rel=1e-5)
+            assert [result.lowest, result.highest] == pytest.approx([4e-8, 4e-8], rel=1e-5)
         else:
-            assert np.isnan([found.lowest, found.highest]).all()
+            assert np.isnan([result.lowest, result.highest]).all()
 
 
 def test_extrapolated_displacement_is_the_integral() -> None:
     """u(0) = ∫ exp(−q²/4)/(1 + sq) dq, s = 2, under exp(−r²), from grids that miss it by more."""
     kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=1.0)
-    spacings, found = [], []
+    spacings, centres = [], []
     for points in (21, 31, 45, 63):
         grid = pl.Grid(points=points, size=8.0)
         x, y = grid.coordinates()
         u = pl.displacement(np.exp(-(x**2) - y**2), kernel=kernel, grid=grid)
         spacings.append(grid.spacing[0])
-        found.append(u[points // 2, points // 2])
-    fit = extrapolate(spacings, found)
+        centres.append(u[points // 2, points // 2])
+    fit = extrapolate(spacings, centres)
     truth = quad(lambda q: np.exp(-(q**2) / 4) / (1 + 2 * q), 0, np.inf)[0]
     assert 1.7 < fit.exponent < 2
-    assert abs(fit.limit / truth - 1) < 1e-4 < abs(found[-1] / truth - 1) / 5
+    assert abs(fit.limit / truth - 1) < 1e-4 < abs(centres[-1] / truth - 1) / 5
     assert fit.lowest < fit.limit < fit.highest
 
 

@@ -180,15 +180,15 @@ def test_statuses_of_version_1_get_codes() -> None:
 
 def test_version_1_is_resumed(old_file: Path) -> None:
     """The same run goes on in it: the identity of a run is not that of its file's layout."""
-    held = pl.load(old_file)
-    run = held.configuration | {"title": "old"}
+    before = pl.load(old_file)
+    run = before.configuration | {"title": "old"}
     with pytest.warns(pl.ConvergenceWarning, match="too coarse"):
         result = pl.run(run, directory=old_file.parent, progress=False, threads=1)
     assert result.dataset["step"].values.tolist() == [1, 2, 3]
     again = pl.load(old_file).dataset
     xr.testing.assert_equal(again, result.dataset)
-    xr.testing.assert_equal(again.isel(step=[0, 1]), held.dataset)
-    assert storage.attributes(old_file)["identity"] == held.dataset.attrs["identity"]
+    xr.testing.assert_equal(again.isel(step=[0, 1]), before.dataset)
+    assert storage.attributes(old_file)["identity"] == before.dataset.attrs["identity"]
     assert checksum.verify(old_file)
 
 

@@ -32,9 +32,11 @@ class Raising(pl.Output):
 
 def test_an_output_that_raises(tmp_path: Path) -> None:
     """The exception is its own, with a note; the outputs after it leave their files."""
-    made = pl.Run(**RUN, outputs=[Raising(), pl.registry().make(pl.Output, {"type": "csv"})])
+    configuration = pl.Run(
+        **RUN, outputs=[Raising(), pl.registry().make(pl.Output, {"type": "csv"})]
+    )
     with pytest.raises(KeyError) as caught:
-        pl.run(made, directory=tmp_path, progress=False)
+        pl.run(configuration, directory=tmp_path, progress=False)
     (note,) = caught.value.__notes__
     assert note.startswith(f"output 'raising' failed ({__file__}, line ")
     assert pl.load(tmp_path / "run.h5").converged
@@ -58,8 +60,8 @@ def test_the_command_has_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 def test_coarse_steps_are_told_once(tmp_path: Path) -> None:
     """The table marks them, and one line says why."""
-    made = pl.Run(**RUN | {"loading": {"depth": ["1 nm", "2 nm", "20 um"]}}, outputs=[])
-    (tmp_path / "a.toml").write_text(made.to_toml(), encoding="utf-8")
+    configuration = pl.Run(**RUN | {"loading": {"depth": ["1 nm", "2 nm", "20 um"]}}, outputs=[])
+    (tmp_path / "a.toml").write_text(configuration.to_toml(), encoding="utf-8")
     done = CliRunner().invoke(app, ["run", str(tmp_path / "a.toml"), "-o", str(tmp_path / "a")])
     assert done.exit_code == 0
     assert [line.split()[-1] for line in done.output.splitlines()[1:4]] == [

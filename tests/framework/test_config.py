@@ -304,9 +304,9 @@ def test_schema_describes_every_field() -> None:
     """An editor can show what each field of each component means."""
     definitions = pl.schema()
     undescribed = [
-        f"{found.type}.{name}"
+        f"{entry.type}.{name}"
         for family in ("kernel", "indenter", "solver")
-        for found, described in zip(
+        for entry, described in zip(
             registry().components[family].values(),
             definitions["properties"][family]["oneOf"],
             strict=True,

@@ -48,15 +48,15 @@ def test_broadcasts_by_dimension() -> None:
     """Variables of xarray meet by the names of their dimensions."""
     a = xr.DataArray([1.0, 2.0], dims="t")
     b = xr.DataArray([10.0, 20.0, 30.0], dims="seed")
-    found = evaluate("a * b + 1", {"a": a, "b": b})
-    assert found.dims == ("t", "seed")
-    np.testing.assert_array_equal(found, [[11, 21, 31], [21, 41, 61]])
+    value = evaluate("a * b + 1", {"a": a, "b": b})
+    assert value.dims == ("t", "seed")
+    np.testing.assert_array_equal(value, [[11, 21, 31], [21, 41, 61]])
 
 
 def test_undefined_values_are_not_a_number() -> None:
     """A division by zero or a root of what is negative spoils its own value only."""
-    found = evaluate("sqrt(a) / b", {"a": np.array([4.0, -1.0, 1.0]), "b": np.array([1, 1, 0])})
-    np.testing.assert_array_equal(found, [2.0, np.nan, np.inf])
+    value = evaluate("sqrt(a) / b", {"a": np.array([4.0, -1.0, 1.0]), "b": np.array([1, 1, 0])})
+    np.testing.assert_array_equal(value, [2.0, np.nan, np.inf])
     assert evaluate("1 / 0", {}) == np.inf
 
 

@@ -92,8 +92,8 @@ def test_rectangular_odd_and_narrow_grids(
     s: float, shape: tuple[int, int], spacing: tuple[float, float]
 ) -> None:
     """Each coefficient equals that of the closed form to 1e-8, whatever the grid."""
-    found = coefficients(membrane(s).compliance, shape, spacing)
-    np.testing.assert_allclose(found, exact(s, shape, spacing), rtol=1e-8)
+    result = coefficients(membrane(s).compliance, shape, spacing)
+    np.testing.assert_allclose(result, exact(s, shape, spacing), rtol=1e-8)
 
 
 @pytest.mark.parametrize("s", [0.0, 0.1, 10.0])
@@ -104,15 +104,15 @@ def test_reference_values(s: float) -> None:
     rows = rows[rows[:, 0] == s]
     i, j = rows[:, 1].astype(int), rows[:, 2].astype(int)
     assert i.size == 9
-    found = coefficients(membrane(s).compliance, (1001, 58))[i, j]
-    np.testing.assert_allclose(found, rows[:, 3], rtol=1e-9)
+    result = coefficients(membrane(s).compliance, (1001, 58))[i, j]
+    np.testing.assert_allclose(result, rows[:, 3], rtol=1e-9)
 
 
 @pytest.mark.parametrize("h", [0.3, 1.0, 7.0])
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_layer_equals_direct_quadrature(h: float, nu: float) -> None:
     """Cells of a bonded layer, ν = ½ too, to 1e-9 of the loaded one: no far field is left."""
-    found = coefficients(layer(h, nu), (40, 40))
+    result = coefficients(layer(h, nu), (40, 40))
     # G − 2/q dies out as e^(−2qh): a Fourier integral in polar co-ordinates, and Love's cells.
     half_space = exact(0.0, (40, 40))
     nodes, weights = np.polynomial.legendre.leggauss(400)
@@ -125,17 +125,17 @@ def test_layer_equals_direct_quadrature(h: float, nu: float) -> None:
         if 20 / h * np.hypot(i, j) > 400:
             continue  # the rule does not resolve the waves
         direct = half_space[i, j] + (density * np.cos(qx * i) * np.cos(qy * j)).sum()
-        assert found[i, j] == pytest.approx(direct, abs=1e-9 * found[0, 0])
+        assert result[i, j] == pytest.approx(direct, abs=1e-9 * result[0, 0])
 
 
 @pytest.mark.parametrize("nu", [0.2, 0.5])
 @pytest.mark.parametrize("h", [0.2, 1.0, 3.0])
 def test_all_cells_of_a_layer_make_up_its_uniform_compression(h: float, nu: float) -> None:
     """Σ K over the plane is G(0) = h (1 − 2ν)/(1 − ν)² for E* = 1: none at all for ν = ½."""
-    found = coefficients(layer(h, nu), (120, 120))
-    total = 4 * found.sum() - 2 * found[0].sum() - 2 * found[:, 0].sum() + found[0, 0]
+    result = coefficients(layer(h, nu), (120, 120))
+    total = 4 * result.sum() - 2 * result[0].sum() - 2 * result[:, 0].sum() + result[0, 0]
     uniform = h * (1 - 2 * nu) / (1 - nu) ** 2
-    assert total == pytest.approx(uniform, abs=1e-8 * found[0, 0])
+    assert total == pytest.approx(uniform, abs=1e-8 * result[0, 0])
 
 
 @pytest.mark.parametrize("power", [0.0, 0.3, 0.5, 1.0, 1.5, 1.8])
@@ -195,8 +195,8 @@ def test_gaussian_pressure_in_both_spaces(symbol: Symbol) -> None:
     )
     # By parts; below 1e-4 it is 1e-8 of P there.
     cuts = np.log([1e-4, 1e-2, 0.3, 2, 12])
-    found = sum(quad(in_real, a, b, epsabs=0, epsrel=1e-11)[0] for a, b in pairwise(cuts))
-    assert 2 * np.pi * found == pytest.approx(expected, rel=1e-8)
+    result = sum(quad(in_real, a, b, epsabs=0, epsrel=1e-11)[0] for a, b in pairwise(cuts))
+    assert 2 * np.pi * result == pytest.approx(expected, rel=1e-8)
 
 
 @pytest.mark.parametrize("symbol", SYMBOLS.values(), ids=SYMBOLS)
@@ -242,11 +242,11 @@ def test_the_estimated_error_is_not_less_than_the_error(s: float) -> None:
     """A table is at least as good as it says, up to rounding."""
     kernel, closed = Tabulated(membrane(s).compliance, 0.2, 70.0), membrane(s)
     r = np.geomspace(0.2, 70, 3000)
-    for found, expected in [
+    for result, expected in [
         (kernel.greens_function(r), closed.greens_function(r)),
         (kernel.radial_primitive(r), closed.radial_primitive(r)),
     ]:
-        assert np.abs(found / expected - 1).max() <= kernel.error + 1e-12
+        assert np.abs(result / expected - 1).max() <= kernel.error + 1e-12
     assert kernel.error <= ACCURACY
 
 
@@ -331,6 +331,6 @@ def test_a_finer_grid_gets_a_table_of_its_own() -> None:
     coarse = make_operator(SymbolOnly(membrane(1.0).compliance), Grid(points=8, size=1.0))
     fine = Grid(points=64, size=1.0)
     pressure = np.random.default_rng(2).random(fine.shape)
-    found = make_operator(coarse.kernel, fine)(pressure)
+    result = make_operator(coarse.kernel, fine)(pressure)
     closed = displacement(pressure, kernel=membrane(1.0), grid=fine)
-    np.testing.assert_allclose(found, closed, rtol=1e-9)
+    np.testing.assert_allclose(result, closed, rtol=1e-9)

@@ -31,13 +31,13 @@ CONFIGURATION: dict[str, Any] = {
 
 
 @pytest.fixture(scope="module")
-def found() -> dict[str, Input]:
+def table() -> dict[str, Input]:
     """Return the inputs of a run by their names."""
-    said = json.loads(pl.Run(**CONFIGURATION).to_json())
-    return {each.name: each for each in inputs(said)}
+    data = json.loads(pl.Run(**CONFIGURATION).to_json())
+    return {entry.name: entry for entry in inputs(data)}
 
 
-def test_values_have_units(found: dict[str, Input]) -> None:
+def test_values_have_units(table: dict[str, Input]) -> None:
     """Of components within components and of lists too; a long list is shortened, and says so."""
     for name, value in {
         "grid.points": "16, 12",
@@ -53,24 +53,24 @@ def test_values_have_units(found: dict[str, Input]) -> None:
         "solver.tolerance": "1e-08",
         "corrections.0": "yastrebov",
     }.items():
-        assert found[name].value == value
+        assert table[name].value == value
 
 
-def test_inputs_are_explained(found: dict[str, Input]) -> None:
+def test_inputs_are_explained(table: dict[str, Input]) -> None:
     """Every one of them says what it means, and components where they come from."""
-    assert all(each.meaning for each in found.values())
-    origin = found["kernel.substrate"].origin
+    assert all(entry.meaning for entry in table.values())
+    origin = table["kernel.substrate"].origin
     assert origin is not None
     assert origin.entry_point == "kernel.frictionless_layer"
     assert origin.version == pl.__version__
     components = {"kernel", "kernel.substrate", "indenter", "solver", "corrections.0"}
-    assert {name for name, each in found.items() if each.origin} == components
+    assert {name for name, entry in table.items() if entry.origin} == components
 
 
 def test_what_nobody_explains_is_there() -> None:
     """A component that is not installed here is listed with its bare numbers."""
-    said = {"kernel": {"type": "of_a_stranger", "stiffness": 3.0, "stops": [{"at": 1}]}}
-    assert [(each.name, each.value, each.meaning) for each in inputs(said)] == [
+    data = {"kernel": {"type": "of_a_stranger", "stiffness": 3.0, "stops": [{"at": 1}]}}
+    assert [(entry.name, entry.value, entry.meaning) for entry in inputs(data)] == [
         ("kernel", "of_a_stranger", ""),
         ("kernel.stiffness", "3", ""),
         ("kernel.stops.0.at", "1", ""),

@@ -142,8 +142,8 @@ def test_require(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_available() -> None:
     """What this machine says it has is a sensible amount, if it says anything."""
-    there = memory.available()
-    assert there is None or 1e6 < there < 1e15
+    free = memory.available()
+    assert free is None or 1e6 < free < 1e15
 
 
 MACHINE = 8e9

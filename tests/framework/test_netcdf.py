@@ -40,11 +40,11 @@ def test_read_as_it_was(tmp_path: Path) -> None:
     path.write_bytes(
         netcdf.serialised(sample(), grows=["step"], packed=["field", "inside"]).getvalue()
     )
-    found = xr.load_dataset(path, engine="h5netcdf")
-    xr.testing.assert_identical(found, sample())
-    assert list(found.data_vars) == list(sample().data_vars)
-    assert {name: each.dtype.kind for name, each in found.items()} == {
-        name: each.dtype.kind for name, each in sample().items()
+    dataset = xr.load_dataset(path, engine="h5netcdf")
+    xr.testing.assert_identical(dataset, sample())
+    assert list(dataset.data_vars) == list(sample().data_vars)
+    assert {name: variable.dtype.kind for name, variable in dataset.items()} == {
+        name: variable.dtype.kind for name, variable in sample().items()
     }
 
 

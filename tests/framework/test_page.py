@@ -127,20 +127,20 @@ def test_maps_hold_the_values() -> None:
     values = np.random.default_rng(1).uniform(0, 5e3, (10, 7)) ** 2
     values[2, 3] = 0.0
     values[4, 5], values[6, 0] = np.inf, np.nan
-    made = Maps("", "", [Field("p", "Pa")], [frame("", GRID, [values], 512)]).data
-    assert made["fields"][0]["unit"] == "MPa"
-    found = unpacked(made["frames"][0]["fields"][0], (10, 7))
+    panel = Maps("", "", [Field("p", "Pa")], [frame("", GRID, [values], 512)]).data
+    assert panel["fields"][0]["unit"] == "MPa"
+    values_read = unpacked(panel["frames"][0]["fields"][0], (10, 7))
     expected = np.where(np.isfinite(values), values, np.nan) * 1e-6
-    np.testing.assert_allclose(found, expected, rtol=0, atol=np.nanmax(expected) / 131067)
-    assert found[2, 3] == 0
-    assert made["frames"][0]["size"] == pytest.approx([1000, 700])
-    assert made["unit"] == "µm"
+    np.testing.assert_allclose(values_read, expected, rtol=0, atol=np.nanmax(expected) / 131067)
+    assert values_read[2, 3] == 0
+    assert panel["frames"][0]["size"] == pytest.approx([1000, 700])
+    assert panel["unit"] == "µm"
 
 
 def test_field_without_a_value() -> None:
     """A map of nothing is packed too."""
-    made = Maps("", "", [Field("gap", "m")], [frame("", GRID, [np.full((10, 7), np.inf)], 512)])
-    packed = made.data["frames"][0]["fields"][0]
+    panel = Maps("", "", [Field("gap", "m")], [frame("", GRID, [np.full((10, 7), np.inf)], 512)])
+    packed = panel.data["frames"][0]["fields"][0]
     assert (packed["low"], packed["high"]) == (0, 0)
     assert np.isnan(unpacked(packed, (10, 7))).all()
 
@@ -149,9 +149,9 @@ def test_pixels_are_means_over_blocks() -> None:
     """Also where the last block is cut; of values that are not finite nothing counts."""
     field = np.arange(70.0).reshape(10, 7)
     field[9, 6] = np.inf
-    made = frame("", GRID, [field], 4)
-    assert (made.factors, made.shape) == ((3, 2), (4, 4))
-    found = unpacked(made.packed[0]._asdict(), (4, 4))
+    data = frame("", GRID, [field], 4)
+    assert (data.factors, data.shape) == ((3, 2), (4, 4))
+    values_read = unpacked(data.packed[0]._asdict(), (4, 4))
     expected = [
         [
             np.nanmean(np.where(np.isinf(b := field[i : i + 3, j : j + 2]), np.nan, b))
@@ -159,8 +159,8 @@ def test_pixels_are_means_over_blocks() -> None:
         ]
         for i in (0, 3)
     ]
-    np.testing.assert_allclose(found[:2, [0, 3]], expected, atol=1e-3)
-    assert np.isnan(found[3, 3])
+    np.testing.assert_allclose(values_read[:2, [0, 3]], expected, atol=1e-3)
+    assert np.isnan(values_read[3, 3])
     assert maps().remark == "Each pixel is the mean over up to 3 × 2 cells."
 
 

@@ -113,13 +113,13 @@ def plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plugin:
 
 def test_a_good_plugin_is_registered_with_its_origin(plugin: Plugin) -> None:
     """A component is found by family and type, and knows the distribution it comes from."""
-    found = load([plugin(SOFT)])
-    registered = found.components["kernel"]["soft"]
+    plugins = load([plugin(SOFT)])
+    registered = plugins.components["kernel"]["soft"]
     assert registered.origin == Origin("kernel.soft", "stranger", "1.2")
     assert registered.summary == "Kernel of a stranger."
-    assert found.find("kernel", "soft") is registered.component
-    assert found.broken == ()
-    assert found.make(Kernel, {"type": "soft", "scale": 2}).model_dump() == {
+    assert plugins.find("kernel", "soft") is registered.component
+    assert plugins.broken == ()
+    assert plugins.make(Kernel, {"type": "soft", "scale": 2}).model_dump() == {
         "type": "soft",
         "scale": 2.0,
     }
@@ -157,10 +157,10 @@ def test_one_plugin_may_bring_several_families(plugin: Plugin) -> None:
         "@hookimpl\n"
         "def register_validations(register): register(list)\n"
     )
-    found = load([plugin(more, name="everything")])
-    assert found.find("correction", "exact").__name__ == "Exact"
-    assert found.find("kernel", "soft").__name__ == "Soft"
-    assert found.suites == (list,)
+    plugins = load([plugin(more, name="everything")])
+    assert plugins.find("correction", "exact").__name__ == "Exact"
+    assert plugins.find("kernel", "soft").__name__ == "Soft"
+    assert plugins.suites == (list,)
 
 
 @pytest.mark.parametrize(("old", "new", "error"), BROKEN.values(), ids=BROKEN.keys())
@@ -169,18 +169,20 @@ def test_a_broken_plugin_is_named_and_nothing_of_it_registered(
 ) -> None:
     """What is wrong is written down with its origin, and the other plugins work."""
     assert old in SOFT
-    found = load([plugin(SOFT.replace(old, new, 1) if old else new + SOFT), *BUILT_INS])
-    assert [broken.origin for broken in found.broken] == [Origin("kernel.soft", "stranger", "1.2")]
-    assert error in found.broken[0].error
-    registered = [type_ for members in found.components.values() for type_ in members]
+    plugins = load([plugin(SOFT.replace(old, new, 1) if old else new + SOFT), *BUILT_INS])
+    assert [broken.origin for broken in plugins.broken] == [
+        Origin("kernel.soft", "stranger", "1.2")
+    ]
+    assert error in plugins.broken[0].error
+    registered = [type_ for members in plugins.components.values() for type_ in members]
     assert registered == ["half_space"]
 
 
 def test_a_missing_module_is_a_broken_plugin() -> None:
     """An entry point of an uninstalled module, without a distribution, is named as well."""
-    found = load([EntryPoint("kernel.soft", "not_there", GROUP)])
+    plugins = load([EntryPoint("kernel.soft", "not_there", GROUP)])
     error = "ModuleNotFoundError: No module named 'not_there'"
-    assert found.broken == (Broken(Origin("kernel.soft", "unknown distribution", "?"), error),)
+    assert plugins.broken == (Broken(Origin("kernel.soft", "unknown distribution", "?"), error),)
 
 
 INTERRUPTED = "import signal; signal.raise_signal(signal.SIGINT)"
@@ -230,10 +232,10 @@ def test_what_a_plugin_prints_at_import_is_no_output(
     if ("ctypes" in source or "echo" in source) and sys.platform == "win32":
         pytest.skip("has neither there")
     sys.stdout.write("before\n")
-    found = load([plugin(source if source.startswith("\n") else f"{source}\n{SOFT}")])
+    plugins = load([plugin(source if source.startswith("\n") else f"{source}\n{SOFT}")])
     sys.stdout.write("after\n")
-    assert found.broken == ()
-    assert "soft" in found.components["kernel"]
+    assert plugins.broken == ()
+    assert "soft" in plugins.components["kernel"]
     output, errors = capfd.readouterr()
     assert output == "before\nafter\n"
     assert errors.strip() == "hello"
@@ -279,16 +281,16 @@ def test_commands_outlive_plugins_that_close_standard_output(
 def test_a_suite_is_registered_only_with_the_rest_of_its_plugin(plugin: Plugin) -> None:
     """A plugin whose last hook fails leaves neither its components nor its suites."""
     failing = "@hookimpl\ndef register_validations(register):\n    register(list)\n    1 / 0\n"
-    found = load([plugin(SOFT + failing)])
-    assert found.suites == ()
-    assert "soft" not in found.components["kernel"]
+    plugins = load([plugin(SOFT + failing)])
+    assert plugins.suites == ()
+    assert "soft" not in plugins.components["kernel"]
 
 
 def test_a_broken_plugin_is_an_error_when_asked_for(plugin: Plugin) -> None:
     """The message holds type, entry point, distribution, version and what went wrong."""
-    found = load([plugin("raise OSError('no library')")])
+    plugins = load([plugin("raise OSError('no library')")])
     with pytest.raises(PluginError) as raised:
-        found.make(Kernel, {"type": "soft"})
+        plugins.make(Kernel, {"type": "soft"})
     assert str(raised.value) == (
         "kernel 'soft' is broken: stranger 1.2 (entry point 'kernel.soft'): OSError: no library"
     )
@@ -306,20 +308,20 @@ def test_a_component_that_cannot_be_made_is_named(plugin: Plugin) -> None:
 
 def test_two_owners_of_one_name_are_both_named(plugin: Plugin) -> None:
     """Neither of two claimants is used; asking for the name raises, other names work."""
-    found = load([plugin(SOFT), plugin(SOFT, distribution="rival", version="7"), *BUILT_INS])
+    plugins = load([plugin(SOFT), plugin(SOFT, distribution="rival", version="7"), *BUILT_INS])
     with pytest.raises(PluginError, match="is claimed by") as raised:
-        found.find("kernel", "soft")
+        plugins.find("kernel", "soft")
     for part in ("stranger 1.2", "rival 7", "uninstall", "PELLICLE_DISABLE_PLUGINS"):
         assert part in str(raised.value)
-    assert found.find("kernel", "half_space").__name__ == "HalfSpace"
+    assert plugins.find("kernel", "half_space").__name__ == "HalfSpace"
 
 
 def test_a_built_in_cannot_be_replaced_silently(plugin: Plugin) -> None:
     """A stranger that takes a built-in's name clashes with it."""
     thief = plugin(SOFT.replace('"soft"', '"half_space"'), name="better")
-    found = load([thief, *BUILT_INS])
+    plugins = load([thief, *BUILT_INS])
     with pytest.raises(PluginError) as raised:
-        found.find("kernel", "half_space")
+        plugins.find("kernel", "half_space")
     assert "stranger 1.2 (entry point 'better')" in str(raised.value)
     assert "pellicle " in str(raised.value)
     without = load([thief, *BUILT_INS], disable="stranger")
@@ -331,11 +333,11 @@ def test_a_built_in_cannot_be_replaced_silently(plugin: Plugin) -> None:
 )
 def test_strangers_are_switched_off(plugin: Plugin, disable: str) -> None:
     """All strangers, a distribution in any spelling, or one entry point can be switched off."""
-    found = load([plugin(SOFT, distribution="my-stranger"), *BUILT_INS], disable)
-    assert list(found.components["kernel"]) == ["half_space"]
-    assert found.disabled == (Origin("kernel.soft", "my-stranger", "1.2"),)
+    plugins = load([plugin(SOFT, distribution="my-stranger"), *BUILT_INS], disable)
+    assert list(plugins.components["kernel"]) == ["half_space"]
+    assert plugins.disabled == (Origin("kernel.soft", "my-stranger", "1.2"),)
     with pytest.raises(PluginError, match="switched off by PELLICLE_DISABLE_PLUGINS"):
-        found.find("kernel", "soft")
+        plugins.find("kernel", "soft")
 
 
 @pytest.mark.parametrize("disable", ["", "0", "strange", "soft"])

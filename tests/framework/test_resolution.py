@@ -39,8 +39,8 @@ def test_error_is_that_of_the_cells(ratio: float, poissons_ratio: float) -> None
     # Far from the edges the line response of one cell, summed up with the wave.
     response = make_operator(kernel, grid)(pressure).sum(axis=1)
     q = 2 * np.pi / (16 * grid.spacing[0])
-    made = (response * np.cos(q * grid.coordinates()[0][:, 0])).sum()
-    expected = made / kernel.compliance(np.array([q]))[0] - 1
+    total = (response * np.cos(q * grid.coordinates()[0][:, 0])).sum()
+    expected = total / kernel.compliance(np.array([q]))[0] - 1
     error = error_of_cells(kernel.compliance, grid.spacing[0])
     assert error == pytest.approx(expected, abs=2e-4)
 
@@ -70,9 +70,9 @@ def test_films_thinner_than_a_cell_are_warned_of(ratio: float) -> None:
     """The number of points that is recommended is enough, and four fifths of it are not."""
     spacing = THICK / ratio
     grid = pl.Grid(points=40, size=40 * spacing, boundary="free")
-    with pytest.warns(UserWarning, match=r"use about \d+ × \d+ points$") as found:
+    with pytest.warns(UserWarning, match=r"use about \d+ × \d+ points$") as result:
         pl.displacement(np.ones(grid.shape), kernel=layer(), grid=grid)
-    recommended = int(str(found[0].message).split(" × ")[-1].split()[0])
+    recommended = int(str(result[0].message).split(" × ")[-1].split()[0])
     finer = 40 * spacing / recommended
     assert abs(error_of_cells(layer().compliance, finer)) < 0.03
     assert abs(error_of_cells(layer().compliance, finer / 0.8)) > 0.03
@@ -104,8 +104,8 @@ def test_periodic_boundaries_sample_the_kernel_itself() -> None:
     grid = pl.Grid(points=16, size=16 * 3 * THICK, boundary="periodic")
     wave = np.cos(2 * np.pi * np.arange(16) / 16)[:, None] + np.zeros((16, 16))
     q = 2 * np.pi / grid.size[0]
-    found = pl.displacement(wave, kernel=layer(), grid=grid)
-    np.testing.assert_allclose(found, layer().compliance(np.array([q]))[0] * wave, atol=1e-18)
+    result = pl.displacement(wave, kernel=layer(), grid=grid)
+    np.testing.assert_allclose(result, layer().compliance(np.array([q]))[0] * wave, atol=1e-18)
 
 
 def test_kernel_that_overflows_at_short_waves_is_not_judged() -> None:

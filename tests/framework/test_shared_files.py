@@ -73,7 +73,7 @@ class Careless(Plain):
         return ("*",)
 
 
-def made(type_: str, **fields: Any) -> Output:
+def make_output(type_: str, **fields: Any) -> Output:
     """Return a built-in output."""
     return registry().make(Output, {"type": type_, **fields})
 
@@ -82,21 +82,21 @@ def made(type_: str, **fields: Any) -> Output:
     ("outputs", "message"),
     [
         (
-            [made("maps", name="pressure"), made("figures")],
+            [make_output("maps", name="pressure"), make_output("figures")],
             r"^outputs\.0\.name: 'maps' would write NAME-pressure\.png, as outputs\.1 \('figures'\)"
             r" does; give it another name$",
         ),
         (
-            [made("figures"), made("curves", name="force")],
+            [make_output("figures"), make_output("curves", name="force")],
             r"^outputs\.1\.name: 'curves' would write NAME-force\.png, as outputs\.0 \('figures'\)",
         ),
         (
-            [made("csv"), made("hdf5"), Plain()],
+            [make_output("csv"), make_output("hdf5"), Plain()],
             r"^outputs\.2\.type: 'silent' would write NAME\.csv, as outputs\.0 \('csv'\) does; "
             "leave one out$",
         ),
         (
-            [made("curves", name="a", formats=["svg"]), made("profiles", name="A")],
+            [make_output("curves", name="a", formats=["svg"]), make_output("profiles", name="A")],
             r"^outputs\.1\.name: 'profiles' would write NAME-A\.csv, as outputs\.0",
         ),
         ([Silent(), Silent()], r"^outputs\.1\.type: 'silent' would write NAME-silent\*, as"),
@@ -105,7 +105,7 @@ def made(type_: str, **fields: Any) -> Output:
             r"^outputs\.2\.name: .* NAME-a\*, as outputs\.0",
         ),
         (
-            [Silent(), made("spectrum", name="silent")],
+            [Silent(), make_output("spectrum", name="silent")],
             r"^outputs\.1\.name: 'spectrum' would write NAME-silent\.png, as outputs\.0",
         ),
     ],
@@ -118,13 +118,15 @@ def test_outputs_of_one_file_are_refused(outputs: list[Output], message: str) ->
 
 def test_outputs_that_share_no_file() -> None:
     """Every built-in output stands beside all others, and one type twice by name or by format."""
-    every = [made(type_) for type_ in registry().components["output"]]
-    refuse_shared_files([*every, made("maps", name="gap"), made("maps", formats=["pdf"]), Silent()])
+    every = [make_output(type_) for type_ in registry().components["output"]]
+    refuse_shared_files(
+        [*every, make_output("maps", name="gap"), make_output("maps", formats=["pdf"]), Silent()]
+    )
 
 
 def test_the_table_of_a_study_is_not_replaced() -> None:
     """An output that may stand in a run is refused in a study whose own table it would replace."""
-    run = RUN | {"outputs": [made("figures"), OfStudies()]}
+    run = RUN | {"outputs": [make_output("figures"), OfStudies()]}
     pl.Run(**run)
     message = r"outputs\.1\.type: 'silent' would write study\.csv, the table of the study; leave it"
     with pytest.raises(pl.ConfigError, match=message):
@@ -138,12 +140,14 @@ def test_the_result_of_a_run_is_not_replaced(output: Output) -> None:
         r"outputs\.1\.type: 'silent' would write NAME\.h5, the result of the run; leave it out"
     )
     with pytest.raises(pl.ConfigError, match=message):
-        pl.Run(**RUN, outputs=[made("figures"), output])
+        pl.Run(**RUN, outputs=[make_output("figures"), output])
 
 
 def test_standard_outputs_in_a_study() -> None:
     """The table of a study is another file than the results and tables of its runs."""
-    run = RUN | {"outputs": [made(type_) for type_ in ("hdf5", "csv", "figures", "html", "vtk")]}
+    run = RUN | {
+        "outputs": [make_output(type_) for type_ in ("hdf5", "csv", "figures", "html", "vtk")]
+    }
     pl.Study(run=run, vary={"indenter.radius": [1e-3, 2e-3]})
 
 

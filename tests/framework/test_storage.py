@@ -167,11 +167,11 @@ def test_segments(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         assert storage.read(path)["step"].values.tolist() == list(range(index + 1))
         assert storage.scalars(path).sizes == {"step": index + 1}
     assert joins == [0, 1, 3, 7]
-    _, (found,) = storage.fields(path, ["pressure"], 18)
-    np.testing.assert_array_equal(found, steps(18)["pressure"].values[0])
-    said, (pressure,) = storage.fields(path, ["pressure"], 18)
+    _, (array,) = storage.fields(path, ["pressure"], 18)
+    np.testing.assert_array_equal(array, steps(18)["pressure"].values[0])
+    attributes, (pressure,) = storage.fields(path, ["pressure"], 18)
     assert (pressure == steps(18)["pressure"].values[0]).all()
-    assert ATTRIBUTES.items() <= said.items()
+    assert ATTRIBUTES.items() <= attributes.items()
     with pytest.raises(StorageError, match="not have that many steps"):
         storage.fields(path, ["pressure"], 99)
     with pytest.raises(StorageError, match="not a readable result"):
@@ -253,13 +253,13 @@ def test_segments_that_are_joined_while_they_are_read(
     assert len(list(path.parent.iterdir())) == 2
     plain, calls = storage.opened, []
 
-    def join_first(part: Path, *arguments: object) -> object:
+    def join_first(part: Path, *arguments: Any) -> object:
         calls.append(part)
         # The first two calls count the steps of both files, the third reads the first file.
         if len(calls) == 4:
             assert part != path
             storage.close(path)
-        return plain(part, *arguments)  # type: ignore[arg-type]
+        return plain(part, *arguments)
 
     monkeypatch.setattr(storage, "opened", join_first)
     assert storage.read(path)["step"].values.tolist() == [1, 2, 3, 4]

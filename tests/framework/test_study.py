@@ -22,6 +22,7 @@ from pellicle.cli import app
 from pellicle.components import Monitor
 from pellicle.results import storage
 from pellicle.studies import runner as study_module
+from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 
 RUN: dict[str, Any] = {
     "title": "Study",
@@ -37,6 +38,13 @@ TENSION, RADIUS = "kernel.tension", "indenter.radius"
 NUMBERS = ("depth", "force", "contact_area", "residual_contact", "iterations", "converged")
 
 
+def tension_of(problem: pl.Problem) -> float:
+    """Return the tension [N/m] of the skin."""
+    kernel = problem.operator.kernel
+    assert isinstance(kernel, TensedMembrane)
+    return kernel.tension
+
+
 class Counting(pl.Solver):
     """Counts what it solves; fails where it is told to."""
 
@@ -48,8 +56,7 @@ class Counting(pl.Solver):
         """Let another solver do it."""
         if (error := type(self).fails_at(problem)) is not None:
             raise error
-        tension = problem.operator.kernel.tension  # type: ignore[attr-defined]
-        self.solved.append((tension, problem.value))
+        self.solved.append((tension_of(problem), problem.value))
         return pl.solver("active_set").solve(problem, start, monitor)
 
 
@@ -64,9 +71,9 @@ def study(vary: dict[str, Any] | None = None, **others: Any) -> pl.Study:
     return pl.Study(run=run, vary=vary or {TENSION: [0.0, 0.5], RADIUS: [1e-3, 2e-3]})
 
 
-def carry_out(made: pl.Study, directory: Path | None = None, **options: Any) -> xr.Dataset:
+def carry_out(plan: pl.Study, directory: Path | None = None, **options: Any) -> xr.Dataset:
     """Return the table of a study, silently."""
-    return pl.run_study(made, directory, progress=False, threads=1, **options)
+    return pl.run_study(plan, directory, progress=False, threads=1, **options)
 
 
 def same_numbers(one: xr.Dataset, other: xr.Dataset) -> None:
@@ -85,7 +92,7 @@ def break_at(monkeypatch: pytest.MonkeyPatch, tension: float, depth: float) -> N
     """Have one step of the runs of one tension fail."""
 
     def fails(problem: pl.Problem) -> Exception | None:
-        here = problem.operator.kernel.tension == tension and problem.value == depth  # type: ignore[attr-defined]
+        here = tension_of(problem) == tension and problem.value == depth
         return ZeroDivisionError("struck by lightning") if here else None
 
     monkeypatch.setattr(Counting, "fails_at", staticmethod(fails))
@@ -93,13 +100,13 @@ def break_at(monkeypatch: pytest.MonkeyPatch, tension: float, depth: float) -> N
 
 def test_table_is_that_of_its_runs() -> None:
     """Each entry of the table is what the run on its own gives."""
-    made = study()
-    table = carry_out(made)
+    plan = study()
+    table = carry_out(plan)
     assert dict(table.sizes) == {TENSION: 2, RADIUS: 2, "step": 3}
-    for point in made.points:
+    for point in plan.points:
         alone = pl.run(point.run, progress=False, threads=1).dataset
         row = table.isel({TENSION: point.position[0], RADIUS: point.position[1]})
-        assert row[TENSION] == point.run.kernel.tension  # type: ignore[attr-defined]
+        assert row[TENSION] == point.run.kernel.model_dump()["tension"]
         for name in NUMBERS:
             assert (row[name].values == alone[name].values).all()
         assert row["run"].item() == point.run.identity[:16]
@@ -207,16 +214,16 @@ def test_runs_of_unequal_length() -> None:
 def test_what_runs_warn_of_is_said_once(tmp_path: Path) -> None:
     """Warnings of all runs come as one line each, with how many are too coarse."""
     ramp = np.add.outer(np.linspace(0, 1, 16), np.linspace(0, 1, 16))
-    made = study(
+    plan = study(
         grid={"points": 16, "size": "0.4 mm", "boundary": "periodic"},
         indenter=pl.indenter("heights", values=ramp, unit="1 um"),
         loading={"depth": "1 pm"},
         vary={TENSION: [0.0, 0.5]},
     )
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
-        pl.run_study(made, tmp_path, progress=False)
-    coarse, along_x, along_y = sorted(str(each.message) for each in told)
+        pl.run_study(plan, tmp_path, progress=False)
+    coarse, along_x, along_y = sorted(str(entry.message) for entry in records)
     assert coarse == "of 2 runs, in 2 the cells are too coarse for this contact; see status"
     assert along_x.startswith("the surface is not periodic along x")
     assert along_y.startswith("the surface is not periodic along y")
@@ -235,9 +242,9 @@ def test_fields_are_read_where_they_are_used(
 ) -> None:
     """Fields of all runs are there, equal those of each run, and cost nothing until looked at."""
     break_at(monkeypatch, 0.5, 1e-5)
-    made = study()
+    plan = study()
     with pytest.warns(pl.ConvergenceWarning):
-        table = carry_out(made, tmp_path, fields=True)
+        table = carry_out(plan, tmp_path, fields=True)
     read: list[int] = []
     plain = storage.fields
 
@@ -364,8 +371,8 @@ def test_full_disk(
     with pytest.raises(pl.StorageError, match=r"study\..*No space left on device.*another folder"):
         carry_out(study(), tmp_path)
     before = len(Counting.solved)
-    held = {path.name: storage.read(path) for path in (tmp_path / "runs").glob("*.h5")}
-    steps = sum(data.sizes["step"] for data in held.values())
+    results = {path.name: storage.read(path) for path in (tmp_path / "runs").glob("*.h5")}
+    steps = sum(data.sizes["step"] for data in results.values())
     # No more than the step whose file did not fit is lost.
     assert before - steps <= 1
     assert not list(tmp_path.rglob(".*.part"))
@@ -494,9 +501,9 @@ def test_figures(tmp_path: Path) -> None:
 
 def test_configuration_of_a_run(tmp_path: Path) -> None:
     """The configuration that a run's file records is the run's own."""
-    made = study()
-    table = carry_out(made, tmp_path)
+    plan = study()
+    table = carry_out(plan, tmp_path)
     path = tmp_path / "runs" / f"{table['run'].values[0, 0]}.h5"
     assert json.loads(storage.attributes(path)["configuration"]) == json.loads(
-        made.points[0].run.to_json()
+        plan.points[0].run.to_json()
     )

@@ -51,25 +51,25 @@ def refused(vary: object = None, **others: Any) -> str:
 
 def test_product() -> None:
     """Each value is combined with each; the last axis varies fastest."""
-    made = study({TENSION: [0, "10 mN/m"], "indenter.radius": ["1 mm", "2 mm", "3 mm"]})
-    assert made.shape == (2, 3)
-    assert [point.position for point in made.points][:4] == [(0, 0), (0, 1), (0, 2), (1, 0)]
-    for point in made.points:
-        assert point.run.kernel.tension == [0.0, 0.01][point.position[0]]  # type: ignore[attr-defined]
-        radius = point.run.indenter.radius  # type: ignore[attr-defined]
+    plan = study({TENSION: [0, "10 mN/m"], "indenter.radius": ["1 mm", "2 mm", "3 mm"]})
+    assert plan.shape == (2, 3)
+    assert [point.position for point in plan.points][:4] == [(0, 0), (0, 1), (0, 2), (1, 0)]
+    for point in plan.points:
+        assert point.run.kernel.model_dump()["tension"] == [0.0, 0.01][point.position[0]]
+        radius = point.run.indenter.model_dump()["radius"]
         assert radius == pytest.approx([1e-3, 2e-3, 3e-3][point.position[1]])
-        assert point.run.loading == made.points[0].run.loading
+        assert point.run.loading == plan.points[0].run.loading
 
 
 def test_zip() -> None:
     """Zipped axes take their values together and share one dimension, next to the product's."""
     zipped = [{"indenter.radius": ["1 mm", "2 mm"], "grid.size": ["0.4 mm", "0.8 mm"]}]
-    made = study({TENSION: [0, 1]}, zip=zipped)
-    assert made.dimensions.keys() == {TENSION, "indenter.radius"}
-    assert made.shape == (2, 2)
-    pairs = {(p.run.indenter.radius, p.run.grid.size[0]) for p in made.points}  # type: ignore[attr-defined]
+    plan = study({TENSION: [0, 1]}, zip=zipped)
+    assert plan.dimensions.keys() == {TENSION, "indenter.radius"}
+    assert plan.shape == (2, 2)
+    pairs = {(p.run.indenter.model_dump()["radius"], p.run.grid.size[0]) for p in plan.points}
     assert pairs == {(1e-3, 0.4e-3), (2e-3, 0.8e-3)}
-    assert made.coordinates()["grid.size"][0] == "indenter.radius"
+    assert plan.coordinates()["grid.size"][0] == "indenter.radius"
 
 
 @pytest.mark.parametrize(
@@ -116,29 +116,29 @@ def test_whole_numbers_stay_whole() -> None:
         "hurst": 0.7,
         "cutoff_wavelength": "0.2 mm",
     }
-    made = Study(
+    plan = Study(
         run=RUN | {"indenter": rough},
         vary={"indenter.seed": {"start": 0, "stop": 19, "num": 20}},
     )
-    seeds = made.coordinates()["indenter.seed"][1].values
+    seeds = plan.coordinates()["indenter.seed"][1].values
     assert seeds.tolist() == list(range(20))
     assert seeds.dtype.kind == "i"
 
 
 def test_units() -> None:
     """Coordinates know the unit of their field, also inside tuples and of load steps."""
-    made = study({TENSION: [1, 2], "grid.size": [1e-3, 2e-3], "loading.depth": [1e-6, 2e-6]})
-    units = {key: each.attributes.get("units") for key, (_, each) in made.coordinates().items()}
+    plan = study({TENSION: [1, 2], "grid.size": [1e-3, 2e-3], "loading.depth": [1e-6, 2e-6]})
+    units = {key: axis.attributes.get("units") for key, (_, axis) in plan.coordinates().items()}
     assert units == {TENSION: "N/m", "grid.size": "m", "loading.depth": "m"}
 
 
 def test_areas_along_an_axis() -> None:
     """The areas of an axis have the unit that those of a result have."""
-    made = study({"loading": [{"contact_radius": 1e-5}]})
-    assert made.points[0].run.loading.prescribed == "contact_radius"
+    plan = study({"loading": [{"contact_radius": 1e-5}]})
+    assert plan.points[0].run.loading.prescribed == "contact_radius"
     loading = RUN | {"loading": {"contact_area": 1e-9}}
-    made = Study(run=loading, vary={"loading.contact_area": ["1e-3 mm**2", 2e-9]})
-    ((_, coordinate),) = made.coordinates().values()
+    plan = Study(run=loading, vary={"loading.contact_area": ["1e-3 mm**2", 2e-9]})
+    ((_, coordinate),) = plan.coordinates().values()
     assert coordinate.values.tolist() == [1e-9, 2e-9]
     assert coordinate.attributes["units"] == "m2"
 
@@ -160,8 +160,8 @@ def test_derived_has_a_name(name: str) -> None:
 def test_derived_names_what_the_loading_brings() -> None:
     """An expression may name the stiffness where it is asked for, and only there."""
     derived = {"reduced": "stiffness / contact_radius"}
-    asked = RUN | {"loading": {"contact_radius": 1e-5, "stiffness": True}}
-    assert Study(run=asked, vary={TENSION: [0, 1]}, derived=derived).derived == derived
+    table = RUN | {"loading": {"contact_radius": 1e-5, "stiffness": True}}
+    assert Study(run=table, vary={TENSION: [0, 1]}, derived=derived).derived == derived
     with pytest.raises(pl.ConfigError, match=r"derived\.reduced: .*stiffness"):
         Study(run=RUN, vary={TENSION: [0, 1]}, derived=derived)
 
@@ -170,9 +170,9 @@ def test_axes_without_quotes(tmp_path: Path) -> None:
     """A dotted key without quotes makes nested tables in TOML, and means the same."""
     vary = "[study.vary]\nkernel.tension = [0, 1]\nkernel.reduced_modulus = [1e4, 2e4]"
     (tmp_path / "a.toml").write_text(pl.Run(**RUN).to_toml() + vary, encoding="utf-8")
-    made = Study.from_toml(tmp_path / "a.toml", ["study.vary.kernel.tension=[0, 1, 2]"])
-    assert made.dimensions.keys() == {TENSION, "kernel.reduced_modulus"}
-    assert made.shape == (3, 2)
+    plan = Study.from_toml(tmp_path / "a.toml", ["study.vary.kernel.tension=[0, 1, 2]"])
+    assert plan.dimensions.keys() == {TENSION, "kernel.reduced_modulus"}
+    assert plan.shape == (3, 2)
 
 
 def test_what_varies_may_be_left_out_of_the_run() -> None:
@@ -193,7 +193,7 @@ def test_a_run_may_be_varied() -> None:
 def test_round_trips() -> None:
     """TOML and JSON of a study make the same runs in the same order."""
     zipped = [{"indenter.radius": ["1 mm", "2 mm"], "grid.size": [4e-4, 8e-4]}]
-    made = study(
+    plan = study(
         {
             TENSION: {"start": "0 mN/m", "stop": "1 N/m", "num": 3},
             "corrections": [[], [{"type": "yastrebov"}]],
@@ -201,14 +201,14 @@ def test_round_trips() -> None:
         zip=zipped,
         derived={"s": "kernel.tension / kernel.reduced_modulus"},
     )
-    again = Study.from_json(made.to_json())
-    toml = Study.from_mapping(tomllib.loads(made.to_toml()))
+    again = Study.from_json(plan.to_json())
+    toml = Study.from_mapping(tomllib.loads(plan.to_toml()))
     for other in (again, toml):
-        assert other.points == made.points
-        assert other.dimensions == made.dimensions
-        assert other.derived == made.derived
-        assert other.executor == made.executor
-    jsonschema.validate(json.loads(made.to_json()), pl.schema())
+        assert other.points == plan.points
+        assert other.dimensions == plan.dimensions
+        assert other.derived == plan.derived
+        assert other.executor == plan.executor
+    jsonschema.validate(json.loads(plan.to_json()), pl.schema())
 
 
 def test_relative_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -219,11 +219,11 @@ def test_relative_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     indenter = {"type": "heights", "path": "a.npy", "unit": "1 um"}
     data = RUN | {"indenter": indenter, "study": {"vary": {"indenter.path": ["a.npy", "b.npy"]}}}
     (tmp_path / "s.toml").write_text(tomli_w.dumps(data), encoding="utf-8")
-    made = Study.from_toml(tmp_path / "s.toml")
+    plan = Study.from_toml(tmp_path / "s.toml")
     monkeypatch.chdir("/")
-    again = Study.from_json(made.to_json())
-    assert [point.run for point in again.points] == [point.run for point in made.points]
-    assert made.points[0].run.identity != made.points[1].run.identity
+    again = Study.from_json(plan.to_json())
+    assert [point.run for point in again.points] == [point.run for point in plan.points]
+    assert plan.points[0].run.identity != plan.points[1].run.identity
 
 
 @pytest.mark.parametrize(
@@ -285,32 +285,32 @@ def test_bad_zip() -> None:
 
 def test_all_problems_at_once() -> None:
     """Every bad value of every axis is named, each once, though many runs have it."""
-    said = refused({TENSION: [-1, 1, -2], "indenter.radius": [0, 1e-3], "grid.points": [16, 0]})
+    message = refused({TENSION: [-1, 1, -2], "indenter.radius": [0, 1e-3], "grid.points": [16, 0]})
     for value in (
         "-1",
         "-2",
         "0 is not allowed; give a whole number",
         "0 is not allowed; give a value > 0 m",
     ):
-        assert said.count(value) == 1
-    assert len(said.splitlines()) == 4
+        assert message.count(value) == 1
+    assert len(message.splitlines()) == 4
 
 
 def test_problem_of_a_combination() -> None:
     """What is wrong with some runs only is said with one of these."""
-    made = RUN | {"loading": {"mean_pressure": 10}}
+    plan = RUN | {"loading": {"mean_pressure": 10}}
     with pytest.raises(
         pl.ConfigError, match=r"run\.loading\.mean_pressure: .*grid\.boundary = free"
     ):
-        Study(run=made, vary={"grid.boundary": ["periodic", "free"]})
+        Study(run=plan, vary={"grid.boundary": ["periodic", "free"]})
 
 
 def test_too_many_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     """A product that cannot even be listed is refused with its number and its memory."""
     monkeypatch.setattr(memory, "available", lambda: 1e9)
     many = {"start": 1.0, "stop": 2.0, "num": 1000}
-    said = refused({TENSION: many, "indenter.radius": many, "kernel.reduced_modulus": many})
-    assert "1000000000 runs needs about 4e+04 GB" in said
+    message = refused({TENSION: many, "indenter.radius": many, "kernel.reduced_modulus": many})
+    assert "1000000000 runs needs about 4e+04 GB" in message
 
 
 def test_problems_of_a_file(tmp_path: Path) -> None:

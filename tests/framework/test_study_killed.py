@@ -48,11 +48,11 @@ def _start(folder: Path) -> subprocess.Popen[bytes]:
 
 def _states(runs: Path) -> set[tuple[str, int]]:
     """Return the state of each file of a run, which differs from step to step."""
-    found = set()
+    files = set()
     for path in runs.glob("*.h5"):
         with suppress(FileNotFoundError):
-            found.add((path.name, path.stat().st_size))
-    return found
+            files.add((path.name, path.stat().st_size))
+    return files
 
 
 def test_killed_and_restarted(tmp_path: Path) -> None:
@@ -60,7 +60,7 @@ def test_killed_and_restarted(tmp_path: Path) -> None:
     (tmp_path / "s.toml").write_text(FILE, encoding="utf-8")
     runs = tmp_path / "out" / "runs"
     chance = random.Random(4)
-    held: dict[str, int] = {}
+    steps: dict[str, int] = {}
     for kill in range(KILLS):
         process = _start(tmp_path)
         # Counted in files, not in seconds: a slow machine must be killed in mid-study too.
@@ -73,15 +73,15 @@ def test_killed_and_restarted(tmp_path: Path) -> None:
         process.send_signal(signal.SIGKILL)
         assert process.wait() == -signal.SIGKILL, f"it had ended before kill {kill}"
         for path in runs.glob("*.h5"):
-            found = storage.read(path).sizes["step"]
-            assert found >= held.get(path.name, 0)
-            held[path.name] = found
-    assert 0 < sum(held.values()) < 54
+            count = storage.read(path).sizes["step"]
+            assert count >= steps.get(path.name, 0)
+            steps[path.name] = count
+    assert 0 < sum(steps.values()) < 54
     process = _start(tmp_path)
     assert process.wait() == 0
     table = xr.load_dataset(tmp_path / "out" / "study.h5", engine="h5netcdf")
-    made = pl.Study.from_toml(tmp_path / "s.toml", ["study.executor={type='serial'}"])
-    undisturbed = pl.run_study(made, progress=False, threads=1)
+    plan = pl.Study.from_toml(tmp_path / "s.toml", ["study.executor={type='serial'}"])
+    undisturbed = pl.run_study(plan, progress=False, threads=1)
     assert table.sizes == undisturbed.sizes
     for name in undisturbed.data_vars:
         if name not in TIMES:

@@ -35,9 +35,9 @@ def schema() -> Draft202012Validator:
 def without(path: str) -> dict[str, Any]:
     """Return the run without one of its entries."""
     *tables, last = path.split(".")
-    made = {key: dict(table) for key, table in RUN.items()}
-    del (made[tables[0]] if tables else made)[last]
-    return made
+    table = {key: dict(table) for key, table in RUN.items()}
+    del (table[tables[0]] if tables else table)[last]
+    return table
 
 
 @pytest.mark.parametrize("path", sorted(STUDIES.glob("*.toml")), ids=lambda path: path.name)

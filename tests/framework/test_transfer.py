@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 import pytest
 
@@ -116,11 +118,11 @@ def test_coarsened_grid(points: tuple[int, int], expected: tuple[int, int]) -> N
 
 
 @pytest.mark.parametrize("prescribed", ["depth", "force"])
-def test_coarsened_problem(prescribed: str) -> None:
+def test_coarsened_problem(prescribed: Literal["depth", "force"]) -> None:
     """The same load on the coarse grid; an operator of its own leaves the fine one's count."""
     grid = Grid(points=(9, 6), size=(2.0, 3.0))
     kernel = HalfSpace(reduced_modulus=2.0)
-    fine = Problem(grid, make_operator(kernel, grid), field(grid.shape), prescribed, 3.0)  # type: ignore[arg-type]
+    fine = Problem(grid, make_operator(kernel, grid), field(grid.shape), prescribed, 3.0)
     coarse = fine.coarsened()
     assert coarse.grid == grid.coarsened() == coarse.operator.grid
     assert (coarse.prescribed, coarse.value) == (prescribed, 3.0)

@@ -64,13 +64,13 @@ def test_packages_pass_their_own_tests(
 
 def test_packages_are_listed(environment: dict[str, str], tmp_path: Path) -> None:
     """Each is found under its family with its name, its version and a sentence."""
-    found = json.loads(call(environment, tmp_path, "pellicle", "plugins", "--json").stdout)
-    assert found["broken"] == []
-    mine = [each for each in found["components"] if each["origin"].startswith("pellicle-my-")]
-    assert {(each["family"], each["type"]) for each in mine} == {
+    listing = json.loads(call(environment, tmp_path, "pellicle", "plugins", "--json").stdout)
+    assert listing["broken"] == []
+    mine = [entry for entry in listing["components"] if entry["origin"].startswith("pellicle-my-")]
+    assert {(entry["family"], entry["type"]) for entry in mine} == {
         (family, f"my_{family}") for family in FAMILIES
     }
-    assert all(each["description"].endswith((".", ").")) for each in mine)
+    assert all(entry["description"].endswith((".", ").")) for entry in mine)
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -53,7 +53,7 @@ def pellicle(python: Command) -> Command:
 
 def test_is_listed_with_its_origin(pellicle: Command) -> None:
     """The list of plugins holds the kernel, its distribution, its version and its first line."""
-    found = json.loads(pellicle("plugins", "--json").stdout)
+    listing = json.loads(pellicle("plugins", "--json").stdout)
     assert {
         "family": "kernel",
         "type": "power_law",
@@ -61,8 +61,8 @@ def test_is_listed_with_its_origin(pellicle: Command) -> None:
         "version": "1.2.3",
         "description": "Stiffness k ∝ qⁿ: a Winkler foundation (n = 0), a graded solid, "
         "the half-space (n = 1).",
-    } in found["components"]
-    assert found["broken"] == []
+    } in listing["components"]
+    assert listing["broken"] == []
 
 
 def test_is_in_the_schema(pellicle: Command) -> None:

@@ -48,10 +48,10 @@ def test_full_contact_compresses_a_layer_by_uniaxial_strain(
         loading={"mean_pressure": list(steps)},
         solver={"type": solver},
     )
-    found = pl.run(run, progress=False).dataset
-    assert found["converged"].all()
-    assert found["contact"].all()
-    rise = np.diff(found["depth"].values) / np.diff(steps)
+    result = pl.run(run, progress=False).dataset
+    assert result["converged"].all()
+    assert result["contact"].all()
+    rise = np.diff(result["depth"].values) / np.diff(steps)
     np.testing.assert_allclose(rise, THICKNESS / wave_modulus(nu), rtol=1e-6)
 
 
@@ -59,7 +59,7 @@ def test_full_contact_compresses_a_layer_by_uniaxial_strain(
 def test_a_depth_on_a_layer_counts_from_first_touch(solver: str) -> None:
     """Prescribed depths start at 0, go past full contact, and belong to the pressures they make."""
     kernel, depths = layer("bonded_layer", 0.3), [1e-7, 1e-5, 4e-5]
-    made = [
+    steps = [
         solve(
             grid=PERIODIC,
             kernel=kernel,
@@ -69,15 +69,15 @@ def test_a_depth_on_a_layer_counts_from_first_touch(solver: str) -> None:
         )
         for depth in depths
     ]
-    assert all(step["converged"] for step in made)
+    assert all(step["converged"] for step in steps)
     # The lightest touch is on one cell or few; the deepest is beyond the mean plane.
-    assert made[0]["contact_fraction"] < 0.02
-    assert made[2]["contact"].all()
+    assert steps[0]["contact_fraction"] < 0.02
+    assert steps[2]["contact"].all()
     again = solve(
         grid=PERIODIC,
         kernel=kernel,
         indenter=ROUGH,
-        loading={"mean_pressure": float(made[1]["mean_pressure"])},
+        loading={"mean_pressure": float(steps[1]["mean_pressure"])},
         solver={"type": solver},
     )
     assert float(again["depth"]) == pytest.approx(depths[1], rel=1e-6)
@@ -148,7 +148,7 @@ def test_flat_punch_on_a_bonded_layer(
         "poissons_ratio": poissons_ratio,
         "thickness": radius / slenderness,
     }
-    points, found = np.array([24, 48, 96, 192]), []
+    points, result = np.array([24, 48, 96, 192]), []
     for n in points:
         # Several offsets of the rim against the grid, as a circle of cells is never quite round.
         steps = [
@@ -162,11 +162,11 @@ def test_flat_punch_on_a_bonded_layer(
         ]
         assert all(step["converged"] for step in steps)
         forces = np.array([float(step["force"]) for step in steps])
-        found.append(forces / (2 * modulus * radius * depth))
-    errors = [np.sqrt(np.mean((kappas / expected - 1) ** 2)) for kappas in found]
+        result.append(forces / (2 * modulus * radius * depth))
+    errors = [np.sqrt(np.mean((kappas / expected - 1) ** 2)) for kappas in result]
     assert -np.polyfit(np.log(points), np.log(errors), 1)[0] > 0.8
     assert errors[-1] < 4e-3
-    extrapolated = 2 * found[3].mean() - found[2].mean()
+    extrapolated = 2 * result[3].mean() - result[2].mean()
     assert extrapolated == pytest.approx(expected, rel=2e-3)
 
 
@@ -181,8 +181,8 @@ def test_a_thick_layer_on_a_free_boundary_is_a_half_space(base: str, nu: float) 
     apart = []
     for h in (1.0, 10.0):
         kernel = pl.kernel(base, reduced_modulus=1e4, poissons_ratio=nu, thickness=h)
-        found = pl.displacement(pressure, kernel=kernel, grid=grid)
-        apart.append(np.abs(found - known) / known.max())
+        result = pl.displacement(pressure, kernel=kernel, grid=grid)
+        apart.append(np.abs(result - known) / known.max())
     np.testing.assert_allclose(apart[0], apart[0].mean(), rtol=1e-3)
     assert apart[0].max() / apart[1].max() == pytest.approx(10, rel=1e-3)
     far = pl.kernel(base, reduced_modulus=1e4, poissons_ratio=nu, thickness=1e3)

@@ -47,8 +47,8 @@ THERE_AND_BACK = [0.3, 0.6, 1.0, 0.6, 0.3]
 def _solved(
     base: dict[str, Any], solver: str, tolerance: float = 1e-8, **loading: Any
 ) -> xr.Dataset:
-    made = {**base, "loading": loading, "solver": {"type": solver, "tolerance": tolerance}}
-    return pl.run(made, progress=False).dataset
+    configuration = {**base, "loading": loading, "solver": {"type": solver, "tolerance": tolerance}}
+    return pl.run(configuration, progress=False).dataset
 
 
 @cache
@@ -65,13 +65,13 @@ def _path(case: str, solver: str) -> xr.Dataset:
 def test_unloading_retraces_loading(case: str, solver: str) -> None:
     """Without adhesion there is no hysteresis: the way back is that there, step by step."""
     data = _path(case, solver)
-    for back, there in ((3, 1), (4, 0)):
+    for back, forth in ((3, 1), (4, 0)):
         for name, relative in (("force", 1e-6), ("contact_area", 0.0), ("stiffness", 1e-6)):
             values = data[name].values
-            assert values[back] == pytest.approx(values[there], rel=relative), name
+            assert values[back] == pytest.approx(values[forth], rel=relative), name
         pressure = data["pressure"].values
         np.testing.assert_allclose(
-            pressure[back], pressure[there], rtol=0, atol=1e-4 * pressure[there].max()
+            pressure[back], pressure[forth], rtol=0, atol=1e-4 * pressure[forth].max()
         )
 
 
@@ -152,7 +152,7 @@ def test_area_on_springs_is_known_cell_by_cell(wanted: int, solver: str) -> None
     count = round(data["contact_area"].item() / cell)
     touching = [int(np.count_nonzero(heights <= one)) for one in np.unique(heights)]
     assert count in touching
-    assert abs(count - wanted) == min(abs(each - wanted) for each in touching)
+    assert abs(count - wanted) == min(abs(other - wanted) for other in touching)
     # Cells at the same height as the indenter is deep may be counted or not.
     assert np.count_nonzero(heights < data["depth"].item() * (1 - 1e-3)) <= count
     assert np.count_nonzero(heights < data["depth"].item() * (1 + 1e-3)) >= count
@@ -168,10 +168,10 @@ def test_radius_of_hertz(solver: str) -> None:
     base = SMOOTH | {"kernel": BARE, "grid": {"points": 64, "size": 3e-4}}
     data = _solved(base, solver, contact_radius=radius)
     assert data["converged"].item()
-    found = data["contact_radius"].item()
-    assert found == pytest.approx(radius, rel=0.01)
+    width = data["contact_radius"].item()
+    assert width == pytest.approx(radius, rel=0.01)
     assert data["force"].item() == pytest.approx(4 / 3 * 1e4 * radius**3 / 1e-3, rel=0.03)
-    assert np.pi * found**2 == pytest.approx(data["contact_area"].item(), rel=1e-12)
+    assert np.pi * width**2 == pytest.approx(data["contact_area"].item(), rel=1e-12)
 
 
 @pytest.mark.parametrize("base", [ROUGH, PERIODIC], ids=["free", "periodic"])

@@ -25,7 +25,7 @@ def fit(
     files: Annotated[
         list[Path],
         typer.Argument(
-            metavar="[CONFIG.toml] [CURVES]...",
+            metavar="[CONFIG.toml] CURVES",
             help="A configuration, whose values the options replace. Curves: files or a folder of "
             "them: tables with a header such as position (um),force (nN); HDF5; formats of "
             "instruments. Or a table file,radius (um) that lists files.",

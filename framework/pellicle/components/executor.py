@@ -13,18 +13,15 @@ from pellicle.checks import whole_number
 
 from .base import Component
 
-_Count = Annotated[int, Field(ge=1)]
 
-Threads = Annotated[
-    int,
-    BeforeValidator(partial(whole_number, unit="threads"), json_schema_input_type=_Count),
-]
+def _count(unit: str) -> BeforeValidator:
+    schema = Annotated[int, Field(ge=1)]
+    return BeforeValidator(partial(whole_number, unit=unit), json_schema_input_type=schema)
+
+
+Threads = Annotated[int, _count("threads")]
 """A number of threads ≥ 1; text, fractions and true are refused."""
-
-Workers = Annotated[
-    int,
-    BeforeValidator(partial(whole_number, unit="workers"), json_schema_input_type=_Count),
-]
+Workers = Annotated[int, _count("workers")]
 """A number of workers ≥ 1, likewise."""
 
 Outcome = TypeVar("Outcome")

@@ -42,8 +42,6 @@ ExecutorLike = str | Mapping[str, Any] | Executor
 
 FIXABLE = {parameter.name: parameter for parameter in (CONTACT_POINT, MODULUS, TENSION)}
 """Parameters that can be fixed, by their names."""
-
-
 _COMPONENTS = ("indenter", "kernel", "executor")
 
 
@@ -53,13 +51,7 @@ def _component(value: object) -> object:
 
 
 def _indenter(value: object) -> Any:
-    """Return an indenter, or its table where fields are missing that each file may have.
-
-    Raises
-    ------
-    ConfigError, PluginError
-        A field of the table is not allowed.
-    """
+    """Return an indenter, or its table where fields are missing that each file may have."""
     table = _component(value)
     if isinstance(table, HasForceCurve):
         return table
@@ -94,13 +86,7 @@ def _fixed(value: object) -> dict[str, float]:
 
 
 def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the content of a file with its paths as seen from the current folder.
-
-    Raises
-    ------
-    ConfigError
-        No file matches a pattern.
-    """
+    """Return the content of a file with its paths as seen from the current folder."""
     curves, cache = data.get("curves"), data.get("cache")
     curves = [curves] if isinstance(curves, str) else curves
     if isinstance(curves, list) and all(isinstance(curve, str) for curve in curves):
@@ -133,9 +119,9 @@ class FitConfig(FromFile, Calibration):
         PlainSerializer(_as_json),
         Field(description="what was pressed in: its type and fields"),
     ]
-    poissons_ratio: Annotated[
-        PoissonsRatio | None, Field(description="of the solid, to get Young's modulus as well")
-    ] = None
+    poissons_ratio: PoissonsRatio | None = Field(
+        None, description="of the solid, to get Young's modulus as well"
+    )
     kernel: Annotated[
         dict[str, Any] | None,
         BeforeValidator(_component),
@@ -144,37 +130,27 @@ class FitConfig(FromFile, Calibration):
     fix: Annotated[
         dict[str, float],
         BeforeValidator(_fixed),
-        Field(
-            description="parameters that are not fitted, with their values", default_factory=dict
-        ),
-    ]
-    baseline: Annotated[
-        Baseline, Field(description="what is fitted of the force before contact")
-    ] = "none"
-    segment: Annotated[Segment, Field(description="the pass that is fitted")] = "approach"
+        Field(description="parameters that are not fitted, with their values"),
+    ] = Field(default_factory=dict)
+    baseline: Baseline = Field("none", description="what is fitted of the force before contact")
+    segment: Segment = Field("approach", description="the pass that is fitted")
     per_file: Annotated[
         dict[str, tuple[Any, ...]],
         Field(
             description="fields of the indenter, spring_constant or sensitivity, each with a list "
-            "of one value for each file",
-            default_factory=dict,
+            "of one value for each file"
         ),
-    ]
-    pool: Annotated[
-        bool, Field(description="whether all curves share one modulus and one tension")
-    ] = False
-    contact_points: Annotated[
-        bool, Field(description="whether a pool gives the interval of each contact point too")
-    ] = False
+    ] = Field(default_factory=dict)
+    pool: bool = Field(False, description="whether all curves share one modulus and one tension")
+    contact_points: bool = Field(
+        False, description="whether a pool gives the interval of each contact point too"
+    )
     executor: Annotated[
         Executor,
         FromRegistry(),
         BeforeValidator(_component),
-        Field(
-            description="what carries out many fits and simulations",
-            default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}),
-        ),
-    ]
+        Field(description="what carries out many fits and simulations"),
+    ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
     cache: Annotated[Path | None, Field(description="folder that keeps simulated force curves")] = (
         None
     )
@@ -232,29 +208,25 @@ class FitConfig(FromFile, Calibration):
             A value is not allowed, or the file cannot be read.
         """
         if isinstance(base, (str, Path)):
-            folder = Path(base).parent
+            folder, data = Path(base).parent, read_toml(Path(base))
+            if options.get("curves") is not None:
+                data.pop("curves", None)
             with paths_relative_to(folder):
-                return cls.merged(_from_folder(read_toml(Path(base)), folder), overrides, **options)
+                return cls.merged(_from_folder(data, folder), overrides, **options)
         if isinstance(base, FitConfig):
             base = {name: getattr(base, name) for name in base.model_fields_set}
-        data: dict[str, Any] = {
-            name: _component(value) if name in _COMPONENTS else value
-            for name, value in (base or {}).items()
-        }
-        for name, value in options.items():
-            if value is None:
+        options = {name: value for name, value in options.items() if value is not None}
+        shared = cls.model_fields.keys() - Calibration.model_fields.keys()
+        data = {**(base or {}), **{name: options[name] for name in shared & options.keys()}}
+        data |= {name: _component(data[name]) for name in _COMPONENTS if name in data}
+        for name in [name for name in options if name not in shared]:
+            if isinstance(options[name], (list, tuple)):
+                data = replaced(data, f"per_file.{name}", options[name])
                 continue
-            of_curve = name in Calibration.model_fields or name not in cls.model_fields
-            if of_curve and isinstance(value, (list, tuple)):
-                data = replaced(data, f"per_file.{name}", value)
-                continue
-            if of_curve and isinstance(data.get("per_file"), Mapping):
+            if isinstance(data.get("per_file"), Mapping):
                 data["per_file"] = {k: v for k, v in data["per_file"].items() if k != name}
-            if name in cls.model_fields:
-                data[name] = _component(value) if name in _COMPONENTS else value
-            else:
-                data["indenter"] = _component(data.get("indenter", {}))
-                data = replaced(data, f"indenter.{name}", value)
+            key = name if name in cls.model_fields else f"indenter.{name}"
+            data = replaced(data, key, options[name])
         return cls(**overridden(data, overrides))
 
     def to_dict(self) -> dict[str, Any]:
@@ -267,25 +239,13 @@ class FitConfig(FromFile, Calibration):
         return Calibration(spring_constant=self.spring_constant, sensitivity=self.sensitivity)
 
     def sources(self, curves: Curves | None = None) -> list[Source]:
-        """Return the curves, or other ones that are given, as they are read.
-
-        Raises
-        ------
-        ConfigError, StorageError
-            As for `gather`.
-        """
+        """Return the curves, or other ones that are given, as they are read."""
         return gather(
             self.curves if curves is None else curves, self.segment, self.calibration, self.per_file
         )
 
     def indenter_with(self, fields: Mapping[str, Any]) -> Indenter | HasForceCurve:
-        """Return the indenter with the fields of one curve in place of its own.
-
-        Raises
-        ------
-        ConfigError, PluginError
-            A field is missing or not allowed.
-        """
+        """Return the indenter with the fields of one curve in place of its own."""
         indenter: Any = self.indenter
         if fields and not isinstance(indenter, (Indenter, Mapping)):
             raise ConfigError(f"{', '.join(fields)} given beside an indenter that is complete")
@@ -299,13 +259,7 @@ class FitConfig(FromFile, Calibration):
             raise error.within("indenter") from None
 
     def solid_under(self, indenter: Indenter | HasForceCurve) -> Solid | None:
-        """Return the solid to simulate; None if there is no kernel and none is needed.
-
-        Raises
-        ------
-        ConfigError
-            A kernel is given beside a force curve that is not that of an indenter.
-        """
+        """Return the solid to simulate; None if there is no kernel and none is needed."""
         if self._solid is None:
             closed = isinstance(indenter, HasForceCurve)
             return None if closed else solid(DEFAULT_KERNEL, self.poissons_ratio)

@@ -102,7 +102,7 @@ def fit(
         Position of the indenter [m], growing into the solid, and force [N], both of shape (n,).
     depth
         Depth [m] instead of position: the contact point is then fixed at 0.
-    indenter
+    indenter, **fields
         An indenter, its table, or its type with the fields that the type needs:
         ``indenter="paraboloid", radius="5 um"``; or anything that has a force curve.
     kernel
@@ -120,19 +120,14 @@ def fit(
     spring_constant
         That of the cantilever [N/m], if position is that of its base less its deflection: the
         noise of the deflection is then in both position and force, which the fit accounts for.
-    cache
-        Folder that keeps studies; the user's cache folder if not given.
-    executor
-        What carries out a study; ``"serial"`` if not given.
-    grid_points
-        Cells of each grid of a study along x and y; 64 if not given.
+    cache, executor, grid_points
+        Of a study: the folder that keeps it (the user's cache folder), what carries it out
+        (``"serial"``), and the cells of each grid along x and y (64).
     config
         A configuration or the TOML file that has one; the other arguments, if given, replace its
         values.  Without position and force the curve is the one that it names.
     progress
         Show the progress of a study and of the fit on a terminal.
-    **fields
-        Fields of the indenter.
 
     Raises
     ------
@@ -176,13 +171,7 @@ def fit(
 
 
 def fit_source(config: FitConfig, source: Source, *, progress: bool) -> Fit:
-    """Return the fit of one curve.
-
-    Raises
-    ------
-    PellicleError
-        As for `fit`, or the error of reading the curve.
-    """
+    """Return the fit of one curve."""
     (problem,) = problems(config, [source])
     if isinstance(problem, PellicleError):
         raise problem
@@ -195,13 +184,6 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda word
     """Return the fit of a curve whose indenter has a force curve.
 
     ``report`` is called with what the fit is doing.
-
-    Raises
-    ------
-    ConfigError
-        The curve cannot be fitted.
-    ConvergenceError
-        No search for the best parameters converges.
     """
     report("least squares")
     single = fit_single(problem.likelihood(), problem.fixed)

@@ -278,13 +278,7 @@ def table(rows: list[Row]) -> xr.Dataset:
 
 
 def _write(rows: list[Row], config: FitConfig, directory: Path) -> tuple[Path, ...]:
-    """Write ``fits.h5``, ``fits.csv`` and ``fits.json`` and return their paths.
-
-    Raises
-    ------
-    StorageError
-        They cannot be written.
-    """
+    """Write ``fits.h5``, ``fits.csv`` and ``fits.json`` and return their paths."""
     dataset = table(rows)
     hdf5, text = directory / "fits.h5", directory / "fits.csv"
     storage.write(dataset, hdf5)

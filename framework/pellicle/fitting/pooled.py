@@ -197,13 +197,7 @@ def fit_pooled(
 
 
 def pool_sources(config: FitConfig, sources: Sequence[Source], *, progress: bool) -> PooledFit:
-    """Return the pooled fit of several curves.
-
-    Raises
-    ------
-    PellicleError
-        As for `fit_pooled`.
-    """
+    """Return the pooled fit of several curves."""
     if "contact_point" in config.fix:
         raise ConfigError(
             "is not shared, each curve has its own; leave it out", "fix.contact_point"

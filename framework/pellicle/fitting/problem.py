@@ -42,13 +42,7 @@ class FitProblem:
     poissons_ratio: float | None
 
     def simulated(self, config: FitConfig, *, progress: bool) -> FitProblem:
-        """Return the problem with an indenter that has a force curve, simulated if need be.
-
-        Raises
-        ------
-        ConfigError, ConvergenceError, StorageError
-            As for `simulate`.
-        """
+        """Return the problem with an indenter that has a force curve, simulated if need be."""
         if self.solid is None:
             return self
         position = self.curve.position

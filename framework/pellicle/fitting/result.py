@@ -168,13 +168,7 @@ def as_json(value: object) -> str:
 
 
 def write_json(value: object, path: Path) -> Path:
-    """Write ``value`` to a JSON file, which replaces an old one, and return its path.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be written.
-    """
+    """Write ``value`` to a JSON file, which replaces an old one, and return its path."""
     with atomic_write(path) as part:
         part.write_text(as_json(value), encoding="utf-8")
     return path

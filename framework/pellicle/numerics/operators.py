@@ -143,9 +143,9 @@ class Operator(ABC):
         """
         if compliance == self._holder:
             return self
-        held = copy.copy(self)
-        held._holder = compliance
-        return held
+        operator = copy.copy(self)
+        operator._holder = compliance
+        return operator
 
     def deflection(self, total: float) -> float:
         """Return the deflection of the spring [m] under pressures whose sum is ``total`` [Pa]."""

@@ -257,8 +257,10 @@ class Equilibrium:
 
 
 def measure(problem: Problem, pressure: Array) -> Equilibrium:
-    """Return what ``pressure`` [Pa] really achieves."""
-    return Equilibrium(problem, pressure)
+    """Return what ``pressure`` [Pa] really achieves, by one application of the operator."""
+    equilibrium = Equilibrium(problem, pressure)
+    _ = equilibrium.gap
+    return equilibrium
 
 
 def height_scale(

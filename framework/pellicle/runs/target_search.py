@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 from pellicle.components import Monitor, Solver
 from pellicle.components.calls import solution_of
 from pellicle.components.prescription import Search, Setting
-from pellicle.numerics.problem import Depth, Equilibrium, measure
+from pellicle.numerics.problem import Depth, Equilibrium
 from pellicle.numerics.solution import Solution, Stop
 
 # Trials after which no control is expected to bring the goal.
@@ -129,7 +129,8 @@ class _Trials:
         goal = self.search.goal
         problem = self.setting.problem(self.search.control(control))
         solution = solution_of(self.solver, problem, self.setting.state, self.monitor)
-        found = measure(problem, solution.pressure)
+        # Not measured: the quantity, such as an area, may need no displacement.
+        found = Equilibrium(problem, solution.pressure)
         self.iterations += solution.iterations
         value = self.search.measure(found)
         missed = abs(value - goal) / (abs(goal) or 1.0)

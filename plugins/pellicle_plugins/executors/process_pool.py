@@ -72,14 +72,12 @@ class ProcessPool(Generic[AnyTask]):
                 self._free_memory = available
             fitting = (i for i, task in enumerate(self._waiting) if self._fits(task, available))
             index = next(fitting, None)
-            if index is None:
-                if self._running:
-                    break
-                task = self._waiting.pop(0)
-                refused.append((task, _too_large(task, available)))
-                continue
-            task = self._waiting.pop(index)
+            if index is None and self._running:
+                break
+            task = self._waiting.pop(index or 0)
             try:
+                if index is None:
+                    raise _too_large(task, available)
                 payload = pack(self._work, task)
                 worker = self._worker()
             except Exception as error:

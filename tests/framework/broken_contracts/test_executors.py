@@ -21,7 +21,7 @@ class Executor(pl.Executor):
     def map(self, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
         """Yield each task with its outcome, changed."""
         for task in tasks:
-            yield from self.change(task, work(task, lambda said: None))
+            yield from self.change(task, work(task, lambda text: None))
 
     def change(self, task: Any, outcome: Any) -> Any:
         """Yield something else."""
@@ -73,7 +73,7 @@ class Returning(Executor):
 
     def map(self, work: Any, tasks: Any, report: Any) -> Any:
         """Return all at once."""
-        return [(task, work(task, lambda said: None)) for task in tasks]
+        return [(task, work(task, lambda text: None)) for task in tasks]
 
 
 EXECUTORS = {

@@ -170,8 +170,8 @@ class NamesPressure(Solver):
 
     def change(self, solution: Any, problem: Any, start: Any) -> Any:
         """Make a solution by keyword."""
-        made: Any = pl.Solution
-        return made(pressure=solution.pressure, iterations=1)
+        solution_type: Any = pl.Solution
+        return solution_type(pressure=solution.pressure, iterations=1)
 
 
 OUTDATED = ["not an array: its pressure is start.pressure", "pellicle.Solution(pressure or state"]

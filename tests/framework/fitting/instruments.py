@@ -53,8 +53,8 @@ def hdf5(path: Path, *recordings: Recording) -> None:
     import h5py
 
     with h5py.File(path, "w") as file:
-        for number, each in enumerate(recordings):
-            _exported(path, each, number).export_data(file, fmt="hdf5")
+        for number, recording in enumerate(recordings):
+            _exported(path, recording, number).export_data(file, fmt="hdf5")
 
 
 def tab(path: Path, recording: Recording) -> None:
@@ -88,7 +88,7 @@ def jpk(path: Path, *recordings: Recording) -> None:
         if len(recordings) > 1:
             archive.writestr("header.properties", general)
             archive.writestr("index/", "")
-        for number, each in enumerate(recordings):
+        for number, recording in enumerate(recordings):
             folder = f"index/{number}/" if len(recordings) > 1 else ""
             if folder:
                 archive.writestr(folder, "")
@@ -96,12 +96,15 @@ def jpk(path: Path, *recordings: Recording) -> None:
             archive.writestr(f"{folder}segments/", "")
             for segment, style in enumerate(("extend", "retract")):
                 inner = f"{folder}segments/{segment}/"
-                rows = each.segment == segment
+                rows = recording.segment == segment
                 archive.writestr(inner, "")
                 archive.writestr(
-                    f"{inner}segment-header.properties", _jpk_header(each, rows, style, number)
+                    f"{inner}segment-header.properties", _jpk_header(recording, rows, style, number)
                 )
-                for name, values in (("measuredHeight", each.height), ("vDeflection", each.volts)):
+                for name, values in (
+                    ("measuredHeight", recording.height),
+                    ("vDeflection", recording.volts),
+                ):
                     whole = np.round(values[rows] / _jpk_step(values)).astype(">i4")
                     archive.writestr(f"{inner}channels/{name}.dat", whole.tobytes())
 
@@ -274,8 +277,8 @@ WRITERS: dict[str, Callable[[Path, Recording], None]] = {
 }
 """Files of one curve."""
 MAPS: dict[str, Callable[[Path, Sequence[Recording]], None]] = {
-    "export.h5": lambda path, each: hdf5(path, *each),
-    "map.jpk-force-map": lambda path, each: jpk(path, *each),
+    "export.h5": lambda path, recording: hdf5(path, *recording),
+    "map.jpk-force-map": lambda path, recording: jpk(path, *recording),
 }
 """Files of several."""
 UNCALIBRATED = ("workshop.csv", "nova.txt")

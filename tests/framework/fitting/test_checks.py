@@ -6,6 +6,7 @@ import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import fit_rivals
 import numpy as np
@@ -21,6 +22,9 @@ from pellicle.fitting.problem import FitProblem, problems
 from pellicle.fitting.result import status_line
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.noise import resolution
+from pellicle_plugins.indenters.cone import Cone
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.sphere import Sphere
 
 Array = NDArray[np.float64]
 RADIUS, MODULUS = fit_rivals.RADIUS, fit_rivals.MODULUS
@@ -35,15 +39,15 @@ def measured(kind: Kind, seed: int = 3) -> tuple[Array, Array]:
 def white(seed: int, *, length: float = 0.0, points: int = 600, noise: float = 0.005) -> Array:
     """Return position and force of a clean curve, as two rows."""
     depth = np.linspace(-0.3, 1.0, points) * 0.08 * RADIUS
-    bead = pl.indenter("paraboloid", radius=RADIUS)
-    force = MODULUS * bead.force_curve(depth, length).force  # type: ignore[attr-defined]
+    bead = Paraboloid(radius=RADIUS)
+    force = MODULUS * bead.force_curve(depth, length).force
     errors = np.random.default_rng(seed).standard_normal(points)
     return np.array([depth + 1e-6, force + noise * force.max() * errors])
 
 
-def fit(position: Array, force: Array, **options: object) -> pl.Fit:
+def fit(position: Array, force: Array, **options: Any) -> pl.Fit:
     """Return the fit by a paraboloid."""
-    return pl.fit(position, force, indenter="paraboloid", radius=RADIUS, **options)  # type: ignore[arg-type]
+    return pl.fit(position, force, indenter="paraboloid", radius=RADIUS, **options)
 
 
 def codes(result: pl.Fit) -> list[str]:
@@ -63,9 +67,9 @@ def test_no_tension_is_claimed_in_silence_where_the_curve_shows_another_cause(na
 @pytest.mark.parametrize("name", CONTROLS)
 def test_curves_of_the_model_pass(name: str) -> None:
     """Curves that the model describes fail checks by chance only, and true tensions are claimed."""
-    found = list(outcomes(CONTROLS[name], 20, seed=7))
-    assert sum(bool(outcome.failed) for outcome in found) <= 1
-    claims = sum(outcome.claims for outcome in found)
+    sample = list(outcomes(CONTROLS[name], 20, seed=7))
+    assert sum(bool(outcome.failed) for outcome in sample) <= 1
+    claims = sum(outcome.claims for outcome in sample)
     assert claims == 20 if name.startswith("tension") else claims <= 2
 
 
@@ -107,7 +111,9 @@ def test_offset_is_said_and_mended() -> None:
     """A baseline off 0 is said, with its value and the baseline that fits it."""
     position, force = white(2)
     shifted = force + 3e-11
-    (check,) = [each for each in fit(position, shifted).failed_checks if each.code == "offset"]
+    (check,) = [
+        failure for failure in fit(position, shifted).failed_checks if failure.code == "offset"
+    ]
     assert "the force before contact is 3.0" in check.message
     assert not fit(position, shifted, baseline="offset").failed_checks
 
@@ -168,16 +174,16 @@ def test_pattern_shows_without_rows_before_contact() -> None:
 @pytest.mark.parametrize(("depth", "ratio"), [(0.2, 0.95), (0.5, 0.87), (0.8, 0.78)])
 def test_deep_paraboloid_says_what_a_sphere_changes(depth: float, ratio: float) -> None:
     """A ball fitted as a paraboloid seems too soft, and the sphere is named with its modulus."""
-    ball = pl.indenter("sphere", radius=RADIUS)
+    ball = Sphere(radius=RADIUS)
     depths = np.linspace(-0.3, 1.0, 300) * depth * RADIUS
-    force = MODULUS * ball.force_curve(depths, 0.0).force  # type: ignore[attr-defined]
+    force = MODULUS * ball.force_curve(depths, 0.0).force
     force += 0.001 * force.max() * np.random.default_rng(1).standard_normal(300)
     shallow = fit(depths, force)
     assert shallow.reduced_modulus.value / MODULUS == pytest.approx(ratio, abs=0.02)
     assert not shallow.tension_needed
     assert "shape" in codes(shallow)
-    (said,) = [text for text in shallow.messages if "with indenter 'sphere'" in text]
-    modulus = float(said.partition("reduced modulus is ")[2].partition(" Pa")[0])
+    (message,) = [text for text in shallow.messages if "with indenter 'sphere'" in text]
+    modulus = float(message.partition("reduced modulus is ")[2].partition(" Pa")[0])
     assert modulus == pytest.approx(MODULUS, rel=0.01)
     assert not any("sphere" in text for text in fit(*white(1)).messages)
 
@@ -244,11 +250,11 @@ def test_fit_with_a_cantilever_and_a_baseline_ends(
     count = 0
     whole = Likelihood._model
 
-    def counted(*arguments: object) -> object:
+    def counted(*arguments: Any) -> object:
         nonlocal count
         count += 1
         assert count < 20_000
-        return whole(*arguments)  # type: ignore[arg-type]
+        return whole(*arguments)
 
     monkeypatch.setattr(Likelihood, "_model", counted)
     result = fit(*_cantilever(5e-4), spring_constant=5e-4, baseline=baseline)
@@ -258,8 +264,8 @@ def test_fit_with_a_cantilever_and_a_baseline_ends(
 def test_slope_of_the_baseline_cannot_reproduce_any_curve() -> None:
     """The baseline runs along the base of the cantilever, which holds no measured force."""
     position, force = _cantilever(1e-3)
-    bead = pl.indenter("paraboloid", radius=RADIUS)
-    likelihood = Likelihood(position, force, tension_model(bead), 1e-10, (), 1e-3)  # type: ignore[arg-type]
+    bead = Paraboloid(radius=RADIUS)
+    likelihood = Likelihood(position, force, tension_model(bead), 1e-10, (), 1e-3)
     steps = np.diff(likelihood.travel)
     assert np.ptp(steps) < 1e-9 * steps.mean()
 
@@ -299,10 +305,10 @@ def test_absurd_spring_constants_are_refused(stiffness: float) -> None:
 
 def test_no_interval_is_narrower_than_its_bound() -> None:
     """Near the end of a tension, and where a model is far from linear, no bound is given."""
-    cone = pl.indenter("cone", half_angle=1.2)
+    cone = Cone(half_angle=1.2)
     for seed in range(12):
         depth = np.linspace(-0.3, 1.0, 60) * 0.04e-6
-        force = MODULUS * cone.force_curve(depth, 0.0).force  # type: ignore[attr-defined]
+        force = MODULUS * cone.force_curve(depth, 0.0).force
         force += 0.02 * force.max() * np.random.default_rng(seed).standard_normal(60)
         result = pl.fit(depth, force, indenter=cone)
         for name, estimate in result.estimates().items():

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle.fitting.curves.curve import Curve, clean
 from pellicle.fitting.curves.readers import read
+from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.pictures import drawn_width
 
 Array = NDArray[np.float64]
@@ -28,8 +29,8 @@ Cli = Callable[..., Result]
 
 def _curve(points: int = 300) -> tuple[Array, Array]:
     depth = np.linspace(-1e-6, 3e-6, points)
-    paraboloid = pl.indenter("paraboloid", radius=RADIUS)
-    force = MODULUS * paraboloid.force_curve(depth, 2 * TENSION / MODULUS).force  # type: ignore[attr-defined]
+    paraboloid = Paraboloid(radius=RADIUS)
+    force = MODULUS * paraboloid.force_curve(depth, 2 * TENSION / MODULUS).force
     noise = np.random.default_rng(4).standard_normal(points)
     return depth + POINT, force + 0.005 * force.max() * noise
 
@@ -46,19 +47,19 @@ def _holds(estimate: dict[str, Any], truth: float) -> bool:
 def test_command_gives_json(cli: Cli) -> None:
     """JSON has value, interval and unit of each parameter, and the words."""
     _write(*_curve())
-    said = json.loads(cli("curve.csv", *OPTIONS, "--poissons-ratio", "0.5", "--json").stdout)
-    assert _holds(said["reduced_modulus"], MODULUS)
-    assert _holds(said["tension"], TENSION)
-    assert _holds(said["contact_point"], POINT)
-    assert [said[name]["unit"] for name in ("reduced_modulus", "tension", "contact_point")] == [
+    report = json.loads(cli("curve.csv", *OPTIONS, "--poissons-ratio", "0.5", "--json").stdout)
+    assert _holds(report["reduced_modulus"], MODULUS)
+    assert _holds(report["tension"], TENSION)
+    assert _holds(report["contact_point"], POINT)
+    assert [report[name]["unit"] for name in ("reduced_modulus", "tension", "contact_point")] == [
         "Pa",
         "N/m",
         "m",
     ]
-    youngs = said["youngs_modulus"]
-    assert youngs["value"] == pytest.approx(0.75 * said["reduced_modulus"]["value"])
-    assert "tension is needed" in said["comparison"]
-    assert "Cramér–Rao" in said["advice"]
+    youngs = report["youngs_modulus"]
+    assert youngs["value"] == pytest.approx(0.75 * report["reduced_modulus"]["value"])
+    assert "tension is needed" in report["comparison"]
+    assert "Cramér–Rao" in report["advice"]
 
 
 def test_command_leaves_files(cli: Cli) -> None:
@@ -72,9 +73,9 @@ def test_command_leaves_files(cli: Cli) -> None:
     assert drawn_width(figure, columns=(0, 0.5), rows=(0, 0.68)) > 0.6
     assert drawn_width(figure, columns=(0, 0.5), rows=(0.72, 1)) > 0.3
     assert drawn_width(figure, columns=(0.5, 0.88)) > 0.2
-    said = json.loads(Path("out/curve-fit.json").read_text(encoding="utf-8"))
-    assert said["tension"]["low"] is None
-    assert any("does not describe the curve" in message for message in said["messages"])
+    report = json.loads(Path("out/curve-fit.json").read_text(encoding="utf-8"))
+    assert report["tension"]["low"] is None
+    assert any("does not describe the curve" in message for message in report["messages"])
 
 
 def test_command_leaves_a_page(cli: Cli) -> None:
@@ -102,8 +103,8 @@ def test_rows_at_the_turn_belong_to_the_pass_that_has_them(dwell: int) -> None:
     """Of rows at the greatest position the first ends the approach, the last begins the retract."""
     position, force = _curve()
     relaxed = 0.9 * force[::-1]
-    held = np.full(dwell, position[-1]), np.full(dwell, relaxed[0])
-    both = np.r_[position, held[0], position[-2::-1]], np.r_[force, held[1], relaxed[1:]]
+    dwelling = np.full(dwell, position[-1]), np.full(dwell, relaxed[0])
+    both = np.r_[position, dwelling[0], position[-2::-1]], np.r_[force, dwelling[1], relaxed[1:]]
     assert np.array_equal(clean(Curve(*both)).force, force)
     assert np.array_equal(clean(Curve(*both), "retract").force, relaxed[::-1])
 
@@ -111,10 +112,10 @@ def test_rows_at_the_turn_belong_to_the_pass_that_has_them(dwell: int) -> None:
 def test_held_parameters(cli: Cli) -> None:
     """What is fixed stays, with its unit, and is said to be held; Hertz is the fit without."""
     _write(*_curve())
-    said = json.loads(cli("curve.csv", *OPTIONS, "--fix", "tension=7.5 mN/m", "--json").stdout)
-    assert said["tension"]["held"]
-    assert said["tension"]["value"] == TENSION
-    assert _holds(said["reduced_modulus"], MODULUS)
+    report = json.loads(cli("curve.csv", *OPTIONS, "--fix", "tension=7.5 mN/m", "--json").stdout)
+    assert report["tension"]["held"]
+    assert report["tension"]["value"] == TENSION
+    assert _holds(report["reduced_modulus"], MODULUS)
     hertz = json.loads(cli("curve.csv", *OPTIONS, "--fix", "tension=0", "--json").stdout)
     assert hertz["reduced_modulus"]["value"] > 1.2 * MODULUS
 
@@ -140,9 +141,9 @@ def test_tables(cli: Cli, header: str, separator: str) -> None:
 def test_columns_of_other_names(cli: Cli) -> None:
     """A table whose columns nobody knows is refused with what its first line has."""
     _write(*_curve(), "Indentation (um),Force (nN)")
-    told = cli("curve.csv", *OPTIONS, code=2).stderr
-    assert "has no column position or depth" in told
-    assert "'indentation', 'force'" in told
+    message = cli("curve.csv", *OPTIONS, code=2).stderr
+    assert "has no column position or depth" in message
+    assert "'indentation', 'force'" in message
 
 
 def test_decimal_commas(cli: Cli) -> None:
@@ -162,10 +163,10 @@ def test_hdf5_and_depth(cli: Cli) -> None:
         for name, values, unit in (("depth", position - POINT, "m"), ("force", force * 1e9, "nN")):
             file[name] = values
             file[name].attrs["units"] = unit
-    said = json.loads(cli("curve.h5", *OPTIONS, "--json").stdout)
-    assert said["contact_point"]["held"]
-    assert said["contact_point"]["value"] == 0
-    assert _holds(said["tension"], TENSION)
+    report = json.loads(cli("curve.h5", *OPTIONS, "--json").stdout)
+    assert report["contact_point"]["held"]
+    assert report["contact_point"]["value"] == 0
+    assert _holds(report["tension"], TENSION)
 
 
 def test_result_of_a_run_is_a_curve(cli: Cli) -> None:
@@ -177,9 +178,9 @@ def test_result_of_a_run_is_a_curve(cli: Cli) -> None:
         loading={"depth": np.linspace(0.2e-6, 5e-6, 12).tolist()},
     )
     pl.run(run, progress=False).save("run.h5")
-    said = json.loads(cli("run.h5", "-i", "paraboloid", "--radius", "1 mm", "--json").stdout)
-    assert said["reduced_modulus"]["value"] == pytest.approx(1e4, rel=0.02)
-    assert said["tension"]["value"] == pytest.approx(0.1, rel=0.02)
+    report = json.loads(cli("run.h5", "-i", "paraboloid", "--radius", "1 mm", "--json").stdout)
+    assert report["reduced_modulus"]["value"] == pytest.approx(1e4, rel=0.02)
+    assert report["tension"]["value"] == pytest.approx(0.1, rel=0.02)
 
 
 def test_baseline(cli: Cli) -> None:
@@ -189,14 +190,14 @@ def test_baseline(cli: Cli) -> None:
     _write(position, force + drift)
     plain = json.loads(cli("curve.csv", *OPTIONS, "--json").stdout)
     assert any("baseline" in message for message in plain["messages"])
-    said = json.loads(cli("curve.csv", *OPTIONS, "--baseline", "slope", "--json").stdout)
+    report = json.loads(cli("curve.csv", *OPTIONS, "--baseline", "slope", "--json").stdout)
     for name, truth in (
         ("reduced_modulus", MODULUS),
         ("tension", TENSION),
         ("offset", 3e-9),
         ("slope", 2e-3),
     ):
-        assert _holds(said[name], truth)
+        assert _holds(report[name], truth)
 
 
 def test_wild_rows_are_left_out(cli: Cli) -> None:
@@ -204,21 +205,21 @@ def test_wild_rows_are_left_out(cli: Cli) -> None:
     position, force = _curve()
     force[::10] = np.nan
     _write(np.append(position, position[::-1]), np.append(force, force[::-1]))
-    said = json.loads(cli("curve.csv", *OPTIONS, "--json").stdout)
-    assert said["points"] == pytest.approx(270, abs=2)
-    assert any("60 of 600 rows hold no finite number" in message for message in said["messages"])
-    assert any("are the approach" in message for message in said["messages"])
-    assert _holds(said["tension"], TENSION)
+    report = json.loads(cli("curve.csv", *OPTIONS, "--json").stdout)
+    assert report["points"] == pytest.approx(270, abs=2)
+    assert any("60 of 600 rows hold no finite number" in message for message in report["messages"])
+    assert any("are the approach" in message for message in report["messages"])
+    assert _holds(report["tension"], TENSION)
 
 
 def test_repeated_positions(cli: Cli) -> None:
     """Several forces at one position are several measurements."""
     position, force = _curve(600)
-    paraboloid = pl.indenter("paraboloid", radius=RADIUS)
+    paraboloid = Paraboloid(radius=RADIUS)
     coarse = np.round(position, 7)
     force = force + MODULUS * (
-        paraboloid.force_curve(coarse - POINT, 2 * TENSION / MODULUS).force  # type: ignore[attr-defined]
-        - paraboloid.force_curve(position - POINT, 2 * TENSION / MODULUS).force  # type: ignore[attr-defined]
+        paraboloid.force_curve(coarse - POINT, 2 * TENSION / MODULUS).force
+        - paraboloid.force_curve(position - POINT, 2 * TENSION / MODULUS).force
     )
     fit = pl.fit(coarse, force, indenter=paraboloid)
     assert _holds(fit.tension.to_dict(), TENSION)

@@ -25,16 +25,17 @@ from pellicle.fitting.models.force_model import (
     MODULUS as REDUCED_MODULUS,
 )
 from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.framework.fitting import instruments
 
 Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS, SPRING, SENSITIVITY = 5e3, 3e-6, 10e-6, 0.05, 50e-9
 GIVEN = Calibration(spring_constant=SPRING, sensitivity=SENSITIVITY)
-BEAD = pl.indenter("paraboloid", radius=RADIUS)
+BEAD = Paraboloid(radius=RADIUS)
 
 
 POSITION = np.linspace(-1e-6, 3e-6, 300)
-FORCE = MODULUS * BEAD.force_curve(POSITION, LENGTH).force  # type: ignore[attr-defined]
+FORCE = MODULUS * BEAD.force_curve(POSITION, LENGTH).force
 NOISE = 0.005 * FORCE.max() * np.random.default_rng(4).standard_normal(FORCE.size)
 SEEN = POSITION - NOISE / SPRING, FORCE + NOISE
 """Position and force that are to be read: noise of the deflection is in both."""
@@ -48,10 +49,10 @@ def recording() -> instruments.Recording:
 
 def only(path: Path, calibration: Calibration | None = None, segment: str = "approach") -> Curve:
     """Return the only curve of a file."""
-    (found,) = read(path, calibration, segment).values()
-    if isinstance(found, Exception):
-        raise found
-    return found
+    (curve,) = read(path, calibration, segment).values()
+    if isinstance(curve, Exception):
+        raise curve
+    return curve
 
 
 def is_curve(measured: Curve, position: Array, force: Array) -> bool:
@@ -91,19 +92,19 @@ def test_approach_of_an_unlabelled_file_is_fitted(
     )
     # The turn is found exactly, because the base of the cantilever has no noise.
     assert fit.points == 300
-    for found, truth in ((fit.reduced_modulus, MODULUS), (fit.tension, MODULUS * LENGTH / 2)):
-        assert found.low is not None
-        assert found.high is not None
-        assert found.low < truth < found.high
+    for estimate, truth in ((fit.reduced_modulus, MODULUS), (fit.tension, MODULUS * LENGTH / 2)):
+        assert estimate.low is not None
+        assert estimate.high is not None
+        assert estimate.low < truth < estimate.high
 
 
 @pytest.mark.parametrize("name", instruments.MAPS)
 def test_maps(tmp_path: Path, recording: instruments.Recording, name: str) -> None:
     """A file of several curves has each by its number."""
     instruments.MAPS[name](tmp_path / name, [recording, recording])
-    found = read(tmp_path / name)
-    assert list(found) == ["0", "1"]
-    assert all(isinstance(each, Curve) and is_curve(each, *SEEN) for each in found.values())
+    curves = read(tmp_path / name)
+    assert list(curves) == ["0", "1"]
+    assert all(isinstance(curve, Curve) and is_curve(curve, *SEEN) for curve in curves.values())
 
 
 @pytest.mark.parametrize("name", instruments.UNCALIBRATED)
@@ -169,7 +170,7 @@ def test_columns_of_a_cantilever(tmp_path: Path, header: str) -> None:
     bending = force / SPRING
     place, signal = COLUMNS[header]
     values = {"deflection": bending * signal, "force": force * 1e9}
-    names = [each.split()[0] for each in header.split(",")]
+    names = [column.split()[0] for column in header.split(",")]
     rows = np.column_stack([(position + bending) * place, *(values[name] for name in names[1:])])
     path = tmp_path / "curve.csv"
     np.savetxt(path, rows, delimiter=",", header=header, comments="", fmt="%.12g")
@@ -215,7 +216,7 @@ def test_noise_of_the_deflection_is_in_the_position_too() -> None:
 def test_balance_of_cantilever_and_solid() -> None:
     """At the truth nothing is left but the noise, and slopes are derivatives of the residuals."""
     noise = 0.01 * float(FORCE.max())
-    likelihood = Likelihood(*SEEN, tension_model(BEAD), noise, tuple(TRUTH), SPRING)  # type: ignore[arg-type]
+    likelihood = Likelihood(*SEEN, tension_model(BEAD), noise, tuple(TRUTH), SPRING)
     assert likelihood.residuals(TRUTH) * noise == pytest.approx(-NOISE, abs=1e-8 * FORCE.max())
     here = {p: value + 0.01 * likelihood.ranges[p].scale for p, value in TRUTH.items()}
     here[REDUCED_MODULUS] = TRUTH[REDUCED_MODULUS] + 0.1
@@ -227,8 +228,8 @@ def test_balance_of_cantilever_and_solid() -> None:
             for change in (step, -step)
         )
         slope = likelihood.jacobian(here)[:, column]
-        found = (above - below) / (2 * step)
-        assert found[away] == pytest.approx(slope[away], abs=1e-4 * np.abs(slope).max())
+        derivative = (above - below) / (2 * step)
+        assert derivative[away] == pytest.approx(slope[away], abs=1e-4 * np.abs(slope).max())
 
 
 def test_bad_calibration() -> None:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.fitting.many import fit_sources
+from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS = 5e3, 3e-6, 10e-6
@@ -29,8 +30,8 @@ Cli = Callable[..., Result]
 def curve(seed: int, *, radius: float = RADIUS, points: int = 60) -> tuple[Array, Array]:
     """Return position and force under a paraboloid."""
     depth = np.linspace(-0.1, 0.3, points) * radius
-    bead = pl.indenter("paraboloid", radius=radius)
-    force = MODULUS * bead.force_curve(depth, LENGTH).force  # type: ignore[attr-defined]
+    bead = Paraboloid(radius=radius)
+    force = MODULUS * bead.force_curve(depth, LENGTH).force
     noise = np.random.default_rng(seed).standard_normal(points)
     return depth + 1e-6, force + 0.005 * force.max() * noise
 
@@ -44,16 +45,16 @@ def save(path: Path, position: Array, force: Array, header: str = HEADER) -> Non
 
 def folder(tmp_path: Path) -> Path:
     """Return a folder of two curves that can be fitted and of four that cannot."""
-    made = tmp_path / "day"
+    day = tmp_path / "day"
     position, force = curve(1)
-    save(made / "a.csv", position, force)
-    save(made / "b.csv", *curve(2))
-    save(made / "c.csv", position, force, "position [um],force [V]")
-    save(made / "d.csv", position[::-1], force[::-1])
-    save(made / "e.csv", position, 1e-3 * force.max() * np.sin(1e9 * position))
-    save(made / "f.csv", np.tile(position, 3), np.tile(force, 3))
-    (made / "notes.md").write_text("not a curve", encoding="utf-8")
-    return made
+    save(day / "a.csv", position, force)
+    save(day / "b.csv", *curve(2))
+    save(day / "c.csv", position, force, "position [um],force [V]")
+    save(day / "d.csv", position[::-1], force[::-1])
+    save(day / "e.csv", position, 1e-3 * force.max() * np.sin(1e9 * position))
+    save(day / "f.csv", np.tile(position, 3), np.tile(force, 3))
+    (day / "notes.md").write_text("not a curve", encoding="utf-8")
+    return day
 
 
 def test_folder(cli: Cli, tmp_path: Path) -> None:
@@ -63,10 +64,10 @@ def test_folder(cli: Cli, tmp_path: Path) -> None:
     assert "4 of 6 curves could not be fitted" in result.stderr
     rows = json.loads(Path("out/fits.json").read_text(encoding="utf-8"))["curves"]
     assert [Path(row["curve"]).name for row in rows] == [f"{letter}.csv" for letter in "abcdef"]
-    said = [row["status"] for row in rows]
-    assert said[:2] == ["fitted", "fitted"]
+    statuses = [row["status"] for row in rows]
+    assert statuses[:2] == ["fitted", "fitted"]
     reasons = ["sensitivity [m/V]", "this is a retract", "no contact", "several curves"]
-    for status, words in zip(said[2:], reasons, strict=True):
+    for status, words in zip(statuses[2:], reasons, strict=True):
         assert status.startswith("failed: ")
         assert words in status
         assert words in result.stderr
@@ -156,35 +157,33 @@ class Keeps(Executor):
         """Yield the tasks in another order."""
         for task in reversed(tasks):
             assert task.memory > 0
-            there, moved = pickle.loads(pickle.dumps((work, task)))
-            yield task, pickle.loads(pickle.dumps(there(moved, lambda _: None)))
+            copy, moved = pickle.loads(pickle.dumps((work, task)))
+            yield task, pickle.loads(pickle.dumps(copy(moved, lambda _: None)))
 
 
 def test_tasks_travel(tmp_path: Path) -> None:
     """Curves, questions and answers pickle, and rows keep their order."""
     curves = {str(seed): curve(seed) for seed in range(3)}
     common: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "fix": {"tension": 0}}
-    there = pl.fit_many(curves, executor=Keeps(), progress=False, **common)
+    copy = pl.fit_many(curves, executor=Keeps(), progress=False, **common)
     here = pl.fit_many(curves, progress=False, **common)
-    xr.testing.assert_identical(there, here)
+    xr.testing.assert_identical(copy, here)
 
 
 def test_simulated_once_here(monkeypatch: pytest.MonkeyPatch) -> None:
     """What has to be simulated is so before the fits, by the same executor; tasks take it along."""
-    asked = []
+    requests = []
 
     def simulate(indenter: pl.Indenter, solid: object, deepest: float, **settings: Any) -> Any:
-        asked.append(settings["executor"])
+        requests.append(settings["executor"])
         return indenter
 
     monkeypatch.setattr("pellicle.fitting.problem.simulate", simulate)
     curves = {str(seed): curve(seed) for seed in range(2)}
     common: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "fix": {"tension": 0}}
-    there = pl.fit_many(
-        curves, kernel="tensed_membrane", executor=Keeps(), progress=False, **common
-    )
-    assert asked == [Keeps(), Keeps()]
-    xr.testing.assert_identical(there, pl.fit_many(curves, progress=False, **common))
+    copy = pl.fit_many(curves, kernel="tensed_membrane", executor=Keeps(), progress=False, **common)
+    assert requests == [Keeps(), Keeps()]
+    xr.testing.assert_identical(copy, pl.fit_many(curves, progress=False, **common))
 
 
 def test_labelled_curves(cli: Cli) -> None:
@@ -196,9 +195,9 @@ def test_labelled_curves(cli: Cli) -> None:
         for z, f in zip(*parts[number], strict=True)
     ]
     Path("map.csv").write_text("\n".join([f"curve,{HEADER}", *lines]), encoding="utf-8")
-    said = json.loads(cli("map.csv", *OPTIONS, "--fix", "tension=0", "--json").stdout)["curves"]
-    assert [row["curve"] for row in said] == ["map.csv:0", "map.csv:1"]
-    assert all(row["status"] == "fitted" for row in said)
+    statuses = json.loads(cli("map.csv", *OPTIONS, "--fix", "tension=0", "--json").stdout)["curves"]
+    assert [row["curve"] for row in statuses] == ["map.csv:0", "map.csv:1"]
+    assert all(row["status"] == "fitted" for row in statuses)
 
 
 def test_groups(tmp_path: Path) -> None:

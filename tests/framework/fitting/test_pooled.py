@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import log
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ from pellicle.fitting.report.page import save_report
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.pooled_likelihood import Pool
 from pellicle.fitting.statistics.profile import widen
+from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.pictures import drawn_width
 
 Array = NDArray[np.float64]
@@ -43,8 +45,8 @@ def curve(
 ) -> tuple[Array, Array, float, float]:
     """Return position, force, contact point and noise under a paraboloid."""
     depth = np.linspace(-0.3, 1.0, points) * 0.3 * radius
-    bead = pl.indenter("paraboloid", radius=radius)
-    force = modulus * bead.force_curve(depth, 2 * TRUE_TENSION / modulus).force  # type: ignore[attr-defined]
+    bead = Paraboloid(radius=radius)
+    force = modulus * bead.force_curve(depth, 2 * TRUE_TENSION / modulus).force
     noise = 0.01 * float(force.max())
     point = random.uniform(-1, 1) * radius
     return depth + point, force + noise * random.standard_normal(points), point, noise
@@ -56,10 +58,10 @@ def truth(point: float) -> Coordinates:
     return {CONTACT_POINT: point, **shared, OFFSET: 0.0, SLOPE: 0.0}
 
 
-def pooled(curves: dict[str, tuple[Array, Array]], **options: object) -> pl.PooledFit:
+def pooled(curves: dict[str, tuple[Array, Array]], **options: Any) -> pl.PooledFit:
     """Return the pooled fit of a curve for each radius."""
     radii = list(RADII[: len(curves)])
-    return pl.fit_pooled(curves, indenter="paraboloid", radius=radii, **options)  # type: ignore[arg-type]
+    return pl.fit_pooled(curves, indenter="paraboloid", radius=radii, **options)
 
 
 @pytest.fixture(scope="module")
@@ -80,20 +82,20 @@ def test_errors_reach_the_pooled_bound_and_intervals_shrink_to_it() -> None:
     random = np.random.default_rng(8)
     errors, covered, widths, gains, touched = [], [], [], [], []
     for _ in range(10):
-        made = [curve(radius, random, points=100) for radius in RADII]
-        curves = {str(number): each[:2] for number, each in enumerate(made)}
-        found = pooled(curves, contact_points=True)
+        samples = [curve(radius, random, points=100) for radius in RADII]
+        curves = {str(number): sample[:2] for number, sample in enumerate(samples)}
+        pooled_fit = pooled(curves, contact_points=True)
         members = [
-            Likelihood(z, f, tension_model(pl.indenter("paraboloid", radius=radius)), noise, FREE)  # type: ignore[arg-type]
-            for (z, f, _, noise), radius in zip(made, RADII, strict=True)
+            Likelihood(z, f, tension_model(Paraboloid(radius=radius)), noise, FREE)
+            for (z, f, _, noise), radius in zip(samples, RADII, strict=True)
         ]
-        parts = [truth(point) for _, _, point, _ in made]
+        parts = [truth(point) for _, _, point, _ in samples]
         pool = Pool.of(members)
         bound = pool.deviations(pool.joined(parts))
         alone = [m.deviations(part) for m, part in zip(members, parts, strict=True)]
         for which, estimate, true in (
-            (MODULUS, found.reduced_modulus, TRUE_MODULUS),
-            (TENSION, found.tension, TRUE_TENSION),
+            (MODULUS, pooled_fit.reduced_modulus, TRUE_MODULUS),
+            (TENSION, pooled_fit.tension, TRUE_TENSION),
         ):
             assert estimate.low is not None
             assert estimate.high is not None
@@ -101,8 +103,8 @@ def test_errors_reach_the_pooled_bound_and_intervals_shrink_to_it() -> None:
             errors.append((estimate.value - true) / deviation)
             covered.append(estimate.low < true < estimate.high)
             widths.append((estimate.high - estimate.low) / 2 / deviation)
-            gains.append(min(each[which] for each in alone) / bound[which])
-        for own, (_, _, point, _) in zip(found.curves, made, strict=True):
+            gains.append(min(sample[which] for sample in alone) / bound[which])
+        for own, (_, _, point, _) in zip(pooled_fit.curves, samples, strict=True):
             estimate = own.contact_point
             assert estimate.low is not None
             assert estimate.high is not None
@@ -186,18 +188,22 @@ def test_ends_are_where_the_profile_has_risen(fit: pl.PooledFit) -> None:
 
 def test_contact_points_are_sought_if_asked(measured: dict[str, tuple[Array, Array]]) -> None:
     """Without that they have a bound and no ends; those that are held have both."""
-    common = {"indenter": "paraboloid", "radius": list(RADII), "fix": {"tension": TRUE_TENSION}}
-    plain = pl.fit_pooled(measured, **common)  # type: ignore[arg-type]
+    common: dict[str, Any] = {
+        "indenter": "paraboloid",
+        "radius": list(RADII),
+        "fix": {"tension": TRUE_TENSION},
+    }
+    plain = pl.fit_pooled(measured, **common)
     assert plain.curves[0].contact_point.low is None
     assert plain.curves[0].contact_point.bound > 0
-    told = pl.fit_pooled(measured, contact_points=True, **common)  # type: ignore[arg-type]
-    for curve in told.curves:
+    with_points = pl.fit_pooled(measured, contact_points=True, **common)
+    for curve in with_points.curves:
         point = curve.contact_point
         assert point.low is not None
         assert point.high is not None
         # √rise standard deviations, where the noise is known from as few points as here.
         width = (point.high - point.low) / 2 / point.bound
-        assert width == pytest.approx(np.sqrt(told.rise), rel=0.05)
+        assert width == pytest.approx(np.sqrt(with_points.rise), rel=0.05)
 
 
 def test_what_is_said(fit: pl.PooledFit) -> None:
@@ -207,9 +213,9 @@ def test_what_is_said(fit: pl.PooledFit) -> None:
     assert [curve.name for curve in fit.curves] == ["5 um", "40 um"]
     assert fit.curves[1].noise > 10 * fit.curves[0].noise
     assert sum(curve.chi_squared for curve in fit.curves) == pytest.approx(fit.chi_squared)
-    said = json.loads(json.dumps(fit.to_dict()))["curves"]
-    assert said[0]["contact_point"]["unit"] == "m"
-    assert [each["model"]["indenter"]["radius"] for each in said] == list(RADII)
+    entries = json.loads(json.dumps(fit.to_dict()))["curves"]
+    assert entries[0]["contact_point"]["unit"] == "m"
+    assert [sample["model"]["indenter"]["radius"] for sample in entries] == list(RADII)
 
 
 def test_curves_that_disagree() -> None:
@@ -233,18 +239,18 @@ def test_hertz_and_baseline(measured: dict[str, tuple[Array, Array]]) -> None:
     assert fit.reduced_modulus.low < TRUE_MODULUS < (fit.reduced_modulus.high or 0)
     small, large = fit.curves
     assert abs(small.slope) < 0.3 * large.slope
-    held = pooled(measured, fix={"tension": "5 mN/m"})
-    assert held.tension.held
-    assert held.reduced_modulus.value == pytest.approx(TRUE_MODULUS, rel=0.02)
+    fixed = pooled(measured, fix={"tension": "5 mN/m"})
+    assert fixed.tension.held
+    assert fixed.reduced_modulus.value == pytest.approx(TRUE_MODULUS, rel=0.02)
 
 
 def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> None:
     """What coarser grids would shift is added to the intervals, as for one curve."""
     depths, ratios = 2.0 ** np.arange(-9, 1), simulation._RATIOS
-    bead = pl.indenter("paraboloid", radius=1.0)
+    bead = Paraboloid(radius=1.0)
     forces: Array = np.array(
         [
-            [bead.force_curve(np.array([depth]), ratio * depth**0.5).force[0] for ratio in ratios]  # type: ignore[attr-defined]
+            [bead.force_curve(np.array([depth]), ratio * depth**0.5).force[0] for ratio in ratios]
             for depth in depths
         ]
     )
@@ -286,8 +292,8 @@ def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Re
     shown = cli(*arguments, "--contact-points").stdout
     assert "the curves agree" in shown
     assert "95 % of contact_point" in shown
-    said = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
-    assert said["reduced_modulus"]["low"] < TRUE_MODULUS < said["reduced_modulus"]["high"]
+    entries = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
+    assert entries["reduced_modulus"]["low"] < TRUE_MODULUS < entries["reduced_modulus"]["high"]
     # The curves, their residuals, and what each parameter costs.
     left, right = (0.0, 0.5), (0.5, 1.0)
     panels = (left, (0.0, 0.68)), (left, (0.72, 1.0)), (right, (0.0, 0.5)), (right, (0.5, 1.0))
@@ -308,9 +314,9 @@ def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Re
 def test_page_of_curves_that_disagree(tmp_path: Path) -> None:
     """What the curves disagree on is said where it is seen first, and not as good news."""
     random = np.random.default_rng(5)
-    made = [curve(RADII[0], random, modulus=modulus, points=60)[:2] for modulus in (2e3, 4e3)]
+    samples = [curve(RADII[0], random, modulus=modulus, points=60)[:2] for modulus in (2e3, 4e3)]
     fit = pl.fit_pooled(
-        {"soft": made[0], "stiff": made[1]},
+        {"soft": samples[0], "stiff": samples[1]},
         indenter="paraboloid",
         radius=RADII[0],
         fix={"tension": TRUE_TENSION},

@@ -90,9 +90,9 @@ def test_sensitivities(exact_nodes: SimulatedCurve, depth: float, ratio: float) 
 )
 def test_extent(indenter: dict[str, Any], depth: float, expected: tuple[float, float]) -> None:
     """The width of an indenter at a depth is found whatever its shape, a little wide at most."""
-    made = pl.indenter(indenter.pop("type"), **indenter)
-    for found, half in zip(half_widths(made, depth), expected, strict=True):
-        assert 0.99 * half <= found <= 1.03 * half
+    body = pl.indenter(indenter.pop("type"), **indenter)
+    for width, half in zip(half_widths(body, depth), expected, strict=True):
+        assert 0.99 * half <= width <= 1.03 * half
 
 
 def test_plan_knows_no_units() -> None:
@@ -110,7 +110,7 @@ def test_plan_knows_no_units() -> None:
 @pytest.mark.usefixtures("few_nodes")
 def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Curves of an independent run are recovered; the study serves every size and then is there."""
-    fields = {"radius_x": "3 um", "radius_y": "7 um"}
+    fields: dict[str, Any] = {"radius_x": "3 um", "radius_y": "7 um"}
     modulus, tension = 3e3, 3e-3
     depths = np.linspace(0.1e-6, 0.6e-6, 8)
     run = pl.Run(
@@ -123,8 +123,8 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     depth = np.concatenate([np.linspace(-0.2e-6, -0.01e-6, 60), np.repeat(depths, 40)])
     force = np.concatenate([np.zeros(60), np.repeat(forces, 40)])
     force = force + 0.003 * force.max() * np.random.default_rng(3).standard_normal(force.size)
-    options = {"indenter": "quadric", "cache": tmp_path, "grid_points": 24}
-    fit = pl.fit(depth, force, fix={"contact_point": 0}, **fields, **options)  # type: ignore[arg-type]
+    options: dict[str, Any] = {"indenter": "quadric", "cache": tmp_path, "grid_points": 24}
+    fit = pl.fit(depth, force, fix={"contact_point": 0}, **fields, **options)
     for estimate, truth in ((fit.reduced_modulus, modulus), (fit.tension, tension)):
         assert estimate.low is not None
         assert estimate.high is not None
@@ -139,7 +139,7 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         fix={"contact_point": 0},
         radius_x="3 mm",
         radius_y="7 mm",
-        **options,  # type: ignore[arg-type]
+        **options,
     )
     assert again.tension.value == pytest.approx(1e3 * fit.tension.value, rel=1e-3)
 
@@ -211,6 +211,6 @@ def test_what_cannot_be_simulated(
 ) -> None:
     """Rough surfaces have no size of their own; a grid has cells to be halved."""
     fields = indenter | ({"cutoff_wavelength": 1e-6} if indenter["type"] == "self_affine" else {})
-    made = pl.indenter(fields.pop("type"), **fields)
+    body = pl.indenter(fields.pop("type"), **fields)
     with pytest.raises(pl.ConfigError, match=words):
-        simulate(made, solid("tensed_membrane"), 1e-6, cache=tmp_path, grid_points=points)
+        simulate(body, solid("tensed_membrane"), 1e-6, cache=tmp_path, grid_points=points)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import log
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,6 +22,10 @@ from pellicle.fitting.models.force_model import (
     tension_model,
 )
 from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle_plugins.indenters.cone import Cone
+from pellicle_plugins.indenters.flat_punch import FlatPunch
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.sphere import Sphere
 
 Array = NDArray[np.float64]
 MODULUS_TRUE, RADIUS = 5e3, 10e-6
@@ -37,16 +42,16 @@ def synthetic(
 ) -> tuple[Array, Array]:
     """Return position and force under a paraboloid at s/R = ``ratio``, contact at 1 µm."""
     depth = np.linspace(-before, 1.0, points) * deepest * RADIUS
-    indenter = pl.indenter("paraboloid", radius=RADIUS)
+    indenter = Paraboloid(radius=RADIUS)
     assert isinstance(indenter, pl.HasForceCurve)
     force = MODULUS_TRUE * indenter.force_curve(depth, ratio * RADIUS).force
     errors = np.random.default_rng(seed).standard_normal(points)
     return depth + 1e-6, force + noise * force.max() * errors
 
 
-def fitted(position: Array, force: Array, **options: object) -> pl.Fit:
+def fitted(position: Array, force: Array, **options: Any) -> pl.Fit:
     """Return the fit of a curve that `synthetic` made."""
-    return pl.fit(position, force, indenter="paraboloid", radius=RADIUS, **options)  # type: ignore[arg-type]
+    return pl.fit(position, force, indenter="paraboloid", radius=RADIUS, **options)
 
 
 def test_errors_reach_the_bound_and_intervals_hold() -> None:
@@ -54,27 +59,27 @@ def test_errors_reach_the_bound_and_intervals_hold() -> None:
 
     A subset of tests/benchmarks/fit_ensemble.py, which has the real sample.
     """
-    found = list(scores(30, seed=5, points=600))
+    sample = list(scores(30, seed=5, points=600))
     for name in ("modulus", "tension"):
-        error = np.sqrt(np.mean([getattr(each, name) ** 2 for each in found]))
+        error = np.sqrt(np.mean([getattr(score, name) ** 2 for score in sample]))
         # Three standard deviations of the rms of 30 normal numbers around 1.
         assert 0.6 < error < 1.4
-    assert sum(each.covers_modulus for each in found) >= 26
-    assert sum(each.covers_tension for each in found) >= 26
+    assert sum(score.covers_modulus for score in sample) >= 26
+    assert sum(score.covers_tension for score in sample) >= 26
 
 
 def test_tension_is_not_claimed_where_there_is_none() -> None:
     """Without tension the interval reaches down to none, nearly always."""
-    found = list(scores(12, seed=6, points=400, tensed=False))
-    assert sum(each.claims_tension for each in found) <= 1
-    assert all(each.covers_tension for each in found if not each.claims_tension)
+    sample = list(scores(12, seed=6, points=400, tensed=False))
+    assert sum(score.claims_tension for score in sample) <= 1
+    assert all(score.covers_tension for score in sample if not score.claims_tension)
 
 
 @pytest.mark.parametrize("ratio", [0.0, 1e-3, 0.3, 20.0])
 def test_jacobian(ratio: float) -> None:
     """The Jacobian is the derivative of the residuals in every parameter."""
     position, force = synthetic(ratio)
-    indenter = pl.indenter("paraboloid", radius=RADIUS)
+    indenter = Paraboloid(radius=RADIUS)
     assert isinstance(indenter, pl.HasForceCurve)
     likelihood = Likelihood(position, force, tension_model(indenter), 1.0, ())
     tension = ratio * RADIUS * MODULUS_TRUE / 2
@@ -133,8 +138,8 @@ def test_interval_ends_are_where_the_profile_has_risen() -> None:
                     parameters[parameter] += change * bound[parameter]
                 return fit.likelihood.chi_squared(parameters)
 
-            found = minimize(chi_squared, [0.0, 0.0], method="Nelder-Mead", options={"xatol": 1e-3})
-            assert found.fun - fit.chi_squared == pytest.approx(fit.rise, rel=0.02)
+            least = minimize(chi_squared, [0.0, 0.0], method="Nelder-Mead", options={"xatol": 1e-3})
+            assert least.fun - fit.chi_squared == pytest.approx(fit.rise, rel=0.02)
 
 
 def test_interval_ends_of_a_cone_without_tension() -> None:
@@ -172,21 +177,15 @@ def test_interval_ends_of_a_cone_without_tension() -> None:
             parameters[TENSION] = abs(parameters[TENSION])
             return fit.likelihood.chi_squared(parameters)
 
-        found = minimize(chi_squared, [0.0, 0.0], method="Nelder-Mead", options={"xatol": 1e-4})
-        assert found.fun - fit.chi_squared == pytest.approx(fit.rise, rel=0.02)
+        least = minimize(chi_squared, [0.0, 0.0], method="Nelder-Mead", options={"xatol": 1e-4})
+        assert least.fun - fit.chi_squared == pytest.approx(fit.rise, rel=0.02)
 
 
 def test_exact_curves_give_the_truth() -> None:
     """Without noise all parameters come back, for every indenter whose shape tells them apart."""
     depth = np.linspace(-0.5e-6, 2e-6, 300)
-    cases = {
-        "paraboloid": {"radius": 5e-6},
-        "sphere": {"radius": 5e-6},
-        "cone": {"half_angle": 1.2},
-    }
-    for type_, fields in cases.items():
-        indenter = pl.indenter(type_, **fields)
-        force = 8e3 * indenter.force_curve(depth, 0.7e-6).force  # type: ignore[attr-defined]
+    for indenter in (Paraboloid(radius=5e-6), Sphere(radius=5e-6), Cone(half_angle=1.2)):
+        force = 8e3 * indenter.force_curve(depth, 0.7e-6).force
         fit = pl.fit(depth + 3e-6, force, indenter=indenter)
         assert fit.reduced_modulus.value == pytest.approx(8e3, rel=1e-4)
         assert fit.tension.value == pytest.approx(8e3 * 0.7e-6 / 2, rel=1e-4)
@@ -213,15 +212,15 @@ def test_fit_knows_no_units() -> None:
 def test_punch_cannot_tell_modulus_and_tension_apart() -> None:
     """A flat punch gives a straight line: one number for two parameters, and the fit says so."""
     depth = np.linspace(-0.5e-6, 2e-6, 300)
-    punch = pl.indenter("flat_punch", radius=5e-6)
-    force = 8e3 * punch.force_curve(depth, 2e-6).force  # type: ignore[attr-defined]
+    punch = FlatPunch(radius=5e-6)
+    force = 8e3 * punch.force_curve(depth, 2e-6).force
     force = force + 0.005 * force.max() * np.random.default_rng(3).standard_normal(300)
     fit = pl.fit(depth, force, indenter=punch)
     assert fit.tension.low is None
     assert fit.reduced_modulus.low is None
     assert any("cannot tell modulus and tension apart" in message for message in fit.messages)
-    held = pl.fit(depth, force, indenter=punch, fix={"tension": 8e3 * 2e-6 / 2})
-    assert held.reduced_modulus.value == pytest.approx(8e3, rel=0.01)
+    fixed = pl.fit(depth, force, indenter=punch, fix={"tension": 8e3 * 2e-6 / 2})
+    assert fixed.reduced_modulus.value == pytest.approx(8e3, rel=0.01)
 
 
 def test_deep_curve_leaves_tension_open() -> None:

@@ -26,11 +26,11 @@ def complaint(family: str, component: Any) -> str:
 def check_mutant(family: str, mutant: Any, rule: str) -> None:
     """Check that the kit names the class, the rule, what is asked and what was found."""
     message = complaint(family, mutant)
-    first, asked, found = message.split("\n")[:3]
+    first, demand, finding = message.split("\n")[:3]
     assert first.startswith(f"{type(mutant).__name__} breaks the rule ")
     assert first.split()[-1] == rule, message
-    assert asked.startswith("asked: ")
-    assert len(found) > len("found: ")
+    assert demand.startswith("asked: ")
+    assert len(finding) > len("found: ")
 
 
 def check_base(family: str, component: Any) -> None:

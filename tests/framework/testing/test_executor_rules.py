@@ -50,7 +50,7 @@ class Twice(Executor):
 
     def attempt(self, work: Any, task: Any, say: Any) -> Any:
         first = super().attempt(work, task, say)
-        second = super().attempt(work, task, lambda said: None)
+        second = super().attempt(work, task, lambda text: None)
         return second if isinstance(second, FileExistsError) else first
 
 
@@ -89,8 +89,8 @@ class Hiding(Executor):
     """Says None for an exception."""
 
     def attempt(self, work: Any, task: Any, say: Any) -> Any:
-        found = super().attempt(work, task, say)
-        return None if isinstance(found, ValueError) else found
+        outcome = super().attempt(work, task, say)
+        return None if isinstance(outcome, ValueError) else outcome
 
 
 class Raising(Executor):
@@ -133,7 +133,7 @@ class Lingering(Executor):
 
     def map(self, work: Any, tasks: Any, report: Any) -> Iterator[Any]:
         pool = ThreadPoolExecutor(2)
-        futures = [pool.submit(self.attempt, work, task, lambda said: None) for task in tasks]
+        futures = [pool.submit(self.attempt, work, task, lambda text: None) for task in tasks]
         for task, future in zip(tasks, futures, strict=True):
             yield task, future.result()
 

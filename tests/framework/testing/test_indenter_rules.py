@@ -41,9 +41,9 @@ class Moving(Indenter):
     """Shifts the points of its caller."""
 
     def profile(self, x: Any, y: Any) -> Any:
-        found = super().profile(x, y)
+        values = super().profile(x, y)
         x -= 1e-6
-        return found
+        return values
 
 
 class Random(Indenter):
@@ -66,8 +66,8 @@ class Relative(Indenter):
     """Measures from the highest of the points that it is asked for."""
 
     def profile(self, x: Any, y: Any) -> Any:
-        found = super().profile(x, y)
-        return found - found.max()
+        values = super().profile(x, y)
+        return values - values.max()
 
 
 class Aloof(Indenter):
@@ -76,8 +76,8 @@ class Aloof(Indenter):
     footprint: ClassVar[Any] = "domain"
 
     def profile(self, x: Any, y: Any) -> Any:
-        found = super().profile(x, y)
-        return found - 0.05 * np.ptp(found)
+        values = super().profile(x, y)
+        return values - 0.05 * np.ptp(values)
 
 
 class Misspelt(Indenter):
@@ -104,8 +104,8 @@ class Insensitive(Indenter):
     """Force curve that does not know what the tension does."""
 
     def force_curve(self, depth: Any, length: Any) -> Any:
-        found = super().force_curve(depth, length)
-        return found._replace(by_length=0 * found.by_length)
+        values = super().force_curve(depth, length)
+        return values._replace(by_length=0 * values.by_length)
 
 
 class Shallow(Indenter):

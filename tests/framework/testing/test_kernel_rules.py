@@ -71,8 +71,8 @@ class Economical(Kernel):
     """Is content with single precision where there is much to do."""
 
     def compliance(self, q: Any) -> Any:
-        found = super().compliance(q)
-        return found if q.size < 300 else found.astype(np.float32).astype(np.float64)
+        values = super().compliance(q)
+        return values if q.size < 300 else values.astype(np.float32).astype(np.float64)
 
 
 class Wavering(Kernel):
@@ -139,9 +139,9 @@ class OverwritingRadii(Kernel):
     """Has a closed form that saves memory at its caller's cost."""
 
     def greens_function(self, r: Any) -> Any:
-        found = super().greens_function(r)
+        values = super().greens_function(r)
         r *= 2
-        return found
+        return values
 
 
 KERNELS = {

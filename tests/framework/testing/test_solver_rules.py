@@ -21,18 +21,18 @@ class Sucking(Solver):
     """Leaves a negative pressure in one cell."""
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        found = super().solve(problem, start, monitor)
-        pressure = found.pressure.copy()
+        solution = super().solve(problem, start, monitor)
+        pressure = solution.pressure.copy()
         pressure[0, 0] = -1e-9 * pressure.max()
-        return replace(found, state=pressure)
+        return replace(solution, state=pressure)
 
 
 class Lying(Solver):
     """Says that it is done when it is not."""
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        found = super().solve(problem, start, monitor)
-        return replace(found, state=1.0001 * found.pressure)
+        solution = super().solve(problem, start, monitor)
+        return replace(solution, state=1.0001 * solution.pressure)
 
 
 class GivingUp(Solver):
@@ -49,55 +49,55 @@ class Overwritten(Solver):
     """Works in the array that it is given to start from."""
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        found = super().solve(problem, start, monitor)
+        solution = super().solve(problem, start, monitor)
         if start is not None:
-            start.pressure[...] = found.pressure
-        return found
+            start.pressure[...] = solution.pressure
+        return solution
 
 
 class Shared(Solver):
     """Returns the array that it is given to start from, if that is right."""
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        found = super().solve(problem, start, monitor)
+        solution = super().solve(problem, start, monitor)
         if start is None:
-            return found
-        return replace(found, state=start, stop=pl.Stop.STALLED)
+            return solution
+        return replace(solution, state=start, stop=pl.Stop.STALLED)
 
 
 class Stale(Solver):
     """Takes the step before for the answer."""
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        found = super().solve(problem, start, monitor)
+        solution = super().solve(problem, start, monitor)
         if start is None:
-            return found
-        return replace(found, state=start.pressure.copy(), stop=pl.Stop.STALLED)
+            return solution
+        return replace(solution, state=start.pressure.copy(), stop=pl.Stop.STALLED)
 
 
 class Absolute(Solver):
     """Knows of soft solids only."""
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        found = super().solve(problem, start, monitor)
+        solution = super().solve(problem, start, monitor)
         soft = problem.operator.kernel.reduced_modulus < 1.5e4
         stop = pl.Stop.STALLED
-        return found if soft else replace(found, state=0.9 * found.pressure, stop=stop)
+        return solution if soft else replace(solution, state=0.9 * solution.pressure, stop=stop)
 
 
 class Silent(Solver):
     """Tells nobody how far it is."""
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        return super().solve(problem, start, lambda *told: None)
+        return super().solve(problem, start, lambda *progress: None)
 
 
 class Miscounting(Solver):
     """Returns another number of iterations than it told."""
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        found = super().solve(problem, start, monitor)
-        return replace(found, iterations=found.iterations + 1)
+        solution = super().solve(problem, start, monitor)
+        return replace(solution, iterations=solution.iterations + 1)
 
 
 class Round(Solver):
@@ -142,25 +142,25 @@ class Rowwise(Solver):
     """Returns the pressure in a row."""
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        found = super().solve(problem, start, monitor)
-        return replace(found, state=found.pressure.ravel())
+        solution = super().solve(problem, start, monitor)
+        return replace(solution, state=solution.pressure.ravel())
 
 
 class OutOfPhase(Solver):
     """Returns a complex pressure."""
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        found = super().solve(problem, start, monitor)
-        return replace(found, state=found.pressure + 0j)
+        solution = super().solve(problem, start, monitor)
+        return replace(solution, state=solution.pressure + 0j)
 
 
 class Meddling(Solver):
     """Puts an operator of its own into the problem."""
 
     def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-        found = super().solve(problem, start, monitor)
+        solution = super().solve(problem, start, monitor)
         object.__setattr__(problem, "operator", None)
-        return found
+        return solution
 
 
 SOLVERS = {

@@ -37,7 +37,8 @@ def _curve(type_: str, depth: float, length: float) -> tuple[float, float, float
     fields = {"half_angle": ANGLE} if type_ == "cone" else {"radius": RADIUS}
     indenter = pl.indenter(type_, **fields)
     assert isinstance(indenter, HasForceCurve)
-    return tuple(float(value[0]) for value in indenter.force_curve(np.array([depth]), length))  # type: ignore[return-value]
+    curve = indenter.force_curve(np.array([depth]), length)
+    return float(curve.force[0]), float(curve.by_depth[0]), float(curve.by_length[0])
 
 
 @pytest.mark.parametrize("ratio", RATIOS)
@@ -89,6 +90,6 @@ def test_curves_rise_smoothly(type_: str) -> None:
 
 def test_no_force_before_contact() -> None:
     """At depths of 0 and less force and sensitivities are 0."""
-    curve = pl.indenter("sphere", radius=RADIUS).force_curve(np.array([-1e-6, 0.0, 1e-9]), 1e-7)  # type: ignore[attr-defined]
+    curve = Sphere(radius=RADIUS).force_curve(np.array([-1e-6, 0.0, 1e-9]), 1e-7)
     assert np.all(np.array(curve)[:, :2] == 0)
     assert np.all(np.array(curve)[:, 2] > 0)

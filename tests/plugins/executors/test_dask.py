@@ -50,7 +50,7 @@ def dask(**fields: Any) -> pl.Executor:
     return registry().make(pl.Executor, {"type": "dask", **fields})
 
 
-def silence(job: Job, said: Any) -> None:
+def silence(job: Job, text: Any) -> None:
     """Report to nobody."""
 
 
@@ -102,8 +102,8 @@ def address(dask_address: str) -> str:
 def test_scheduler_by_address(address: str) -> None:
     """Tasks are carried out by a scheduler that is there already, and it is there afterwards."""
     for _ in range(2):
-        found = dict(dask(address=address).map(square, [Job(i) for i in range(4)], silence))
-        assert found == {Job(i): i**2 for i in range(4)}
+        outcomes = dict(dask(address=address).map(square, [Job(i) for i in range(4)], silence))
+        assert outcomes == {Job(i): i**2 for i in range(4)}
 
 
 def test_an_address_is_needed() -> None:
@@ -125,18 +125,18 @@ def test_task_of_a_killed_worker_runs_elsewhere(start_dask: Any, tmp_path: Path)
     """The table is that of an undisturbed study, and no finished task was begun again."""
     jobs = [Job(i, tmp_path) for i in range(6)]
     with start_dask() as address:
-        found = dict(dask(address=address).map(die_the_first_time, jobs, silence))
-    assert found == {job: job.number for job in jobs}
+        outcomes = dict(dask(address=address).map(die_the_first_time, jobs, silence))
+    assert outcomes == {job: job.number for job in jobs}
     assert len(list(tmp_path.glob("1-*"))) == 2
 
 
 @posix
 def test_task_that_kills_every_worker_is_given_up(address: str) -> None:
     """It says how many died of it; the others are carried out."""
-    found = dict(dask(address=address).map(always_die, [Job(i) for i in range(3)], silence))
-    assert (found[Job(0)], found[Job(2)]) == (0, 2)
-    assert isinstance(found[Job(1)], pl.PellicleError)
-    assert str(found[Job(1)]).startswith("1 worker died of it")
+    outcomes = dict(dask(address=address).map(always_die, [Job(i) for i in range(3)], silence))
+    assert (outcomes[Job(0)], outcomes[Job(2)]) == (0, 2)
+    assert isinstance(outcomes[Job(1)], pl.PellicleError)
+    assert str(outcomes[Job(1)]).startswith("1 worker died of it")
 
 
 def test_no_workers_are_warned_of(start_dask: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -153,8 +153,8 @@ def test_workers_may_come_later(start_dask: Any, tmp_path: Path) -> None:
     """Runs wait for the first worker, as a queue may take its time to start one."""
     with start_dask(0) as address, worker_of(address, tmp_path), warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
-        found = dict(dask(address=address).map(square, [Job(i) for i in range(3)], silence))
-    assert found == {Job(i): i**2 for i in range(3)}
+        outcomes = dict(dask(address=address).map(square, [Job(i) for i in range(3)], silence))
+    assert outcomes == {Job(i): i**2 for i in range(3)}
 
 
 @posix
@@ -168,12 +168,12 @@ def test_a_scheduler_that_dies_fails_its_tasks(start_dask: Any) -> None:
             if any(c.laddr.port == port for c in process.net_connections() if c.status == "LISTEN")
         )
 
-        def report(job: Job, said: Any) -> None:
+        def report(job: Job, text: Any) -> None:
             scheduler.kill()
 
-        found = list(dask(address=address).map(talk_a_while, [Job(0), Job(1)], report))
-    assert len(found) == 2
-    for _, outcome in found:
+        outcomes = list(dask(address=address).map(talk_a_while, [Job(0), Job(1)], report))
+    assert len(outcomes) == 2
+    for _, outcome in outcomes:
         assert str(outcome) == "the connection to the scheduler was lost"
 
 
@@ -181,10 +181,10 @@ def test_task_larger_than_every_worker(start_dask: Any) -> None:
     """It is not sent off to die four times; the others run."""
     jobs = [Job(0, memory=3 * 10**9), Job(2)]
     with start_dask(1, "--no-nanny", "--memory-limit", "2GB") as address:
-        found = dict(dask(address=address).map(square, jobs, silence))
-    assert found[jobs[1]] == 4
+        outcomes = dict(dask(address=address).map(square, jobs, silence))
+    assert outcomes[jobs[1]] == 4
     message = "job 0 needs about 3 GB, and 2 GB are available on the largest worker; use fewer"
-    assert str(found[jobs[0]]).startswith(message)
+    assert str(outcomes[jobs[0]]).startswith(message)
 
 
 def test_tasks_at_work_elsewhere_end_when_nobody_waits(address: str, tmp_path: Path) -> None:
@@ -192,7 +192,7 @@ def test_tasks_at_work_elsewhere_end_when_nobody_waits(address: str, tmp_path: P
     jobs = [Job(i, tmp_path) for i in range(2)]
     heard = threading.Event()
 
-    def report(job: Job, said: Any) -> None:
+    def report(job: Job, text: Any) -> None:
         heard.set()
         raise KeyboardInterrupt
 

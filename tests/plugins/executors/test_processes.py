@@ -46,7 +46,7 @@ def processes(**fields: Any) -> pl.Executor:
     return registry().make(pl.Executor, {"type": "processes", **fields})
 
 
-def silence(job: Job, said: Any) -> None:
+def silence(job: Job, text: Any) -> None:
     """Report to nobody."""
 
 
@@ -108,7 +108,7 @@ def press(job: Job, say: Say) -> Any:
 @pytest.fixture
 def room(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
     """Return what makes the machine's memory as large as is asked for [bytes]."""
-    return lambda there: monkeypatch.setattr(memory, "available", lambda: there)
+    return lambda free: monkeypatch.setattr(memory, "available", lambda: free)
 
 
 def test_no_more_at_once_than_fit(room: Callable[[float], None], tmp_path: Path) -> None:
@@ -132,8 +132,8 @@ def test_memory_that_others_took_meanwhile(monkeypatch: pytest.MonkeyPatch, tmp_
     answers = iter([4.0 * GIGABYTE, 1.0 * GIGABYTE])
     monkeypatch.setattr(memory, "available", lambda: next(answers, 1.5 * GIGABYTE))
     jobs = [Job(i, tmp_path) for i in range(3)]
-    found = dict(processes(workers=3).map(count_company, jobs, silence))
-    assert found == dict.fromkeys(jobs, 1)
+    outcomes = dict(processes(workers=3).map(count_company, jobs, silence))
+    assert outcomes == dict.fromkeys(jobs, 1)
 
 
 def test_small_task_overtakes_one_that_must_wait(
@@ -142,20 +142,20 @@ def test_small_task_overtakes_one_that_must_wait(
     """A large task does not keep small ones waiting, and is carried out in the end, alone."""
     room(3 * GIGABYTE)
     large, small = Job(0, tmp_path, int(2.5 * GIGABYTE)), [Job(i, tmp_path) for i in (1, 2)]
-    found = list(processes(workers=2).map(count_company, [small[0], large, small[1]], silence))
-    assert found[-1] == (large, 1)
-    assert {job for job, _ in found} == {large, *small}
+    outcomes = list(processes(workers=2).map(count_company, [small[0], large, small[1]], silence))
+    assert outcomes[-1] == (large, 1)
+    assert {job for job, _ in outcomes} == {large, *small}
 
 
 def test_task_larger_than_memory_fails_alone(room: Callable[[float], None]) -> None:
     """It is never started, and says what it needs and what there is; the others run."""
     room(GIGABYTE)
     jobs = [Job(0, memory=64 * GIGABYTE), Job(2, memory=GIGABYTE // 2)]
-    found = {job.number: out for job, out in processes(workers=2).map(die_if_one, jobs, silence)}
-    assert found[2] == 2
-    assert isinstance(found[0], pl.ConfigError)
+    outcomes = {job.number: out for job, out in processes(workers=2).map(die_if_one, jobs, silence)}
+    assert outcomes[2] == 2
+    assert isinstance(outcomes[0], pl.ConfigError)
     message = "job 0 needs about 64.2 GB, and 1 GB are available; use fewer points or fewer steps"
-    assert str(found[0]) == message
+    assert str(outcomes[0]) == message
 
 
 def test_memory_that_is_unknown_is_no_limit(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -169,10 +169,10 @@ def test_memory_that_is_unknown_is_no_limit(monkeypatch: pytest.MonkeyPatch) -> 
 def test_killed_worker_loses_its_own_task_only() -> None:
     """The others go on, a new worker takes its place, and the outcome tells what happened."""
     jobs = [Job(i) for i in range(5)]
-    found = {job.number: out for job, out in processes(workers=2).map(die_if_one, jobs, silence)}
-    assert {i: found[i] for i in (0, 2, 3, 4)} == {0: 0, 2: 2, 3: 3, 4: 4}
-    assert isinstance(found[1], pl.PellicleError)
-    assert "its worker died: SIGKILL" in str(found[1])
+    outcomes = {job.number: out for job, out in processes(workers=2).map(die_if_one, jobs, silence)}
+    assert {i: outcomes[i] for i in (0, 2, 3, 4)} == {0: 0, 2: 2, 3: 3, 4: 4}
+    assert isinstance(outcomes[1], pl.PellicleError)
+    assert "its worker died: SIGKILL" in str(outcomes[1])
 
 
 @posix
@@ -197,8 +197,8 @@ def test_linear_algebra_is_pinned(threads: int, monkeypatch: pytest.MonkeyPatch)
 def test_runs_are_the_same_as_here() -> None:
     """A worker computes to the last bit what this process does."""
     jobs = [Job(i) for i in range(3)]
-    found = dict(processes(workers=2).map(press, jobs, silence))
-    assert found == {job: press(job, print) for job in jobs}
+    outcomes = dict(processes(workers=2).map(press, jobs, silence))
+    assert outcomes == {job: press(job, print) for job in jobs}
 
 
 # Started in the background of a shell, tests and what they start would ignore Ctrl-C.

@@ -145,9 +145,9 @@ def test_heights_add_up_to_a_constant() -> None:
 def test_turned_quadric_gives_the_turned_result() -> None:
     """A quadric turned by 30° gives force and area of the quadric, and its contact turned."""
     turned = {"type": "rotated", "angle": "30 degree", "part": QUADRIC}
-    plain, other = (_solve(each, 256, depth="20 um").dataset for each in (QUADRIC, turned))
+    plain, other = (_solve(entry, 256, depth="20 um").dataset for entry in (QUADRIC, turned))
     assert float(other["force"][0]) == pytest.approx(float(plain["force"][0]), rel=2e-5)
-    areas = [float(each["contact_area"][0]) for each in (plain, other)]
+    areas = [float(entry["contact_area"][0]) for entry in (plain, other)]
     # 1 in 18 cells in contact lies at the edge.
     assert areas[1] == pytest.approx(areas[0], rel=0.01)
     assert _axis(plain) == pytest.approx(pi / 2, abs=1e-9)
@@ -158,7 +158,7 @@ def _axis(data: Any) -> float:
     """Return the angle of the longer axis of the pressure [rad], by its second moments."""
     p = data["pressure"][0]
     x, y = data["x"], data["y"]
-    xx, yy, xy = (float((p * each).sum()) for each in (x * x, y * y, x * y))
+    xx, yy, xy = (float((p * entry).sum()) for entry in (x * x, y * y, x * y))
     return float(np.arctan2(2 * xy, xx - yy) / 2 % pi)
 
 
@@ -173,7 +173,7 @@ def test_shift_moves_the_result() -> None:
     """A punch moved by whole cells gives the same pressure, moved."""
     cells = 3
     moved = {"type": "shifted", "x": cells * SIZE / 32, "part": QUADRIC}
-    plain, other = (_solve(each, 32, depth="10 um").dataset for each in (QUADRIC, moved))
+    plain, other = (_solve(entry, 32, depth="10 um").dataset for entry in (QUADRIC, moved))
     expected = np.roll(plain["pressure"].values, cells, axis=1)
     scale = expected.max()
     assert other["pressure"].values == pytest.approx(expected, rel=0, abs=1e-6 * scale)

@@ -53,8 +53,8 @@ def test_files_are_what_their_script_makes(tmp_path: Path) -> None:
     """The script beside the files writes the same surfaces again."""
     PATCH["write"](tmp_path)
     for path in (GWY, X3P):
-        made = _profile(path=tmp_path / path.name, fill=0.01)
-        assert made == pytest.approx(_profile(path=path, fill=0.01), abs=5e-12)
+        profile = _profile(path=tmp_path / path.name, fill=0.01)
+        assert profile == pytest.approx(_profile(path=path, fill=0.01), abs=5e-12)
 
 
 def test_both_formats_agree() -> None:
@@ -89,7 +89,7 @@ def test_levels(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", [GWY, X3P])
 def test_what_is_left_by_a_level_has_none_of_it(path: Path) -> None:
     """Least squares: what is left has no product with any polynomial of the level's degree."""
-    x, y = (np.broadcast_to(each / 1e-3, GRID.shape) for each in GRID.coordinates())
+    x, y = (np.broadcast_to(axis / 1e-3, GRID.shape) for axis in GRID.coordinates())
     for level, polynomials in (
         ("tilt", [x, y]),
         ("curvature", [x, y, x**2, x * y, y**2]),
@@ -149,10 +149,10 @@ def test_interpolation_is_of_fourth_order(tmp_path: Path) -> None:
         given = 1e-6 * np.cos(q * x + 0.3) * np.cos(q * y)
         grid = pl.Grid(points=n, size=["0.65 mm", "0.55 mm"])
         with pytest.warns(UserWarning, match="finer"):
-            found = _from_array(tmp_path, given, "none").profile(*grid.coordinates())
+            heights = _from_array(tmp_path, given, "none").profile(*grid.coordinates())
         x, y = grid.coordinates()
         wanted = 1e-6 * np.cos(q * x + 0.3) * np.cos(q * y)
-        difference = (found - wanted)[4:-4, 4:-4]
+        difference = (heights - wanted)[4:-4, 4:-4]
         errors.append(np.ptp(difference))
     assert errors[0] / errors[1] > 12
 
@@ -253,9 +253,9 @@ def test_example_runs_from_a_file_and_warns(tmp_path: Path) -> None:
         warnings.simplefilter("default")
         done = CliRunner().invoke(app, [*words, *finer])
     assert done.exit_code == 0, done.output
-    said = [line for line in done.stderr.splitlines() if line.startswith("warning: ")]
-    assert len(said) == 1
-    assert "finer than the points of" in said[0]
+    lines = [line for line in done.stderr.splitlines() if line.startswith("warning: ")]
+    assert len(lines) == 1
+    assert "finer than the points of" in lines[0]
 
 
 def _truncated(content: bytes) -> bytes:
@@ -276,7 +276,7 @@ def _bad_zip(content: bytes) -> bytes:
     [(GWY, _truncated), (X3P, _truncated), (X3P, _bad_zip), (GWY, lambda content: content[:60])],
 )
 def test_damaged_files(tmp_path: Path, path: Path, damage: Callable[[bytes], bytes]) -> None:
-    """A file that ends too early is said to be damaged, in one line."""
+    """A file that ends too early is called damaged, in one line."""
     file = tmp_path / path.name
     file.write_bytes(damage(path.read_bytes()))
     with pytest.raises(pl.ConfigError, match=r"^path: .*damaged") as caught:
@@ -368,14 +368,14 @@ def test_domain_that_does_not_fit_the_scan(size: object, centre: object, message
 @pytest.mark.parametrize("header", ["", "Lateral units: um\nValue units: um"])
 def test_irregular_points_are_refused(tmp_path: Path, header: str) -> None:
     """Columns x, y, z are read where they make a regular grid; no others are taken for heights."""
-    x, y = (each.ravel() for each in np.meshgrid([0.0, 1, 2, 3], [0.0, 1, 2], indexing="ij"))
+    x, y = (points.ravel() for points in np.meshgrid([0.0, 1, 2, 3], [0.0, 1, 2], indexing="ij"))
     regular, irregular = tmp_path / "regular.xyz", tmp_path / "irregular.xyz"
     np.savetxt(regular, np.stack([x, y, x * y / 10], axis=1), header=header)
     np.savetxt(irregular, np.stack([x**2, y, x * y], axis=1), header=header)
     unit = {} if header else {"unit": "1 um"}
     grid = pl.Grid(points=[4, 3], size=["4 um", "3 um"])
-    found = _profile(grid, regular, level="none", **unit)
-    assert found == pytest.approx((x * y - 6).reshape(4, 3) * 1e-7, abs=1e-18)
+    profile = _profile(grid, regular, level="none", **unit)
+    assert profile == pytest.approx((x * y - 6).reshape(4, 3) * 1e-7, abs=1e-18)
     with pytest.raises(pl.ConfigError, match=r"^path: .* irregular distances; resample"):
         pl.indenter("topography", path=irregular, **unit)
 

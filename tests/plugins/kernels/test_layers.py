@@ -15,7 +15,7 @@ from pellicle.operators import mean_compliance
 
 MODULUS, THICKNESS = 3e4, 2e-4
 RATIOS = [-0.5, 0.0, 0.3, 0.49, 0.5]
-LAYERS = ["bonded_layer", "frictionless_layer"]
+LAYERS: list[Base] = ["bonded_layer", "frictionless_layer"]
 Base = Literal["bonded_layer", "frictionless_layer"]
 
 
@@ -52,8 +52,8 @@ def direct(base: Base, nu: float, x: float) -> float:
     # Lengths in h and stresses in E* make the numbers of one size.
     units = np.diag([THICKNESS, THICKNESS, MODULUS, MODULUS])
     through = expm(np.linalg.inv(units) @ matrix @ units * THICKNESS)
-    held = [0, 1] if base == "bonded_layer" else [1, 2]
-    conditions = np.vstack([[0, 0, 1, 0], [0, 0, 0, 1], through[held]])
+    fixed = [0, 1] if base == "bonded_layer" else [1, 2]
+    conditions = np.vstack([[0, 0, 1, 0], [0, 0, 0, 1], through[fixed]])
     surface = units @ np.linalg.solve(conditions, [0, -1 / MODULUS, 0, 0])
     return float(surface[1])
 
@@ -63,8 +63,8 @@ def direct(base: Base, nu: float, x: float) -> float:
 @pytest.mark.parametrize("x", [0.02, 0.3, 0.99, 1.01, 3.0])
 def test_direct_elasticity(base: Base, nu: float, x: float) -> None:
     """The symbol is the solution of Hooke's law and equilibrium with its four conditions."""
-    found = layer(base, nu).compliance(np.array([x / THICKNESS]))[0]
-    assert found == pytest.approx(direct(base, nu, x), rel=1e-9)
+    value = layer(base, nu).compliance(np.array([x / THICKNESS]))[0]
+    assert value == pytest.approx(direct(base, nu, x), rel=1e-9)
 
 
 @pytest.mark.parametrize("nu", RATIOS)
@@ -73,8 +73,8 @@ def test_a_thick_layer_is_a_half_space(base: Base, nu: float) -> None:
     """From qh = 20 on the base is not felt to 1e-12, and nothing overflows up to qh = 1e200."""
     q = np.geomspace(20, 1e200, 50) / THICKNESS
     with np.errstate(all="raise"):
-        found = layer(base, nu).compliance(q)
-    np.testing.assert_allclose(found, half_space(q), rtol=1e-12)
+        value = layer(base, nu).compliance(q)
+    np.testing.assert_allclose(value, half_space(q), rtol=1e-12)
 
 
 @pytest.mark.parametrize("nu", [-0.5, 0.0, 0.3, 0.49])
@@ -93,8 +93,8 @@ def test_a_thin_incompressible_bonded_layer_is_a_film() -> None:
     """For qh → 0 and ν = ½ it is lubrication: G = h³q²/3μ with μ = E*/4, to every digit."""
     q = np.geomspace(1e-12, 1e-8, 9) / THICKNESS
     film = THICKNESS**3 * q**2 / (3 * MODULUS / 4)
-    found = layer("bonded_layer", 0.5).compliance(q)
-    np.testing.assert_allclose(found, film, rtol=4e-15)
+    value = layer("bonded_layer", 0.5).compliance(q)
+    np.testing.assert_allclose(value, film, rtol=4e-15)
 
 
 @pytest.mark.parametrize("nu", RATIOS)
@@ -117,8 +117,8 @@ def test_small_wavenumbers_keep_every_digit(nu: float) -> None:
         above = kappa * (up - down) / 2 - 2 * d
         below = kappa * (up + down) / 2 + 2 * d * d + 5 - 12 * ratio + 8 * ratio**2
         expected = float(above / below / d) * 2 * THICKNESS / MODULUS
-        found = layer("bonded_layer", nu).compliance(np.array([x / THICKNESS]))[0]
-        assert found == pytest.approx(expected, rel=3e-15)
+        value = layer("bonded_layer", nu).compliance(np.array([x / THICKNESS]))[0]
+        assert value == pytest.approx(expected, rel=3e-15)
 
 
 @pytest.mark.parametrize("nu", RATIOS)
@@ -136,7 +136,7 @@ def test_a_base_only_hinders_and_the_more_the_nearer_it_is(base: Base, nu: float
 def test_a_layer_that_sticks_is_stiffer_than_one_that_slips(nu: float) -> None:
     """Friction at the base takes a freedom away."""
     q = np.geomspace(1e-3, 3, 40) / THICKNESS
-    sticks, slips = (layer(base, nu).compliance(q) for base in LAYERS)  # type: ignore[arg-type]
+    sticks, slips = (layer(base, nu).compliance(q) for base in LAYERS)
     assert (sticks < slips).all()
 
 

@@ -23,7 +23,7 @@ LAYER = {
 }
 
 
-def made(table: dict[str, Any]) -> pl.Kernel:
+def kernel_of(table: dict[str, Any]) -> pl.Kernel:
     """Return the kernel that a table describes."""
     fields = dict(table)
     return pl.kernel(fields.pop("type"), **fields)
@@ -141,7 +141,7 @@ def test_coated_half_space_is_what_it_is_called() -> None:
 
 def test_coats_add_up() -> None:
     """A skin on a skin has the sum of their stiffnesses; no skin changes nothing."""
-    bare = made(LAYER)
+    bare = kernel_of(LAYER)
     one = pl.kernel("coated", tension=0.3, bending=BENDING, substrate=LAYER)
     two = pl.kernel(
         "coated",
@@ -152,15 +152,18 @@ def test_coats_add_up() -> None:
     none = pl.kernel("coated", substrate=LAYER)
     np.testing.assert_array_equal(none.compliance(Q), bare.compliance(Q))
     added = 1 / one.compliance(Q) - 1 / bare.compliance(Q)
-    there = Q < 1e6
+    resolved = Q < 1e6
     np.testing.assert_allclose(
-        added[there], (0.3 * Q**2 + BENDING * Q**4)[there], rtol=1e-6, atol=1e-6 * YOUNGS / 1e-4
+        added[resolved],
+        (0.3 * Q**2 + BENDING * Q**4)[resolved],
+        rtol=1e-6,
+        atol=1e-6 * YOUNGS / 1e-4,
     )
 
 
 def test_a_coat_is_not_felt_by_a_uniform_pressure() -> None:
     """The mean compliance is the substrate's, finite or not."""
-    layer = made(LAYER)
+    layer = kernel_of(LAYER)
     coated = pl.kernel("coated", tension=TENSION, substrate=LAYER)
     assert mean_compliance(coated) == mean_compliance(layer) > 0
     half_space = {"type": "half_space", "reduced_modulus": 1.0}
@@ -171,10 +174,10 @@ def test_a_coat_is_not_felt_by_a_uniform_pressure() -> None:
 def test_coated_takes_its_substrate_in_any_form() -> None:
     """A table, a component or what was written into a result: one kernel, also for a worker."""
     by_table = pl.kernel("coated", tension="0.5 N/m", substrate=LAYER | {"thickness": "0.1 mm"})
-    by_component = pl.kernel("coated", tension=0.5, substrate=made(LAYER))
+    by_component = pl.kernel("coated", tension=0.5, substrate=kernel_of(LAYER))
     written = json.loads(by_table.model_dump_json(exclude_none=True))
     assert written["substrate"] == LAYER
-    assert by_table == by_component == made(written)
+    assert by_table == by_component == kernel_of(written)
     assert hash(by_table) == hash(pickle.loads(pickle.dumps(by_component)))
 
 
@@ -208,5 +211,5 @@ def test_winkler_answers_where_it_is_pressed() -> None:
     grid = pl.Grid(points=[12, 9], size=1e-3, boundary="periodic")
     pressure = np.random.default_rng(0).uniform(size=grid.shape)
     springs = pl.kernel("winkler", foundation="2 Pa/um")
-    found = pl.displacement(pressure, kernel=springs, grid=grid)
-    np.testing.assert_allclose(found, pressure / 2e6, rtol=1e-13)
+    result = pl.displacement(pressure, kernel=springs, grid=grid)
+    np.testing.assert_allclose(result, pressure / 2e6, rtol=1e-13)

@@ -53,9 +53,9 @@ def rows(path: Path, **which: str) -> list[dict[str, str]]:
         return [row for row in csv.DictReader(file) if which.items() <= row.items()]
 
 
-def column(found: list[dict[str, str]], name: str) -> np.ndarray:
+def column(table: list[dict[str, str]], name: str) -> np.ndarray:
     """Return a column of numbers."""
-    return np.array([float(row[name]) for row in found])
+    return np.array([float(row[name]) for row in table])
 
 
 def test_patches_carry_the_force(left: Left) -> None:
@@ -63,12 +63,12 @@ def test_patches_carry_the_force(left: Left) -> None:
     folder, result = left
     for step in range(2):
         data = result.dataset.isel(step=step)
-        found = rows(folder / "rough-patches.csv", step=str(step + 1))
-        assert len(found) == data["patches"].item() > 1
-        area = column(found, "area [m2]")
+        table = rows(folder / "rough-patches.csv", step=str(step + 1))
+        assert len(table) == data["patches"].item() > 1
+        area = column(table, "area [m2]")
         assert area.sum() == pytest.approx(data["contact_area"].item(), rel=1e-12)
         assert (np.diff(area) <= 0).all()
-        force = column(found, "force [N]")
+        force = column(table, "force [N]")
         assert force.sum() == pytest.approx(data["force"].item(), rel=1e-12)
         assert (force > 0).all()
 
@@ -78,12 +78,12 @@ def test_pressure_distribution_integrates_to_the_force(left: Left) -> None:
     folder, result = left
     for step in range(2):
         data = result.dataset.isel(step=step)
-        found = rows(
+        table = rows(
             folder / "rough-distributions.csv", curve=f"step = {step + 1}", series="pressure"
         )
-        share = column(found, "density") * (column(found, "upper") - column(found, "lower"))
+        share = column(table, "density") * (column(table, "upper") - column(table, "lower"))
         assert share.sum() == pytest.approx(1, rel=1e-12)
-        force = data["contact_area"].item() * (share @ column(found, "mean"))
+        force = data["contact_area"].item() * (share @ column(table, "mean"))
         assert force == pytest.approx(data["force"].item(), rel=1e-12)
 
 
@@ -95,8 +95,8 @@ def test_spectrum_holds_the_roughness(left: Left) -> None:
             ("indenter", 10e-6**2),
             ("displacement", result.dataset["displacement"][step].values.var()),
         ):
-            found = rows(folder / "rough-spectrum.csv", curve=f"step = {step + 1}", series=series)
-            power = column(found, "density [m4]") @ column(found, "wave_vectors")
+            table = rows(folder / "rough-spectrum.csv", curve=f"step = {step + 1}", series=series)
+            power = column(table, "density [m4]") @ column(table, "wave_vectors")
             assert power / result.grid.area == pytest.approx(expected, rel=1e-9)
 
 
@@ -107,9 +107,9 @@ def decoded(array: Xml.Element) -> np.ndarray:
     length = 4 * -(-8 * (3 + count) // 3)
     _, size, last, *packed = struct.unpack(f"<{3 + count}Q", base64.b64decode(text[:length]))
     data, blocks, at = base64.b64decode(text[length:]), [], 0
-    for each in packed:
-        blocks.append(zlib.decompress(data[at : at + each]))
-        at += each
+    for entry in packed:
+        blocks.append(zlib.decompress(data[at : at + entry]))
+        at += entry
     assert at == len(data)
     assert all(len(block) == size for block in blocks[:-1])
     assert len(blocks[-1]) == (last or size)
@@ -121,7 +121,7 @@ def test_vtk_holds_surface_and_fields(left: Left) -> None:
     """Points are the cell centres at minus the displacement, and the list names the steps."""
     folder, result = left
     listed = Xml.parse(folder / "rough.pvd").iter("DataSet")
-    files = [(each.attrib["timestep"], each.attrib["file"]) for each in listed]
+    files = [(entry.attrib["timestep"], entry.attrib["file"]) for entry in listed]
     assert files == [("1", "rough-0001.vts"), ("2", "rough-0002.vts")]
     for step, (_, name) in enumerate(files):
         data = result.dataset.isel(step=step)
@@ -129,7 +129,7 @@ def test_vtk_holds_surface_and_fields(left: Left) -> None:
         assert root.attrib["byte_order"] == "LittleEndian"
         piece = next(root.iter("Piece"))
         assert piece.attrib["Extent"] == "0 31 0 23 0 0"
-        arrays = {each.attrib["Name"]: decoded(each) for each in root.iter("DataArray")}
+        arrays = {entry.attrib["Name"]: decoded(entry) for entry in root.iter("DataArray")}
         x, y, z = arrays["Points"].reshape(24, 32, 3).transpose(2, 1, 0)
         assert np.array_equal(x[:, 5], data["x"])
         assert np.array_equal(y[5], data["y"])
@@ -164,7 +164,7 @@ def test_vtk_of_more_than_a_block() -> None:
 )
 def test_odd_results(changes: dict[str, Any], tmp_path: Path) -> None:
     """Results without contact, with infinite gaps or without width are drawn and written too."""
-    outputs = [{key: each[key] for key in each if key != "by"} for each in OUTPUTS]
+    outputs = [{key: entry[key] for key in entry if key != "by"} for entry in OUTPUTS]
     pl.run({**ROUGH, **changes, "outputs": outputs}, directory=tmp_path, progress=False)
     assert {path.name for path in tmp_path.iterdir()} == {
         *(f"rough-{name}.{end}" for name in ("patches", "spectrum") for end in ("png", "csv")),

@@ -51,21 +51,21 @@ def test_curves_are_mean_and_range_of_the_table(tmp_path: Path) -> None:
         tmp_path,
         {"type": "curves", "x": "depth", "y": "force", "by": TENSION, "over": RADIUS},
     )
-    found = rows(tmp_path / "study-curves.csv")
+    table_rows = rows(tmp_path / "study-curves.csv")
     for name, expected in (
         ("y", table["force"].mean(RADIUS)),
         ("y_lowest", table["force"].min(RADIUS)),
         ("y_highest", table["force"].max(RADIUS)),
     ):
-        drawn = [float(row[name]) for row in found]
+        drawn = [float(row[name]) for row in table_rows]
         np.testing.assert_allclose(drawn, expected.values.ravel(), rtol=1e-14)
 
 
 def test_curves_of_a_study_of_one_axis_need_no_by(tmp_path: Path) -> None:
     """Each value has its own curve over the steps; of an x that is the axis, each step has."""
-    made = study({"type": "curves"}, {"type": "curves", "name": "over", "x": TENSION})
-    made["study"]["vary"].pop(RADIUS)
-    pl.run_study(made, tmp_path, progress=False, threads=1)
+    plan = study({"type": "curves"}, {"type": "curves", "name": "over", "x": TENSION})
+    plan["study"]["vary"].pop(RADIUS)
+    pl.run_study(plan, tmp_path, progress=False, threads=1)
     assert [row["curve"] for row in rows(tmp_path / "study-curves.csv")] == [
         *2 * ["kernel.tension = 0 N/m"],
         *2 * ["kernel.tension = 1 N/m"],

@@ -97,7 +97,7 @@ class Page(HTMLParser):
         return data
 
     @property
-    def said(self) -> str:
+    def words(self) -> str:
         """All that is shown."""
         return " ".join(t for name, ts in self.texts.items() if name != "script" for t in ts)
 
@@ -138,7 +138,7 @@ def test_every_number_is_there_with_its_unit(ran: tuple[Path, xr.Dataset]) -> No
     path, data = ran
     page = Page(path)
     heads = ("What was found", "Of what shape", "How exactly")
-    found, shape, effort = (page.table(head) for head in heads)
+    measures, shape, effort = (page.table(head) for head in heads)
     scalars = [
         str(name)
         for name, v in data.data_vars.items()
@@ -146,15 +146,15 @@ def test_every_number_is_there_with_its_unit(ran: tuple[Path, xr.Dataset]) -> No
     ]
     assert {"contact_area_yastrebov", "wall_time", "residual_load"} <= set(scalars)
     for index in range(2):
-        row = {**found[index], **shape[index], **effort[index]}
+        row = {**measures[index], **shape[index], **effort[index]}
         assert row["step"] == str(index + 1)
         assert row["status"] == "converged"
         exact = [name for name in scalars if not name.startswith("residual")]
         agree(row, {name: data[name].values[index] for name in exact})
         residual = float(row["residual contact"])
         assert residual == pytest.approx(data["residual_contact"].values[index], rel=0.06)
-    assert any("µm" in head for head in found[0])
-    assert "All 2 load steps converged." in page.said
+    assert any("µm" in head for head in measures[0])
+    assert "All 2 load steps converged." in page.words
 
 
 def test_title_is_shown_as_it_is(ran: tuple[Path, xr.Dataset]) -> None:
@@ -192,14 +192,14 @@ def test_it_can_be_reproduced(ran: tuple[Path, xr.Dataset]) -> None:
 def test_maps_are_the_fields(ran: tuple[Path, xr.Dataset]) -> None:
     """Each step has its map; the ends of the values are those of the result."""
     path, data = ran
-    made = Page(path).maps
-    assert [f["label"] for f in made["frames"]] == ["1: depth 5 µm", "2: depth 10 µm"]
-    for index, frame in enumerate(made["frames"]):
+    page_maps = Page(path).maps
+    assert [f["label"] for f in page_maps["frames"]] == ["1: depth 5 µm", "2: depth 10 µm"]
+    for index, frame in enumerate(page_maps["frames"]):
         assert frame["shape"] == [24, 18]
         assert frame["size"] == pytest.approx([400, 300])
         assert frame["fields"][0]["high"] == pytest.approx(data["pressure"].values[index].max())
         assert frame["fields"][1]["high"] == pytest.approx(data["gap"].values[index].max() * 1e6)
-    assert [field["unit"] for field in made["fields"]] == ["Pa", "µm"]
+    assert [field["unit"] for field in page_maps["fields"]] == ["Pa", "µm"]
 
 
 def test_study(studied: tuple[Path, xr.Dataset]) -> None:
@@ -222,7 +222,7 @@ def test_study(studied: tuple[Path, xr.Dataset]) -> None:
     inputs = {row["field"]: row["value"] for row in page.table("All that decides")}
     assert inputs["indenter.radius"] == "0.5, 1 mm"
     assert inputs["kernel.tension"] == "100 mN/m"
-    assert "runs converged" in page.said
+    assert "runs converged" in page.words
     again = pl.Study.from_mapping(tomllib.loads(page.texts["code"][0]))
     assert [p.run.identity[:16] for p in again.points] == [row["run"] for row in rows]
 
@@ -258,8 +258,8 @@ def test_steps_that_did_not_converge_are_marked(tmp_path: Path) -> None:
     """In words, each with its reason."""
     hasty = {"type": "conjugate_gradient", "max_iterations": 2, "tolerance": 1e-12}
     page = page_of(tmp_path, solver=hasty)
-    assert "2 of 2 load steps did not converge" in page.said
-    assert "Step 2: the surface" in page.said
+    assert "2 of 2 load steps did not converge" in page.words
+    assert "Step 2: the surface" in page.words
     assert [row["status"] for row in page.table("What was found")] == ["NOT CONVERGED"] * 2
     assert [frame["label"] for frame in page.maps["frames"]][1].endswith("NOT CONVERGED")
 
@@ -277,15 +277,15 @@ class Lost(pl.Solver):
 def test_steps_that_are_too_coarse_are_marked(tmp_path: Path) -> None:
     """They converged, and the page is not content with that."""
     page = page_of(tmp_path, loading={"depth": ["1 pm", "10 um"]})
-    assert "All 2 load steps converged. In 1 of 2 the cells are too coarse" in page.said
-    assert "Step 1: converged, but the cells are too coarse" in page.said
+    assert "All 2 load steps converged. In 1 of 2 the cells are too coarse" in page.words
+    assert "Step 1: converged, but the cells are too coarse" in page.words
 
 
 def test_values_that_are_not_numbers(tmp_path: Path) -> None:
     """NaN is said, and leaves the map empty; a component that nobody knows is listed too."""
     with np.errstate(all="ignore"):
         page = page_of(tmp_path, solver=Lost())
-    assert "the pressure became NaN" in page.said
+    assert "the pressure became NaN" in page.words
     (force,) = (v for k, v in page.table("What was found")[0].items() if k.startswith("force"))
     assert force == "nan"
     inputs = {row["field"]: row["value"] for row in page.table("All that decides")}
@@ -306,7 +306,7 @@ def test_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(KeyboardInterrupt):
         page_of(tmp_path)
     page = Page(tmp_path / "odd.html")
-    assert "The run ended early: 1 of 2 load steps are there." in page.said
+    assert "The run ended early: 1 of 2 load steps are there." in page.words
     assert len(page.table("What was found")) == 1
 
 
@@ -316,7 +316,7 @@ def test_what_is_left_out_or_coarser_is_said(tmp_path: Path) -> None:
     outputs = [{"type": "html", "points": 8, "frames": 2}]
     page = page_of(tmp_path, loading=loading, outputs=outputs)
     assert [frame["label"][0] for frame in page.maps["frames"]] == ["3", "5"]
-    assert "in 2 of 5 load steps. Each pixel is the mean over 3 × 3 cells." in page.said
+    assert "in 2 of 5 load steps. Each pixel is the mean over 3 × 3 cells." in page.words
     assert len(page.table("What was found")) == 5
 
 
@@ -327,8 +327,8 @@ def test_study_with_failures(tmp_path: Path) -> None:
     with pytest.warns(pl.ConvergenceWarning):
         pl.run_study(study, tmp_path, progress=False, threads=1)
     page = Page(tmp_path / "study.html")
-    assert "of 2 runs 1 did not converge" in page.said
-    assert re.search(r"\w{16} \(solver.max_iterations = 2\): the surface", page.said)
+    assert "of 2 runs 1 did not converge" in page.words
+    assert re.search(r"\w{16} \(solver.max_iterations = 2\): the surface", page.words)
     statuses = [row["status"] for row in page.table("The last load step")]
     assert statuses == ["NOT CONVERGED", "converged"]
 
@@ -404,8 +404,8 @@ def picture(browser: Chrome, number: int = 0) -> str:
 
 def errors(browser: Chrome) -> list[Any]:
     """Return what the console says, but for what it says of the looking in `drawn`."""
-    said: list[Any] = browser.get_log("browser")  # type: ignore[no-untyped-call]
-    return [entry for entry in said if "readback operations" not in entry["message"]]
+    entries: list[Any] = browser.get_log("browser")  # type: ignore[no-untyped-call]
+    return [entry for entry in entries if "readback operations" not in entry["message"]]
 
 
 def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset]) -> None:
@@ -427,11 +427,11 @@ def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset]) -> N
     origin = ScrollOrigin.from_element(canvas)
     ActionChains(browser, duration=0).scroll_from_origin(origin, 0, -300).perform()
     ActionChains(browser, duration=0).move_to_element(canvas).perform()
-    found = re.fullmatch(
+    match = re.fullmatch(
         r"x = (\S+) µm, y = (\S+) µm: contact pressure (\S+) Pa, gap (\S+) µm", readout.text
     )
-    assert found, readout.text
-    x, y, pressure, gap = (float(text.replace("−", "-")) for text in found.groups())
+    assert match, readout.text
+    x, y, pressure, gap = (float(text.replace("−", "-")) for text in match.groups())
     here = data.isel(step=1).sel(x=x * 1e-6, y=y * 1e-6, method="nearest")
     assert pressure == pytest.approx(here["pressure"].item(), rel=1e-3, abs=0.02)
     assert gap == pytest.approx(here["gap"].item() * 1e6, abs=2e-3)

@@ -215,18 +215,18 @@ def test_result_is_whole_after_each_step(tmp_path: Path, monkeypatch: pytest.Mon
     """While a step is solved, the file with those before it can be read."""
     from pellicle.runs import steps
 
-    found: list[int] = []
+    counts: list[int] = []
     solve = steps.solve_step
 
     def look_and_solve(*arguments: Any) -> Any:
         path = tmp_path / "two-steps.h5"
-        found.append(pl.load(path).dataset.sizes["step"] if path.exists() else 0)
+        counts.append(pl.load(path).dataset.sizes["step"] if path.exists() else 0)
         return solve(*arguments)
 
     monkeypatch.setattr(steps, "solve_step", look_and_solve)
     run = _run([], loading={"depth": ["6 um", "8 um", "10 um"]})
     pl.run(run, directory=tmp_path, progress=False)
-    assert found == [0, 1, 2]
+    assert counts == [0, 1, 2]
 
 
 def test_result_replaces_its_own_only(tmp_path: Path) -> None:

@@ -97,19 +97,19 @@ class Incompressible(Kernel):
 class Solved:
     """What a solver found, and what it took."""
 
-    found: Equilibrium
+    equilibrium: Equilibrium
     applications: int
     stop: Stop
 
     @property
     def residual(self) -> float:
         """The largest of the fresh residuals."""
-        found = self.found
+        equilibrium = self.equilibrium
         return max(
-            found.residual_contact,
-            found.residual_penetration,
-            found.residual_complementarity,
-            found.residual_load,
+            equilibrium.residual_contact,
+            equilibrium.residual_penetration,
+            equilibrium.residual_complementarity,
+            equilibrium.residual_load,
         )
 
 
@@ -156,11 +156,11 @@ def assert_agrees(problem: Problem, tolerance: float = TIGHT, pressure: float = 
     solved = active_set(problem, tolerance)
     reference = solve(problem, ConjugateGradient(tolerance=tolerance))
     assert reference.stop is Stop.DONE
-    found, expected = solved.found, reference.found
+    equilibrium, expected = solved.equilibrium, reference.equilibrium
     highest = float(expected.pressure.max())
-    np.testing.assert_allclose(found.pressure, expected.pressure, atol=pressure * highest)
-    assert found.depth == pytest.approx(expected.depth, rel=1e-8)
-    assert found.force == pytest.approx(expected.force, rel=1e-8)
+    np.testing.assert_allclose(equilibrium.pressure, expected.pressure, atol=pressure * highest)
+    assert equilibrium.depth == pytest.approx(expected.depth, rel=1e-8)
+    assert equilibrium.force == pytest.approx(expected.force, rel=1e-8)
     return solved
 
 
@@ -210,8 +210,8 @@ def test_depth_that_does_not_touch(boundary: Boundary, points: int) -> None:
     assert not replace(problem, control=Depth(lowest)).touches
     just = replace(problem, control=Depth(1.001 * lowest))
     assert just.touches
-    found = active_set(just).found
-    assert np.count_nonzero(found.contact) == 4
+    equilibrium = active_set(just).equilibrium
+    assert np.count_nonzero(equilibrium.contact) == 4
     assert (
         measure(replace(problem, control=Depth(0.999 * lowest)), np.zeros(problem.grid.shape)).force
         == 0
@@ -228,12 +228,12 @@ def test_one_cell(boundary: Boundary, s: float, points: int) -> None:
     alone = np.zeros(problem.grid.shape)
     alone[middle] = 1.0
     expected = problem.value / problem.operator(alone)[middle]
-    found = active_set(problem).found
-    assert np.count_nonzero(found.contact) == 1
-    assert found.pressure[middle] == pytest.approx(expected, rel=1e-12)
+    equilibrium = active_set(problem).equilibrium
+    assert np.count_nonzero(equilibrium.contact) == 1
+    assert equilibrium.pressure[middle] == pytest.approx(expected, rel=1e-12)
 
     force = expected * problem.grid.cell_area
-    back = active_set(replace(problem, control=Force(force))).found
+    back = active_set(replace(problem, control=Force(force))).equilibrium
     assert np.count_nonzero(back.contact) == 1
     assert back.depth == pytest.approx(problem.value, rel=1e-10)
 
@@ -249,9 +249,9 @@ def test_full_contact_on_a_periodic_boundary(s: float, excess: float) -> None:
     shape = np.fft.irfft2(stiffness * np.fft.rfft2(problem.profile), s=(96, 96))
     mean = -excess * float(shape.min())
     solved = active_set(replace(problem, control=Force(mean)), tolerance=1e-9)
-    assert solved.found.contact.all()
-    np.testing.assert_allclose(solved.found.pressure, shape + mean, atol=1e-7 * mean)
-    assert solved.found.depth == pytest.approx(-problem.profile.mean(), rel=1e-9)
+    assert solved.equilibrium.contact.all()
+    np.testing.assert_allclose(solved.equilibrium.pressure, shape + mean, atol=1e-7 * mean)
+    assert solved.equilibrium.depth == pytest.approx(-problem.profile.mean(), rel=1e-9)
 
 
 @pytest.mark.parametrize("s", [0.0, 0.02])
@@ -259,7 +259,7 @@ def test_full_contact_on_a_periodic_boundary(s: float, excess: float) -> None:
 def test_full_contact_of_a_free_rough_punch(s: float, force: float) -> None:
     """A rough punch that ends with the domain is in full contact under a very large force."""
     solved = assert_agrees(make(64, "free", skin(s), rough(0.2), "force", force))
-    assert solved.found.contact.all()
+    assert solved.equilibrium.contact.all()
     assert solved.applications <= 20  # 9 … 13
 
 
@@ -271,7 +271,7 @@ def test_flat_punch_on_the_whole_domain(
 ) -> None:
     """Contact may reach the border where the indenter ends there."""
     problem = make(points, "free", skin(s), flat, prescribed, 0.1, size=(1.0, 0.7))
-    assert assert_agrees(problem).found.contact[0].any()
+    assert assert_agrees(problem).equilibrium.contact[0].any()
 
 
 @pytest.mark.parametrize("s", TENSIONS)
@@ -290,9 +290,9 @@ def test_contact_everywhere_at_first() -> None:
     for s in (0.0, 0.2, 2.0, 2e3):
         problem = make((4, 3), "periodic", skin(s), lambda x, y: heights, "depth", 0.48, (4.0, 1.5))
         start = np.ones(problem.grid.shape)
-        expected = assert_agrees(problem).found.pressure
-        found = active_set(problem, start=start).found.pressure
-        np.testing.assert_allclose(found, expected, atol=1e-8 * expected.max())
+        expected = assert_agrees(problem).equilibrium.pressure
+        pressure = active_set(problem, start=start).equilibrium.pressure
+        np.testing.assert_allclose(pressure, expected, atol=1e-8 * expected.max())
 
 
 # --- Shapes of the contact -------------------------------------------------------------------
@@ -341,10 +341,14 @@ def test_islands(
 def test_two_asperities_far_apart_share_the_force(boundary: Boundary) -> None:
     """Two equal asperities are symmetric; the higher of two takes all of a small force."""
     alike, _, force = ISLANDS["two alike"]
-    pressure = active_set(make(96, boundary, skin(0.01), alike, "force", force)).found.pressure
+    pressure = active_set(
+        make(96, boundary, skin(0.01), alike, "force", force)
+    ).equilibrium.pressure
     np.testing.assert_allclose(pressure, pressure[::-1, ::-1], atol=1e-8 * pressure.max())
     unlike, _, _ = ISLANDS["two unlike"]
-    pressure = active_set(make(96, boundary, skin(0.01), unlike, "force", 1e-8)).found.pressure
+    pressure = active_set(
+        make(96, boundary, skin(0.01), unlike, "force", 1e-8)
+    ).equilibrium.pressure
     assert not pressure[:48].any()
 
 
@@ -356,7 +360,7 @@ def test_indenter_that_ends(s: float, points: int, shape: Shape) -> None:
     for boundary in BOUNDARIES:
         for force in (0.1, 3.0):
             solved = assert_agrees(make(points, boundary, skin(s), shape, "force", force))
-            assert not solved.found.pressure[~np.isfinite(solved.found.gap)].any()
+            assert not solved.equilibrium.pressure[~np.isfinite(solved.equilibrium.gap)].any()
 
 
 def test_pillars_that_no_coarse_cell_holds() -> None:
@@ -366,8 +370,9 @@ def test_pillars_that_no_coarse_cell_holds() -> None:
         every = np.logical_and.outer(np.arange(x.size) % 4 == 0, np.arange(y.size) % 4 == 0)
         return np.where(every, paraboloid(x, y), -np.inf)
 
-    for prescribed, value in (("depth", 0.1), ("force", 0.1)):
-        problem = make(64, "free", skin(0.02), pillars, prescribed, value)  # type: ignore[arg-type]
+    controls: list[tuple[Prescribed, float]] = [("depth", 0.1), ("force", 0.1)]
+    for prescribed, value in controls:
+        problem = make(64, "free", skin(0.02), pillars, prescribed, value)
         assert_agrees(problem)
 
 
@@ -396,8 +401,12 @@ def test_grids(
     boundary: Boundary, s: float, points: tuple[int, int], size: tuple[float, float]
 ) -> None:
     """Any number and shape of cells, at a depth and at a force."""
-    for prescribed, value in (("depth", 0.05), ("force", 2e-3 * size[0] * size[1])):
-        problem = make(points, boundary, skin(s), paraboloid, prescribed, value, size)  # type: ignore[arg-type]
+    controls: list[tuple[Prescribed, float]] = [
+        ("depth", 0.05),
+        ("force", 2e-3 * size[0] * size[1]),
+    ]
+    for prescribed, value in controls:
+        problem = make(points, boundary, skin(s), paraboloid, prescribed, value, size)
         if not problem.touches or value >= -float(problem.profile.mean()):
             value = -float(problem.profile.max() + problem.profile.mean()) / 2
             problem = replace(problem, control=replace(problem.control, value=value))
@@ -451,8 +460,9 @@ KERNELS: dict[str, tuple[Kernel, int]] = {
 @pytest.mark.parametrize("points", [64, 128])
 def test_other_kernels(kernel: Kernel, most: int, points: int) -> None:
     """Kernels of other orders, given by their compliance alone."""
-    for prescribed, value in (("force", 1e-2), ("depth", 0.015)):
-        problem = make(points, "periodic", kernel, rough(16 / points), prescribed, value)  # type: ignore[arg-type]
+    controls: list[tuple[Prescribed, float]] = [("force", 1e-2), ("depth", 0.015)]
+    for prescribed, value in controls:
+        problem = make(points, "periodic", kernel, rough(16 / points), prescribed, value)
         # The compliance of the plate falls as q⁻⁴, so that its pressures are known least.
         assert assert_agrees(problem, pressure=1e-6).applications <= most
 
@@ -461,9 +471,10 @@ def test_other_kernels(kernel: Kernel, most: int, points: int) -> None:
 def test_applications_on_a_stiff_plate(points: int) -> None:
     """A plate so stiff that the reference stalls on it costs the same on each finer grid."""
     stiff = Plate(bending=1e-3)
-    for prescribed, value in (("force", 1e-2), ("depth", 0.015)):
-        on_rough = make(points, "periodic", stiff, rough(16 / points), prescribed, value)  # type: ignore[arg-type]
-        on_paraboloid = make(points, "free", stiff, paraboloid, prescribed, value)  # type: ignore[arg-type]
+    controls: list[tuple[Prescribed, float]] = [("force", 1e-2), ("depth", 0.015)]
+    for prescribed, value in controls:
+        on_rough = make(points, "periodic", stiff, rough(16 / points), prescribed, value)
+        on_paraboloid = make(points, "free", stiff, paraboloid, prescribed, value)
         assert active_set(on_rough).applications <= 32  # 17 … 25
         assert active_set(on_paraboloid).applications <= 25  # 11 … 19
 
@@ -482,8 +493,8 @@ def waves(number: int, power: float) -> Shape:
     phases = np.random.default_rng(2).uniform(0, 2 * np.pi, number)
 
     def profile(x: Array, y: Array) -> Array:
-        each = (np.cos(2 * np.pi * k * x + phase) / k**power for k, phase in enumerate(phases, 1))
-        return np.asarray(0.01 * sum(each) + 0 * y)
+        terms = (np.cos(2 * np.pi * k * x + phase) / k**power for k, phase in enumerate(phases, 1))
+        return np.asarray(0.01 * sum(terms) + 0 * y)
 
     return profile
 
@@ -513,7 +524,7 @@ def test_a_single_cell_in_contact_sees_what_penetrates_elsewhere(seed: int) -> N
     """A plate that rests on its highest point first is taken to rest on another."""
     stiff = Plate(elastocapillary_length=0.0, bending=1.0)
     problem = make(16, "periodic", stiff, rough(1 / 6, seed), "force", 1e-2)
-    contact = assert_agrees(problem).found.contact
+    contact = assert_agrees(problem).equilibrium.contact
     assert contact.sum() == 1
     assert problem.profile[contact] == problem.profile.max()
 
@@ -523,10 +534,10 @@ def test_a_contact_that_all_cells_have_left_is_joined_by_what_penetrates() -> No
     problem = make(16, "free", skin(0.02), paraboloid, "depth", 0.05)
     nowhere = Preconditioner(problem.operator).on(np.zeros(problem.grid.shape, dtype=bool))
     nothing = np.zeros(problem.grid.shape)
-    found = inner_solve(problem, nowhere, nothing, nothing, 1e-10, certainty=1.0)
-    assert found.error == 0
+    inner = inner_solve(problem, nowhere, nothing, nothing, 1e-10, certainty=1.0)
+    assert inner.error == 0
     np.testing.assert_array_equal(
-        found.misclassified, np.flatnonzero(problem.profile + 0.05 > 1e-10)
+        inner.misclassified, np.flatnonzero(problem.profile + 0.05 > 1e-10)
     )
 
 
@@ -563,10 +574,10 @@ def test_an_inner_solve_may_end_at_a_share_of_its_error(boundary: Boundary) -> N
     applications = []
     for reduction in (0.1, 1e-3, 0.0):
         done = problem.operator.applications
-        found = inner_solve(
+        inner = inner_solve(
             problem, on_contact, nothing, nothing, 1e-9, certainty=np.inf, reduction=reduction
         )
-        assert found.error <= max(reduction * before, 1e-5 * before)
+        assert inner.error <= max(reduction * before, 1e-5 * before)
         applications.append(problem.operator.applications - done)
     assert applications[0] < applications[1] < applications[2]
 
@@ -603,8 +614,8 @@ def test_iteration_limit_is_told() -> None:
 def test_force_and_depth_agree(boundary: Boundary, s: float, shape: Shape) -> None:
     """The force found at a depth has that depth, and the same pressure."""
     problem = make(97, boundary, skin(s), shape, "depth", 0.012)
-    first = active_set(problem).found
-    second = active_set(replace(problem, control=Force(first.force))).found
+    first = active_set(problem).equilibrium
+    second = active_set(replace(problem, control=Force(first.force))).equilibrium
     assert second.depth == pytest.approx(problem.value, rel=1e-8)
     highest = first.pressure.max()
     np.testing.assert_allclose(second.pressure, first.pressure, atol=1e-7 * highest)
@@ -617,10 +628,12 @@ def next_step(kernel: Kernel, boundary: Boundary, shape: Shape, depth: float) ->
     """Return the applications of a step of +5 % depth, started warm and cold, at N = 256."""
     problem = make(256, boundary, kernel, shape, "depth", depth)
     later = replace(problem, control=Depth(1.05 * depth))
-    before = active_set(problem, 1e-6).found.pressure
+    before = active_set(problem, 1e-6).equilibrium.pressure
     warm, cold = active_set(later, 1e-6, start=before), active_set(later, 1e-6)
-    highest = cold.found.pressure.max()
-    np.testing.assert_allclose(warm.found.pressure, cold.found.pressure, atol=1e-3 * highest)
+    highest = cold.equilibrium.pressure.max()
+    np.testing.assert_allclose(
+        warm.equilibrium.pressure, cold.equilibrium.pressure, atol=1e-3 * highest
+    )
     return warm.applications, cold.applications
 
 
@@ -645,7 +658,7 @@ def test_the_next_step_of_a_curve_costs_no_more_than_a_cold_one(
 def test_a_start_at_the_solution_is_used(boundary: Boundary) -> None:
     """Started from its own solution, a step needs one application to see that it is one."""
     problem = make(128, boundary, skin(0.02), rough(0.1), "depth", 0.015)
-    solved = active_set(problem, 1e-6).found.pressure
+    solved = active_set(problem, 1e-6).equilibrium.pressure
     assert active_set(problem, 1e-6, start=solved).applications == 1
 
 
@@ -688,5 +701,5 @@ def test_a_layer_too_thin_for_the_coarser_grid_is_solved_without_it() -> None:
     with pytest.raises(ConfigError, match="use more points"):
         make_operator(kernel, Grid(points=48, size=1.0))
     problem = make(96, "free", kernel, lambda x, y: -(x**2 + y**2) / 2, "depth", 0.02)
-    found = active_set(problem, 1e-6).found
-    assert found.contact.sum() > 500
+    equilibrium = active_set(problem, 1e-6).equilibrium
+    assert equilibrium.contact.sum() > 500

@@ -48,18 +48,18 @@ class Programme:
     @classmethod
     def of(cls, problem: Problem) -> Programme:
         """Return the programme of ``problem``."""
-        there = np.flatnonzero(np.isfinite(problem.profile))
+        solid = np.flatnonzero(np.isfinite(problem.profile))
         unit = np.zeros(problem.grid.shape)
         columns = []
-        for cell in there:
+        for cell in solid:
             unit.flat[cell] = 1.0
-            columns.append(problem.operator(unit).ravel()[there])
+            columns.append(problem.operator(unit).ravel()[solid])
             unit.flat[cell] = 0.0
         matrix = np.array(columns)
         matrix = (matrix + matrix.T) / 2
         kappa = 0.0 if problem.operator.has_mean_compliance else float(matrix.diagonal().mean())
         factor = cholesky(matrix + kappa, lower=True)
-        return cls(matrix, problem.profile.ravel()[there], kappa, factor)
+        return cls(matrix, problem.profile.ravel()[solid], kappa, factor)
 
     def pressure(self, depth: float) -> Array:
         """Return the pressure [Pa] at a depth [m] that κ Σp is a part of."""
@@ -104,11 +104,11 @@ def problems(draw: st.DrawFn) -> Problem:
     grid = Grid(points=points, size=size, boundary=boundary)
     operator = make_operator(TensedMembrane(reduced_modulus=1.0, tension=tension), grid)
     profile = _profile(form, grid, random)
-    there = random.uniform(size=grid.shape) >= holes
-    there.flat[random.integers(there.size)] = True
-    profile = np.where(there, profile, -np.inf)
+    solid = random.uniform(size=grid.shape) >= holes
+    solid.flat[random.integers(solid.size)] = True
+    profile = np.where(solid, profile, -np.inf)
     # Against the mean plane no load reaches further than the mean of the profile.
-    lowest, furthest = -float(profile.max()), -float(profile[there].mean())
+    lowest, furthest = -float(profile.max()), -float(profile[solid].mean())
     value = lowest + load * (furthest - lowest)
     if prescribed == "force" or value <= lowest:
         return Problem(grid, operator, profile, "force", grid.area * load / (1 - load))
@@ -134,10 +134,10 @@ def assert_solved(problem: Problem, solver: Solver | InOtherUnits) -> None:
     """Assert that a solver finds what the programme finds."""
     solution = solver.solve(problem, None, lambda iteration, excess: None)
     assert solution.stop is Stop.DONE
-    found = measure(problem, solution.pressure)
-    scale = height_scale(problem.profile, found.contact, found.depth)
-    assert max(found.residual_contact, found.residual_penetration) <= TOLERANCE
-    assert found.residual_load <= 1e-12
+    state = measure(problem, solution.pressure)
+    scale = height_scale(problem.profile, state.contact, state.depth)
+    assert max(state.residual_contact, state.residual_penetration) <= TOLERANCE
+    assert state.residual_load <= 1e-12
 
     programme = Programme.of(problem)
     expected, depth = programme.solve(problem)
@@ -152,7 +152,7 @@ def assert_solved(problem: Problem, solver: Solver | InOtherUnits) -> None:
     total = float(pressure.sum() + expected.sum())
     allowed = (TOLERANCE * scale + ROUND_OFF * stiffest) * total
     assert error @ programme.matrix @ error <= allowed
-    assert found.depth == pytest.approx(depth, abs=np.sqrt(TOLERANCE) * stiffest)
+    assert state.depth == pytest.approx(depth, abs=np.sqrt(TOLERANCE) * stiffest)
 
 
 @settings(max_examples=500, deadline=None, derandomize=True)

@@ -172,10 +172,10 @@ def test_preconditioner_of_large_odd_grids_is_symmetric(
         contact = random.uniform(size=points) < share
         on_contact = preconditioned(points, boundary, contact, tension=0.01)
         x, y = random.normal(size=(2, on_contact.cells.size))
-        there, back = on_contact(x), on_contact(y)
-        size = product(np.abs(there), np.abs(y))
-        assert product(there, y) == pytest.approx(product(x, back), abs=10 * SINGLE * size)
-        assert product(there, x) > 0
+        forth, back = on_contact(x), on_contact(y)
+        size = product(np.abs(forth), np.abs(y))
+        assert product(forth, y) == pytest.approx(product(x, back), abs=10 * SINGLE * size)
+        assert product(forth, x) > 0
 
 
 def test_planes_go_on_where_bending_decides() -> None:

@@ -47,9 +47,9 @@ def assert_solved(problem: Problem, most: int) -> None:
     """Assert that it is solved to 1e-8 within so many applications."""
     solution, applications = solve(problem)
     assert solution.stop is Stop.DONE
-    found = measure(problem, solution.pressure)
-    assert max(found.residual_contact, found.residual_penetration) <= 1e-8
-    assert found.residual_load <= 1e-12
+    state = measure(problem, solution.pressure)
+    assert max(state.residual_contact, state.residual_penetration) <= 1e-8
+    assert state.residual_load <= 1e-12
     assert applications <= most
 
 
@@ -122,7 +122,7 @@ def test_a_pit_of_one_cell(share: float) -> None:
     assert_solved(problem, 100)
 
 
-@pytest.mark.parametrize("solver", [ActiveSet(), ConjugateGradient()], ids=lambda each: each.type)
+@pytest.mark.parametrize("solver", [ActiveSet(), ConjugateGradient()], ids=lambda value: value.type)
 @pytest.mark.parametrize("pressure", [1e-12, 100.0, 1e12])
 @pytest.mark.parametrize("ripple", [0.0, 1e-15])
 def test_a_flat_indenter_that_fills_its_period_takes_any_pressure(
@@ -136,9 +136,9 @@ def test_a_flat_indenter_that_fills_its_period_takes_any_pressure(
     problem = make(SKIN, grid, heights, "force", pressure * grid.area)
     solution = solver.solve(problem, None, lambda iteration, ratio: None)
     assert solution.stop is Stop.DONE
-    found = measure(problem, solution.pressure)
-    assert max(found.residual_contact, found.residual_load) <= 1e-8
-    np.testing.assert_allclose(found.pressure, pressure, rtol=1e-3 if ripple else 1e-12)
+    state = measure(problem, solution.pressure)
+    assert max(state.residual_contact, state.residual_load) <= 1e-8
+    np.testing.assert_allclose(state.pressure, pressure, rtol=1e-3 if ripple else 1e-12)
 
 
 def test_the_height_scale_of_a_flat_indenter_is_no_rounding() -> None:

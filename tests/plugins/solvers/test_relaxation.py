@@ -28,11 +28,11 @@ def plate(dx: float, dy: float, shape: tuple[int, int] = SHAPE) -> Problem:
 
 
 def settle(
-    problem: Problem, contact: NDArray[np.bool_], found: InnerSolution, margin: float = MARGIN
+    problem: Problem, contact: NDArray[np.bool_], inner: InnerSolution, margin: float = MARGIN
 ) -> tuple[NDArray[np.bool_], Array]:
     """Return what `relaxed` makes of what an inner solve found on a contact."""
     on_contact = Preconditioner(problem.operator).on(contact)
-    return relaxed(problem, on_contact, found, margin)
+    return relaxed(problem, on_contact, inner, margin)
 
 
 def stiffness_matrix(problem: Problem) -> Array:
@@ -80,14 +80,14 @@ def test_optimality(
     monkeypatch.setattr(relaxation, "_STEPS", 6000)
     problem = plate(*spacing)
     before = np.random.default_rng(seed).uniform(size=SHAPE) < 0.6
-    found = loaded(before, seed, left)
-    contact, forces = settle(problem, before, found)
-    floor = -(found.displacement + np.where(before, 0.0, MARGIN)).ravel()
+    inner = loaded(before, seed, left)
+    contact, forces = settle(problem, before, inner)
+    floor = -(inner.displacement + np.where(before, 0.0, MARGIN)).ravel()
     on, stiffness = contact.ravel(), stiffness_matrix(problem)
     opened = np.where(on, floor, 0.0)
-    load = found.pressure.ravel() + stiffness @ opened
+    load = inner.pressure.ravel() + stiffness @ opened
     opened[~on] = np.linalg.solve(stiffness[np.ix_(~on, ~on)], -load[~on])
-    force = found.pressure.ravel() + stiffness @ opened
+    force = inner.pressure.ravel() + stiffness @ opened
     assert (opened >= floor - 1e-4).all()
     assert force[on].min() >= -1e-3
     np.testing.assert_allclose(forces.ravel(), np.where(on, force, 0), atol=1e-3 * force.max())
@@ -96,11 +96,11 @@ def test_optimality(
 def test_a_gap_that_is_left_everywhere_is_closed_by_its_force() -> None:
     """In full contact nothing can settle: the forces are those that close the gap, p − K g."""
     everywhere = np.ones(SHAPE, dtype=bool)
-    found = loaded(everywhere, 2, 1e-3)
-    found = found._replace(pressure=np.full(SHAPE, 1.0))
+    inner = loaded(everywhere, 2, 1e-3)
+    inner = inner._replace(pressure=np.full(SHAPE, 1.0))
     problem = plate(1.0, 1.0)
-    contact, forces = settle(problem, everywhere, found)
-    closed = 1.0 - stiffness_matrix(problem) @ found.displacement.ravel()
+    contact, forces = settle(problem, everywhere, inner)
+    closed = 1.0 - stiffness_matrix(problem) @ inner.displacement.ravel()
     assert closed.min() > 0
     assert contact.all()
     np.testing.assert_allclose(forces.ravel(), closed, rtol=1e-4)
@@ -110,21 +110,21 @@ def test_what_is_right_stays() -> None:
     """Where nothing pulls and nothing penetrates, nothing moves."""
     before = np.zeros(SHAPE, dtype=bool)
     before[4:9, 3:8] = True
-    found = loaded(before, 1)
-    found = found._replace(pressure=np.abs(found.pressure), displacement=np.abs(found.displacement))
-    contact, forces = settle(plate(1.0, 1.0), before, found)
+    inner = loaded(before, 1)
+    inner = inner._replace(pressure=np.abs(inner.pressure), displacement=np.abs(inner.displacement))
+    contact, forces = settle(plate(1.0, 1.0), before, inner)
     np.testing.assert_array_equal(contact, before)
-    np.testing.assert_allclose(forces, found.pressure, rtol=1e-6)
+    np.testing.assert_allclose(forces, inner.pressure, rtol=1e-6)
 
 
 @pytest.mark.parametrize("power", [-70, 70])
 def test_units_do_not_matter(power: int) -> None:
     """Also where single precision could not hold the square of a gap."""
     before = np.random.default_rng(7).uniform(size=SHAPE) < 0.5
-    found = loaded(before, 7, 0.01)
-    contact, forces = settle(plate(1.0, 1.0), before, found)
+    inner = loaded(before, 7, 0.01)
+    contact, forces = settle(plate(1.0, 1.0), before, inner)
     unit = 2.0**power
-    scaled = found._replace(displacement=found.displacement * unit, pressure=found.pressure * unit)
+    scaled = inner._replace(displacement=inner.displacement * unit, pressure=inner.pressure * unit)
     contact_scaled, forces_scaled = settle(plate(1.0, 1.0), before, scaled, MARGIN * unit)
     np.testing.assert_array_equal(contact_scaled, contact)
     np.testing.assert_array_equal(forces_scaled, forces * unit)
@@ -133,9 +133,9 @@ def test_units_do_not_matter(power: int) -> None:
 def test_turned_by_a_right_angle() -> None:
     """Along y as along x, for cells of two to three."""
     before = np.random.default_rng(7).uniform(size=SHAPE) < 0.5
-    found = loaded(before, 7, 0.01)
-    contact, forces = settle(plate(2.0, 3.0), before, found)
-    turned = InnerSolution(found.pressure.T, found.displacement.T, 0.0, found.misclassified)
+    inner = loaded(before, 7, 0.01)
+    contact, forces = settle(plate(2.0, 3.0), before, inner)
+    turned = InnerSolution(inner.pressure.T, inner.displacement.T, 0.0, inner.misclassified)
     contact_turned, forces_turned = settle(plate(3.0, 2.0, SHAPE[::-1]), before.T, turned)
     np.testing.assert_array_equal(contact_turned, contact.T)
     np.testing.assert_allclose(forces_turned, forces.T, atol=1e-4 * forces.max())
@@ -145,10 +145,10 @@ def test_penetration_within_the_margin_is_none() -> None:
     """A cell that penetrates by less than the margin does not join; by more it does."""
     before = np.zeros(SHAPE, dtype=bool)
     before[4:9, 3:8] = True
-    found = loaded(before, 1)
+    inner = loaded(before, 1)
     gap = np.where(before, 0.0, 1.0)
     for depth, joins in ((0.5 * MARGIN, False), (100 * MARGIN, True)):
         gap[12, 6] = -depth
-        one = found._replace(pressure=np.abs(found.pressure), displacement=gap)
+        one = inner._replace(pressure=np.abs(inner.pressure), displacement=gap)
         contact, _ = settle(plate(1.0, 1.0), before, one)
         assert contact[12, 6] == joins

@@ -69,10 +69,10 @@ def solved(case: Case, solver: Solver, length: float, modulus: float) -> tuple[A
     solution = solver.solve(problem, None, lambda iteration, residual_ratio: None)
     applications = problem.operator.applications
     assert solution.stop is Stop.DONE
-    found = measure(problem, solution.pressure)
-    assert max(found.residual_contact, found.residual_penetration) <= solver.tolerance
-    force = found.force / (modulus * length**2 * case.share)
-    return applications, force, found.depth / (length * case.share), solution.pressure / modulus
+    state = measure(problem, solution.pressure)
+    assert max(state.residual_contact, state.residual_penetration) <= solver.tolerance
+    force = state.force / (modulus * length**2 * case.share)
+    return applications, force, state.depth / (length * case.share), solution.pressure / modulus
 
 
 SCALES = [(1e-15, 1e-6), (1e-12, 1e4), (1e-10, 1e15), (1e9, 1e15), (1e9, 1e-6)]
@@ -90,10 +90,10 @@ def test_a_contact_takes_the_same_in_every_unit(
     case = Case("tensed_membrane", boundary, prescribed, share)
     applications, force, depth, pressure = solved(case, solver, 1.0, 1.0)
     for length, modulus in SCALES:
-        there = solved(case, solver, length, modulus)
-        assert abs(there[0] - applications) <= 3
-        assert there[1:3] == pytest.approx((force, depth), rel=1e-7)
-        np.testing.assert_allclose(there[3], pressure, atol=1e-6 * pressure.max(), rtol=0)
+        scaled = solved(case, solver, length, modulus)
+        assert abs(scaled[0] - applications) <= 3
+        assert scaled[1:3] == pytest.approx((force, depth), rel=1e-7)
+        np.testing.assert_allclose(scaled[3], pressure, atol=1e-6 * pressure.max(), rtol=0)
 
 
 @pytest.mark.parametrize("kernel", kernels(1.0, 1.0))
@@ -103,9 +103,9 @@ def test_every_kernel_is_solved_in_every_unit(kernel: str, boundary: Boundary) -
     case = Case(kernel, boundary, "depth")
     applications, force, depth, _ = solved(case, ActiveSet(), 1.0, 1.0)
     for length, modulus in SCALES:
-        there = solved(case, ActiveSet(), length, modulus)
-        assert abs(there[0] - applications) <= 3
-        assert there[1:3] == pytest.approx((force, depth), rel=1e-6)
+        scaled = solved(case, ActiveSet(), length, modulus)
+        assert abs(scaled[0] - applications) <= 3
+        assert scaled[1:3] == pytest.approx((force, depth), rel=1e-6)
 
 
 @pytest.mark.parametrize("kernel", kernels(1.0, 1.0))
@@ -117,8 +117,8 @@ def test_displacements_scale_as_lengths(kernel: str, boundary: Boundary) -> None
     expected = None
     for length, modulus in [(1.0, 1.0), *SCALES]:
         grid = Grid(points=POINTS, size=length, boundary=boundary)
-        made = pl.kernel(kernel, **kernels(length, modulus)[kernel])
-        share = pl.displacement(pressure * modulus, kernel=made, grid=grid) / length
+        body = pl.kernel(kernel, **kernels(length, modulus)[kernel])
+        share = pl.displacement(pressure * modulus, kernel=body, grid=grid) / length
         expected = share if expected is None else expected
         # Tables of kernels without a closed form are good to some 1e-9.
         np.testing.assert_allclose(share, expected, rtol=0, atol=1e-8 * expected.max())
@@ -152,9 +152,9 @@ def test_a_load_just_above_nothing_is_solved(
     problem = Problem(grid, operator, -(x**2 + y**2), prescribed, value)
     solution = solver.solve(problem, None, lambda iteration, residual_ratio: None)
     assert solution.stop is Stop.DONE
-    found = measure(problem, solution.pressure)
-    assert np.count_nonzero(found.contact) == 1
-    assert getattr(found, prescribed) == pytest.approx(value, rel=1e-8)
+    state = measure(problem, solution.pressure)
+    assert np.count_nonzero(state.contact) == 1
+    assert getattr(state, prescribed) == pytest.approx(value, rel=1e-8)
 
 
 def test_a_start_far_above_the_load_is_not_used() -> None:

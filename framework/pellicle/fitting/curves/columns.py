@@ -52,13 +52,7 @@ class Calibration(Model):
     ] = None
 
     def required_spring_constant(self) -> float:
-        """Return the spring constant [N/m].
-
-        Raises
-        ------
-        ConfigError
-            It is not known.
-        """
+        """Return the spring constant [N/m]."""
         if self.spring_constant is None:
             raise ConfigError(
                 "is missing; give that of the cantilever with its unit, such as '0.05 N/m' "

@@ -100,13 +100,7 @@ def _array(values: ArrayLike, name: str) -> Array:
 
 
 def _base(z: Array, f: Array, stiffness: float) -> Array:
-    """Return the position of the cantilever's base [m].
-
-    Raises
-    ------
-    ConfigError
-        The range of its deflection differs from that of the position by orders of magnitude.
-    """
+    """Return the position of the cantilever's base [m]."""
     slope = float(np.ptp(f)) / float(np.ptp(z))
     if not 1 / _LARGEST_RATIO <= slope / stiffness <= _LARGEST_RATIO:
         raise ConfigError(

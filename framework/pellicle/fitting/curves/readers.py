@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -101,13 +102,7 @@ def gather(
 
 
 def fields_of_files(per_file: Mapping[str, Sequence[Any]], count: int) -> list[dict[str, Any]]:
-    """Return the fields of each file.
-
-    Raises
-    ------
-    ConfigError
-        A list does not have one value for each file.
-    """
+    """Return the fields of each file."""
     for name, values in per_file.items():
         if len(values) != count:
             raise ConfigError(
@@ -118,18 +113,14 @@ def fields_of_files(per_file: Mapping[str, Sequence[Any]], count: int) -> list[d
 
 
 def expanded(given: str | Path, folder: str | Path = "") -> list[Path]:
-    """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is.
-
-    Raises
-    ------
-    ConfigError
-        No file matches.
-    """
+    """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is."""
     path = Path(folder, given)
     if path.exists() or not _PATTERN.search(str(given)):
         return [path]
-    anchor = Path(given).anchor
-    files = sorted(Path(anchor or folder).glob(str(Path(given).relative_to(anchor))))
+    anchor, files = Path(given).anchor, []
+    # A pattern such as "**.csv" is not one, before Python 3.13.
+    with suppress(ValueError):
+        files = sorted(Path(anchor or folder).glob(str(Path(given).relative_to(anchor))))
     if not files:
         raise ConfigError(f"{given}: matches no file; give files, or a folder of them", "curves")
     return files
@@ -204,11 +195,6 @@ def manifest(path: Path) -> list[dict[str, str]] | None:
     """Return the rows of a table that lists files, values with their units; None if it is not one.
 
     Its header is such as ``file,radius [um]``; empty cells are left out.
-
-    Raises
-    ------
-    StorageError
-        The file cannot be read.
     """
     if path.suffix.lower() not in _TEXT or (cells := _cells(path)) is None:
         return None

@@ -27,6 +27,7 @@ class Parameter:
 
     name: str
     unit: str
+    """SI unit; m, N or N/m unless `logarithmic`, since a curve sets the scale of these only."""
     minimum: float = -np.inf
     """Least allowed value, which the best value may equal."""
     logarithmic: bool = False

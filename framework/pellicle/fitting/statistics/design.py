@@ -74,7 +74,7 @@ def undecided(
         "its value is one of many"
     )
     now, others = _designs(likelihood, _with_tension(likelihood, parameters, tension))
-    if _decidable(now, others):
+    if min(design.worse for design in (now, *others)) < _USELESS:
         length = 2 * tension.value / modulus.value
         shallow = length > float(likelihood.depth(parameters)[-1])
         text += f"; the curve is too {'shallow' if shallow else 'deep'}"
@@ -92,7 +92,7 @@ def _advice(likelihood: Likelihood, parameters: Coordinates) -> str:
         f"no unbiased fit of this curve could beat ± {percent(now.modulus)} of the modulus and "
         f"± {percent(now.tension)} of the tension (Cramér–Rao bound, one standard deviation)"
     )
-    if not _decidable(now, others):
+    if min(design.worse for design in (now, *others)) >= _USELESS:
         return (
             f"{reached}; with this indenter no other radius or range would tell them apart: fix "
             "one of them, or press with another shape"
@@ -114,41 +114,33 @@ def _designs(likelihood: Likelihood, parameters: Coordinates) -> tuple[_Design, 
     """
     now = _design("this curve", likelihood, parameters)
     deepest = float(likelihood.depth(parameters)[-1])
-    others = []
     model = likelihood.force_model
     indenter: Any = model.indenter if isinstance(model, ClosedFormModel) else None
     radius = getattr(indenter, "radius", None)
+    others: dict[str, Likelihood] = {}
     for factor in _FACTORS:
         if radius is None or factor * deepest <= _DEEPEST * radius:
             kind = "deeper" if factor > 1 else "shallower"
-            words = f"a {kind} range, to {_metres(factor * deepest)},"
             position = parameters[CONTACT_POINT] + factor * likelihood.depth(parameters)
             other = replace(likelihood, position=position)
-            others.append(_design(words, _same_noise(other, likelihood, parameters), parameters))
+            others[f"a {kind} range, to {_metres(factor * deepest)},"] = other
         if radius is not None and deepest <= _DEEPEST * factor * radius:
             kind = "larger" if factor > 1 else "smaller"
-            words = f"a {kind} radius, {_metres(factor * radius)},"
             shape = ClosedFormModel(indenter.model_copy(update={"radius": factor * radius}))
             other = replace(likelihood, force_model=shape)
-            others.append(_design(words, _same_noise(other, likelihood, parameters), parameters))
-    return now, sorted(others, key=lambda design: design.worse)
+            others[f"a {kind} radius, {_metres(factor * radius)},"] = other
+    share = likelihood.noise / np.max(np.abs(likelihood.model(parameters)))
+    designs = []
+    for words, other in others.items():
+        force = other.model(parameters)
+        noise = share * float(np.max(np.abs(force)))
+        designs.append(_design(words, replace(other, force=force, noise=noise), parameters))
+    return now, sorted(designs, key=lambda design: design.worse)
 
 
 def _design(words: str, likelihood: Likelihood, parameters: Coordinates) -> _Design:
     bound = likelihood.deviations(parameters)
     return _Design(words, bound[MODULUS], bound[TENSION] / parameters[TENSION])
-
-
-def _same_noise(other: Likelihood, likelihood: Likelihood, parameters: Coordinates) -> Likelihood:
-    """Return an experiment with the same noise relative to its largest force."""
-    share = likelihood.noise / np.max(np.abs(likelihood.model(parameters)))
-    force = other.model(parameters)
-    return replace(other, force=force, noise=share * float(np.max(np.abs(force))))
-
-
-def _decidable(now: _Design, others: list[_Design]) -> bool:
-    """Return whether any of the experiments determines both parameters."""
-    return any(design.worse < _USELESS for design in [now, *others])
 
 
 def _with_tension(

@@ -34,6 +34,7 @@ def initial_guesses(likelihood: Likelihood, fixed: Coordinates) -> list[Coordina
     points = np.linspace(z[0] - BEFORE * span, z[-1] - 0.02 * span, _POINTS).tolist()
     if CONTACT_POINT in fixed:
         points = [fixed[CONTACT_POINT]]
+    # A parameter fixed at its minimum (no tension) removes the trials above it.
     trials = [
         values
         for values in likelihood.force_model.guesses(span)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -74,12 +73,10 @@ class ProfileResult:
     """The minimum with the tension fixed at 0."""
     ends: Mapping[Parameter, Ends]
     """Intervals of coordinates: of log E* (E* in Pa) for the modulus."""
+    bounds: Coordinates
+    """Cramér–Rao bounds of the coordinates at the minimum, as standard deviations."""
     messages: tuple[str, ...]
     """By how much intervals were widened, and which could not be determined."""
-
-    @cached_property
-    def _bounds(self) -> Coordinates:
-        return self.likelihood.deviations(self.best.parameters)
 
     def estimate(self, parameter: Parameter) -> Estimate:
         """Return value, interval and bound of a parameter; E* itself for the modulus.
@@ -87,7 +84,7 @@ class ProfileResult:
         Without an interval the ends are None.  Where the interval is narrower than the Cramér–Rao
         bound, that bound is infinite: it is that of a linear model, and this model is not linear.
         """
-        best, bound = self.best.parameters[parameter], self._bounds[parameter]
+        best, bound = self.best.parameters[parameter], self.bounds[parameter]
         fixed = parameter not in self.likelihood.free
         low, high = (best, best) if fixed else self.ends.get(parameter, (None, None))
         lowest = parameter.minimum if low is None else low
@@ -149,7 +146,8 @@ def profile_likelihood(
                     "it is left open: the curve does not tell the parameters apart; fix one of "
                     "them, or fit less of the baseline",
                 )
-            return ProfileResult(likelihood, best, without, wider, messages)
+            bounds = likelihood.deviations(best.parameters)
+            return ProfileResult(likelihood, best, without, wider, bounds, messages)
 
 
 def widen(

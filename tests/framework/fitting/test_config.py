@@ -1,0 +1,206 @@
+"""Configurations of fits: a TOML file, keyword arguments and options make the same object."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import Result
+from jsonschema import Draft202012Validator
+
+import pellicle as pl
+
+Cli = Callable[..., Result]
+OPTIONS: dict[str, Any] = {
+    "indenter": "sphere",
+    "poissons_ratio": 0.4,
+    "fix": {"tension": "5 mN/m"},
+    "baseline": "offset",
+    "spring_constant": "0.5 N/m",
+    "executor": {"type": "processes", "workers": 1},
+    "grid_points": 32,
+}
+BODY = """
+poissons_ratio = 0.4
+baseline = "offset"
+spring_constant = "0.5 N/m"
+grid_points = 32
+fix = { tension = "5 mN/m" }
+executor = { type = "processes", workers = 1 }
+"""
+FILE = f'{BODY}\n[indenter]\ntype = "sphere"\nradius = "5 um"\n'
+ARGUMENTS = (
+    *("--indenter", "sphere", "--radius", "5 um", "--poissons-ratio", "0.4"),
+    *("--fix", "tension=5 mN/m", "--baseline", "offset", "--spring-constant", "0.5 N/m"),
+    *("--set", "executor.type=processes", "--set", "executor.workers=1", "--grid-points", "32"),
+)
+
+
+def measure(path: Path, radius: float = 5e-6, points: int = 60) -> None:
+    """Write a curve of a sphere on a solid of 2 kPa under 5 mN/m."""
+    path.parent.mkdir(exist_ok=True)
+    depth = np.linspace(-0.3, 1.0, points) * 0.3 * radius
+    sphere = pl.indenter("sphere", radius=radius)
+    force = 2e3 * sphere.force_curve(depth, 5e-6).force  # type: ignore[attr-defined]
+    force += 0.005 * force.max() * np.random.default_rng(points).standard_normal(points)
+    rows = np.column_stack([depth * 1e6, force * 1e9])
+    header = "position [um],force [nN]"
+    np.savetxt(path, rows, delimiter=",", header=header, comments="", fmt="%.12g")
+
+
+def without_configuration(text: str) -> Any:
+    """Return JSON without the configuration, in which names of files may differ."""
+    data = json.loads(text)
+    assert data.pop("configuration")["indenter"] == {"type": "sphere", "radius": 5e-6}
+    return data
+
+
+def test_three_ways_make_one_object(tmp_path: Path) -> None:
+    """The file, keyword arguments and texts of options give equal configurations."""
+    (tmp_path / "bead.toml").write_text(FILE, encoding="utf-8")
+    config = pl.FitConfig.from_toml(tmp_path / "bead.toml")
+    assert config == pl.FitConfig.merged(None, radius="5 um", **OPTIONS)
+    assert config == pl.FitConfig.merged(
+        {"indenter": "cone"}, ["fix.tension=5 mN/m"], **OPTIONS | {"fix": None}, radius=5e-6
+    )
+    assert config == pl.FitConfig.from_json(config.to_json())
+    (tmp_path / "again.toml").write_text(config.to_toml(), encoding="utf-8")
+    assert config == pl.FitConfig.from_toml(tmp_path / "again.toml")
+    assert config == pickle.loads(pickle.dumps(config))
+
+
+def test_three_ways_give_one_result(cli: Cli) -> None:
+    """One curve, many and a pool: the numbers are equal to the last digit."""
+    for name in ("beads/a.csv", "beads/b.csv"):
+        measure(Path(name), points=60 + ord(name[6]))
+    Path("bead.toml").write_text(f'curves = ["beads/a.csv"]{FILE}', encoding="utf-8")
+    config = pl.FitConfig.from_toml("bead.toml")
+    one = without_configuration(cli("bead.toml", "--json").stdout)
+    assert one == without_configuration(cli("beads/a.csv", *ARGUMENTS, "--json").stdout)
+    assert one == without_configuration(pl.fit(config=config).to_json())
+    pool = without_configuration(cli("bead.toml", "beads", "--pool", "--json").stdout)
+    assert pool == without_configuration(cli("beads", *ARGUMENTS, "--pool", "--json").stdout)
+    assert pool == without_configuration(pl.fit_pooled("beads", config="bead.toml").to_json())
+    many = cli("bead.toml", "beads", "--json").stdout
+    assert many == cli("beads", *ARGUMENTS, "--json").stdout
+    table = pl.fit_many("beads", config=config, progress=False)
+    same = pl.fit_many("beads", radius="5 um", progress=False, **OPTIONS)
+    assert table.identical(same)
+    moduli = [row["reduced_modulus"]["value"] for row in json.loads(many)["curves"]]
+    assert table["reduced_modulus"].values.tolist() == moduli
+
+
+def test_paths_start_from_the_folder_of_the_file(tmp_path: Path) -> None:
+    """Curves, patterns and the cache are seen from the file, whatever its folder is called."""
+    folder = tmp_path / "day [1]"
+    for name in ("2.csv", "1.csv", "odd [3].csv", "table.toml"):
+        measure(folder / name)
+    names = '["?.csv", "odd [3].csv", "table.toml"]'
+    text = f'curves = {names}\ncache = "studies"\nindenter = "cone"\n'
+    (folder / "bead.toml").write_text(text, encoding="utf-8")
+    config = pl.FitConfig.from_toml(folder / "bead.toml")
+    read = [Path(source.name).name for source in config.sources()]
+    assert read == ["1.csv", "2.csv", "odd [3].csv", "table.toml"]
+    assert not any(isinstance(source.curve, Exception) for source in config.sources())
+    assert config.cache == folder / "studies"
+
+
+def test_options_replace_values_of_the_file(cli: Cli) -> None:
+    """The command line wins over the file, and --set over the other options."""
+    measure(Path("a.csv"))
+    Path("bead.toml").write_text(f'curves = "nothing/*.csv"{FILE}', encoding="utf-8")
+    arguments = ("bead.toml", "a.csv", "--radius", "6 um", "--baseline", "none", "--json")
+    said = json.loads(cli(*arguments, "--set", "indenter.radius=7 um").stdout)["configuration"]
+    assert said["indenter"] == {"type": "sphere", "radius": 7e-6}
+    assert (said["baseline"], said["curves"]) == ("none", ["a.csv"])
+    Path("bead.toml").write_text(FILE, encoding="utf-8")
+    config = pl.FitConfig.from_toml("bead.toml", ['indenter.type="paraboloid"'])
+    changed = pl.FitConfig.merged(config, radius=["1 um", "2 um"], baseline="slope")
+    assert changed.indenter == pl.indenter("paraboloid", radius="5 um")
+    assert changed.per_file == {"radius": ("1 um", "2 um")}
+    assert not pl.FitConfig.merged(changed, radius="3 um").per_file
+
+
+def test_radius_of_each_file(cli: Cli) -> None:
+    """A table of the file gives each curve its own radius; the indenter needs none then."""
+    for radius in (5, 20):
+        measure(Path(f"{radius}.csv"), radius * 1e-6)
+    Path("beads.toml").write_text(
+        'curves = ["5.csv", "20.csv"]\npool = true\n'
+        '[indenter]\ntype = "sphere"\n[per_file]\nradius = ["5 um", "20 um"]\n',
+        encoding="utf-8",
+    )
+    curves = json.loads(cli("beads.toml", "--json").stdout)["curves"]
+    assert [curve["model"]["indenter"]["radius"] for curve in curves] == [5e-6, 20e-6]
+
+
+def test_many_fits_keep_the_configuration(tmp_path: Path) -> None:
+    """The table of many curves holds the configuration once."""
+    measure(tmp_path / "a.csv")
+    pl.fit_many(tmp_path / "a.csv", directory=tmp_path, progress=False, radius="5 um", **OPTIONS)
+    content = json.loads((tmp_path / "fits.json").read_text(encoding="utf-8"))
+    assert content["configuration"]["fix"] == {"tension": 5e-3}
+    assert "configuration" not in content["curves"][0]
+
+
+def test_schema() -> None:
+    """The JSON schema accepts the file's tables and refuses unknown keys."""
+    validator = Draft202012Validator(pl.FitConfig.model_json_schema())
+    table = {"indenter": {"type": "sphere", "radius": "5 um"}, "curves": ["a.csv"]}
+    assert validator.is_valid(table | {"spring_constant": "1 N/m", "baseline": "slope"})
+    assert not validator.is_valid(table | {"base": "slope"})
+    assert not validator.is_valid(table | {"baseline": "cubic"})
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (f"{BODY}baselin = 1\n", "baselin: is not a field here; did you mean 'baseline'?"),
+        (BODY, "indenter: is missing"),
+        ('[indenter]\ntype = "ball"', "indenter.type: 'ball' is no indenter"),
+        ('[indenter]\ntype = "sphere"\nradius = "5 N"', "indenter.radius: '5 N' measures"),
+        ('[indenter]\ntype = "sphere"\nradios = 1', "indenter.radios: is not a field here"),
+        ('curves = ["*.csv"]\nindenter = "sphere"', "*.csv: matches no file"),
+        ('curves = ["**.csv"]\nindenter = "sphere"', "**.csv: matches no file"),
+        ('curves = ["a.csv"]\nindenter = "sphere"', "indenter.radius: is missing"),
+        ('curves = [1]\nindenter = "sphere"', "curves.0: 1 is not allowed"),
+        ('indenter = "sphere"\nfix = 1', "fix: 1 is not a table"),
+        ('indenter = "sphere"\n[fix]\nmodulus = 1', "fix.modulus: is not a parameter"),
+        ('indenter = "sphere"\ncontact_points = true', "contact_points: is of a pool"),
+        ('indenter = "sphere"\nkernel = "winkler"', "kernel: 'winkler' has no field"),
+        ('indenter = "sphere"\nexecutor = "abacus"', "'abacus' is no executor"),
+        ('indenter = "sphere"\n[per_file]\nradius = "1 um"', "per_file.radius: '1 um'"),
+        ('indenter = "sphere"\n[grid]\npoints = 9', "grid: is not a field here"),
+        ("position [um],force [nN]\n1,2\n", "not valid TOML"),
+    ],
+)
+def test_bad_files(cli: Cli, text: str, words: str) -> None:
+    """What is wrong with a file of a stranger is said in words, and nothing is fitted."""
+    Path("bead.toml").write_text(text, encoding="utf-8")
+    if "*.csv" not in text:
+        measure(Path("a.csv"))
+    assert words in cli("bead.toml", code=2).stderr
+
+
+def test_bad_commands(cli: Cli) -> None:
+    """Two configurations, one in another encoding, and one that is not there are refused."""
+    Path("a.toml").write_text(FILE, encoding="utf-16")
+    assert "not a text file in UTF-8" in cli("a.toml", code=2).stderr
+    assert "several configurations" in cli("a.toml", "b.toml", code=2).stderr
+    assert "No such file" in cli("b.toml", code=2).stderr
+    Path("b.toml").write_text(FILE, encoding="utf-8")
+    assert "curves: holds no curve" in cli("b.toml", code=2).stderr
+
+
+def test_bad_arguments() -> None:
+    """A configuration of several curves is not one for `fit`, nor has a force curve fields."""
+    config = pl.FitConfig(indenter={"type": "sphere", "radius": "5 um"}, curves=["a", "b"])
+    with pytest.raises(pl.ConfigError, match="hold 2 curves; use fit_many"):
+        pl.fit(config=config)
+    with pytest.raises(pl.ConfigError, match="indenter: is missing"):
+        pl.fit([1, 2], [1, 2])
