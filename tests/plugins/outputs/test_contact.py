@@ -169,6 +169,7 @@ def test_odd_results(changes: dict[str, Any], tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {
         *(f"rough-{name}.{end}" for name in ("patches", "spectrum") for end in ("png", "csv")),
         *("rough-distributions.png", "rough-distributions.csv", "rough-0001.vts", "rough.pvd"),
+        "rough.h5",
     }
     has_indenter = bool(rows(tmp_path / "rough-spectrum.csv", series="indenter"))
     assert has_indenter == (changes.get("indenter") is not PUNCH)
