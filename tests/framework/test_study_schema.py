@@ -60,7 +60,7 @@ def test_accepts_the_studies_of_the_documentation(path: Path, schema: Draft20201
 def test_what_varies_may_be_left_out(
     path: str, values: object, schema: Draft202012Validator
 ) -> None:
-    """A required entry is missing where an axis gives it, as in a study that can be table."""
+    """A required entry is missing where an axis gives it, as in a study that can be made."""
     data = without(path) | {"study": {"vary": {path: values}}}
     assert pl.Study.from_mapping(data).points
     schema.validate(data)
