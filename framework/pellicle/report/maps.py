@@ -167,7 +167,7 @@ def _pack(values: Array) -> _Packed:
 
 
 def _colours(name: str) -> str:
-    """Return the 256 colours of a colour map, three bytes frame."""
+    """Return the 256 colours of a colour map, three bytes for each."""
     import matplotlib
 
     table = matplotlib.colormaps[name](np.arange(256), bytes=True)[:, :3]
