@@ -17,7 +17,7 @@ SCRIPTS = {
 }
 
 
-@pytest.mark.parametrize(("script", "asked"), SCRIPTS.items(), ids=SCRIPTS)
+@pytest.mark.parametrize(("script", "size"), SCRIPTS.items(), ids=SCRIPTS)
 def test_table(script: str, size: tuple[list[str], int]) -> None:
     """A heading, the line under it, and as many rows as were asked for, of as many columns."""
     options, rows = size

@@ -80,7 +80,7 @@ def test_public_name_is_documented(name: str) -> None:
         assert getattr(pl, name).__doc__
 
 
-@pytest.mark.parametrize("each", [*pl.Status, *pl.Stop], ids=str)
+@pytest.mark.parametrize("member", [*pl.Status, *pl.Stop], ids=str)
 def test_status_is_documented(member: pl.Status | pl.Stop) -> None:
     """The theory page lists every way in which a step or a solver can end."""
     assert f"| `{member.name}` |" in _page("theory.md")

@@ -162,7 +162,7 @@ def test_schema() -> None:
     [
         (f"{BODY}baselin = 1\n", "baselin: is not a field here; did you mean 'baseline'?"),
         (BODY, "indenter: is missing"),
-        ('[indenter]\ntype = "ball"', "indenter.type: 'ball' is no indenter"),
+        ('[indenter]\ntype = "ball"', "indenter.type: 'ball' is not an indenter"),
         ('[indenter]\ntype = "sphere"\nradius = "5 N"', "indenter.radius: '5 N' measures"),
         ('[indenter]\ntype = "sphere"\nradios = 1', "indenter.radios: is not a field here"),
         ('curves = ["*.csv"]\nindenter = "sphere"', "*.csv: matches no file"),
@@ -173,7 +173,7 @@ def test_schema() -> None:
         ('indenter = "sphere"\n[fix]\nmodulus = 1', "fix.modulus: is not a parameter"),
         ('indenter = "sphere"\ncontact_points = true', "contact_points: is of a pool"),
         ('indenter = "sphere"\nkernel = "winkler"', "kernel: 'winkler' has no field"),
-        ('indenter = "sphere"\nexecutor = "abacus"', "'abacus' is no executor"),
+        ('indenter = "sphere"\nexecutor = "abacus"', "'abacus' is not an executor"),
         ('indenter = "sphere"\n[per_file]\nradius = "1 um"', "per_file.radius: '1 um'"),
         ('indenter = "sphere"\n[grid]\npoints = 9', "grid: is not a field here"),
         ("position [um],force [nN]\n1,2\n", "not valid TOML"),
