@@ -19,7 +19,7 @@ from pellicle.components.calls import (
 )
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
-from pellicle.numerics.problem import Equilibrium, Stiffness, measure, measure_stiffness
+from pellicle.numerics.problem import Equilibrium, Stiffness, measure_stiffness
 from pellicle.numerics.solution import State
 from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable
@@ -82,16 +82,16 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Re
         return reach(setting, target, run.solver, monitor)
     problem = setting.problem(target)
     solution = solution_of(run.solver, problem, setting.state, monitor)
-    return Reached(measure(problem, solution.pressure), solution.iterations, solution.stop)
+    return Reached(Equilibrium(problem, solution.pressure), solution.iterations, solution.stop)
 
 
-def _stiffness(run: Run, found: Equilibrium, monitor: Monitor) -> Stiffness:
+def _stiffness(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> Stiffness:
     """Return the contact stiffness dF/dδ, δ being the depth of the indenter."""
-    problem = replace(found.problem, control=Depth(found.depth))
-    contact = found.contact
+    problem = replace(equilibrium.problem, control=Depth(equilibrium.depth))
+    contact = equilibrium.contact
     if problem.is_rigid(contact):
         return Stiffness(np.inf, 0.0)
     if not contact.any():
         return Stiffness(0.0, 0.0)
-    state = State(found.pressure, found.pressure, found.depth)
+    state = State(equilibrium.pressure, equilibrium.pressure, equilibrium.depth)
     return measure_stiffness(problem, contact, response_of(run.solver, problem, state, monitor))

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array
 from pellicle.numerics.initial_guess import dot
 from pellicle.numerics.problem import Problem
 
@@ -60,10 +60,10 @@ def inner_solve(
     bending stiffness it is applied in double precision: a gap that single precision does not
     resolve corresponds to pressures above those whose signs are sought.
     """
-    cells, contact = preconditioner.cells, preconditioner.contact
+    cells = preconditioner.cells
     if not cells.size:
         nothing = np.zeros(problem.grid.shape)
-        penetrating, _ = _misclassified(problem, contact, nothing, np.zeros(0), goal)
+        penetrating, _ = _misclassified(problem, preconditioner, nothing, np.zeros(0), goal)
         return InnerSolution(nothing, nothing, 0.0, penetrating)
     uniform = _Uniform.of(problem, cells)
     directions = _Directions(problem, preconditioner, uniform)
@@ -112,7 +112,9 @@ def inner_solve(
         if np.isfinite(certainty) and iteration >= _MIN_ITERATIONS:
             change -= directions.mean(inside)
             last = certainty, direction, change
-            certain, others = _misclassified(problem, contact, displacement, on_contact, goal, last)
+            certain, others = _misclassified(
+                problem, preconditioner, displacement, on_contact, goal, last
+            )
             if certain.size and others <= _UNCERTAIN * certain.size:
                 misclassified = certain
                 break
@@ -129,7 +131,7 @@ def inner_solve(
     del residual, direction, field
     if misclassified is None:
         margin = max(error, goal)
-        misclassified, _ = _misclassified(problem, contact, displacement, on_contact, margin)
+        misclassified, _ = _misclassified(problem, preconditioner, displacement, on_contact, margin)
     pressure = np.zeros(problem.grid.shape)
     pressure.ravel()[cells] = on_contact
     return InnerSolution(pressure, displacement, error, np.sort(misclassified))
@@ -177,7 +179,7 @@ class _Uniform:
 
 def _misclassified(
     problem: Problem,
-    contact: Mask,
+    preconditioner: OnContact,
     displacement: Array,
     on_contact: Array,
     margin: float,
@@ -189,8 +191,8 @@ def _misclassified(
     one if its gap is below −``margin`` [m]. ``last`` is the sign-certainty factor and the last
     changes of pressure in contact [Pa] and gap [m]; without it all signs are certain.
     """
+    contact = preconditioner.contact
     gap = problem.gap(displacement, contact)[0].ravel()
-    cells = np.flatnonzero(contact)
     tensile = np.flatnonzero(on_contact < 0)
     penetrating = np.flatnonzero((gap < -margin) & ~contact.ravel())
     number = tensile.size + penetrating.size
@@ -199,7 +201,7 @@ def _misclassified(
         tensile = tensile[on_contact[tensile] < -certainty * np.abs(step[tensile])]
         change = certainty * np.abs(change.ravel()[penetrating])
         penetrating = penetrating[gap[penetrating] < -change]
-    certain = np.concatenate([cells[tensile], penetrating])
+    certain = np.concatenate([preconditioner.cells[tensile], penetrating])
     return certain, number - certain.size
 
 

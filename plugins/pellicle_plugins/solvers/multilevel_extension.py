@@ -218,9 +218,13 @@ def _transposed_interpolate(fine: Field, free: Field) -> Field:
     wide = np.zeros([n // 2 + 2 for n in fine.shape], fine.dtype)
     for rows, fine_rows in _blocks([n - 2 for n in wide.shape]):
         block = fine[fine_rows] * free[fine_rows]
-        for axis in reversed(range(fine.ndim)):
-            block = _transposed_refined(block, axis)
-        wide[rows.start : rows.stop + 2] += block
+        if fine.ndim > 1:
+            block = _transposed_refined(block)
+        # Along the first axis it is added where it belongs, without a block of its own.
+        even, odd = block[0::2], block[1::2]
+        wide[rows.start + 1 : rows.stop + 1] += _NEAR * (even + odd)
+        wide[rows.start : rows.stop] += _FAR * even
+        wide[rows.start + 2 : rows.stop + 2] += _FAR * odd
     for axis in range(fine.ndim):
         wide[_along(axis, 1, 2)] += wide[_along(axis, -1)]
         wide[_along(axis, -2, -1)] += wide[_along(axis, 0, 1)]
@@ -236,15 +240,14 @@ def _refined(wide: Field, axis: int) -> Field:
     return fine
 
 
-def _transposed_refined(fine: Field, axis: int) -> Field:
-    """Return the transpose of `_refined` applied to ``fine``."""
-    even, odd = fine[_along(axis, 0, None, 2)], fine[_along(axis, 1, None, 2)]
-    wide = np.zeros([n + 2 * (i == axis) for i, n in enumerate(even.shape)], fine.dtype)
-    inner = wide[_along(axis, 1, -1)]
-    np.add(even, odd, out=inner)
-    inner *= _NEAR
-    wide[_along(axis, 0, -2)] += _FAR * even
-    wide[_along(axis, 2)] += _FAR * odd
+def _transposed_refined(fine: Field) -> Field:
+    """Return the transpose of `_refined` along the second axis, applied to ``fine``."""
+    even, odd = fine[:, 0::2], fine[:, 1::2]
+    wide = np.zeros((len(fine), even.shape[1] + 2), fine.dtype)
+    np.add(even, odd, out=wide[:, 1:-1])
+    wide *= _NEAR
+    wide[:, :-2] += _FAR * even
+    wide[:, 2:] += _FAR * odd
     return wide
 
 

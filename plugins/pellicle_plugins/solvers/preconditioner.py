@@ -81,11 +81,14 @@ class Preconditioner:
 
         The second array gives the position in ``cells`` of the source of each copy.
         """
+        nowhere = np.empty(0, dtype=np.int64)
+        if self._padded == self._shape:
+            return cells, nowhere
         (nx, ny), (px, py) = self._shape, self._padded
         i, j = np.divmod(cells, ny)
         indices = i * py + j
-        copies, sources = [indices], [np.empty(0, dtype=np.int64)]
-        if self._plane == self._shape != self._padded:
+        copies, sources = [indices], [nowhere]
+        if self._plane == self._shape:
             # Beyond its period a periodic field repeats its first cells.
             for down, right in ((nx, 0), (0, ny), (nx, ny)):
                 repeated = np.flatnonzero((i + down < px) & (j + right < py))
