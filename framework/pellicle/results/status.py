@@ -54,7 +54,7 @@ class Status(Enum):
     )
     CONTACT_AT_EDGE = (
         "the contact reaches the edge of the domain, where the indenter does not end, so force "
-        "and area are wrong; enlarge grid.size = {size} or prescribe less than {prescribed}"
+        "and area are wrong; enlarge grid.size = {size} or press in less far ({prescribed})"
     )
 
     NOT_RUN = "not run"
