@@ -136,7 +136,7 @@ def test_contact_reaches_the_edge(cli: Cli, loading: str, boundary: str, named: 
     outcome = cli("run", "start.toml", "-o", "out", *changes)
     assert outcome.exit_code == 1
     says(outcome.message, "step 1 did not converge", "reaches the edge", named)
-    says(outcome.message, "enlarge grid.size = 0.0004472 × 0.0004472 m or prescribe less")
+    says(outcome.message, "enlarge grid.size = 0.0004472 × 0.0004472 m or press in less far")
     kept = pl.load("out/start.h5").dataset
     assert not kept["converged"].item()
     assert "reaches the edge" in kept["status"].item()
