@@ -26,7 +26,7 @@ SUFFIXES = (
     ".tab",
     ".zip",
 )
-"""Suffixes of instrument files alone; .h5, .csv and .txt may be an instrument's as well."""
+"""Suffixes that only instrument files have; .h5, .csv and .txt may be an instrument's too."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
 _SPRING, _TIP = "spring constant", "tip position"
 _HEIGHTS = ("height (measured)", "height (piezo)")
@@ -38,7 +38,7 @@ def installed() -> bool:
 
 
 def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve | PellicleError]:
-    """Return the ``segment`` of each curve of a file by its number; that of an only one is empty.
+    """Return the ``segment`` of each curve by its number; the label of a single curve is empty.
 
     Raises
     ------
@@ -127,5 +127,5 @@ def _curve(
 
 
 def _rows(segments: Any, segment: str) -> Any:
-    """Return which rows belong to the first segment, or to the last: all if there is only one."""
+    """Return the rows of the first or of the last segment: all if there is only one."""
     return segments == (segments.min() if segment == "approach" else segments.max())

@@ -185,7 +185,7 @@ def _one_pass(z: Array, segment: Segment, messages: list[str]) -> slice:
 
 
 def _turns(z: Array, least: float) -> list[int]:
-    """Return the rows after which the position moves the other way by at least this much."""
+    """Return the rows after which the position moves the other way by ``least`` or more."""
     turns: list[int] = []
     low = high = 0
     direction = 0

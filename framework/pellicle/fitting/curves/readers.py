@@ -118,7 +118,7 @@ def expanded(given: str | Path, folder: str | Path = "") -> list[Path]:
     if path.exists() or not _PATTERN.search(str(given)):
         return [path]
     anchor, files = Path(given).anchor, []
-    # A pattern such as "**.csv" is not one, before Python 3.13.
+    # Before Python 3.13, a pattern such as "**.csv" is a ValueError.
     with suppress(ValueError):
         files = sorted(Path(anchor or folder).glob(str(Path(given).relative_to(anchor))))
     if not files:
@@ -127,7 +127,7 @@ def expanded(given: str | Path, folder: str | Path = "") -> list[Path]:
 
 
 def _files(path: Path) -> list[tuple[Path, dict[str, str]]]:
-    """Return the files that a path stands for, each with the fields that a list has for it."""
+    """Return the files that a path stands for, each with its fields in a list of files."""
     if path.is_dir():
         files = sorted(
             file
@@ -149,7 +149,7 @@ def read(
 ) -> dict[str, Curve | PellicleError]:
     """Return the curves of a file, or the errors of reading them, by their labels.
 
-    The label of an only curve is empty.  A table (CSV, TSV, semicolons) has a header such as
+    The label of a single curve is empty.  A table (CSV, TSV, semicolons) has a header such as
     ``position [um],force [nN]``; cells that hold no number are NaN, columns of other names are
     ignored, and rows that differ in a column ``curve`` are different curves.  An HDF5 file has
     datasets of the same names with an attribute ``units``, or groups of them, one for each curve; a
@@ -172,13 +172,13 @@ def read(
         try:
             return afm.read(path, calibration, segment)
         except StorageError:
-            # Without afmformats nobody can tell whether it is the file of an instrument.
-            hint = "" if afm.installed() else f"; if it is of an instrument: {afm.INSTALL}"
+            # Only afmformats can recognise the file of an instrument.
+            hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
             if tables and suffix not in _HDF5:
                 hint = f"; its first line has {_first_cells(path)}{hint}"
     if not tables:
         raise StorageError(
-            f"{path}: is neither text, nor HDF5, nor of an instrument that can be read{hint}; "
+            f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
             f"export it as a table with a header such as {EXAMPLE!r}"
         )
     curves: dict[str, Curve | PellicleError] = {}

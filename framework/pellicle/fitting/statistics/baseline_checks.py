@@ -102,7 +102,7 @@ def falling_baseline(residuals: Residuals) -> tuple[str, ...]:
     return (
         f"the baseline falls by {-change:.3g} N towards contact: drift does that, but so does "
         "attraction of long range, which bends a curve as tension does; check whether it falls as "
-        "much further out",
+        "steeply further out",
     )
 
 
@@ -166,7 +166,7 @@ def _equal_bins(points: int) -> Array:
 def _drift_or_offset(
     residuals: Residuals, force: Array, line: Array, noise: float
 ) -> list[FailedCheck]:
-    """Return the check that the force before contact is constant and 0, unless that is fitted."""
+    """Return a failed check if the force before contact is neither fitted nor constant and 0."""
     slope, steepness = _slope(force, line)
     if SLOPE not in residuals.baseline and 2 * ndtr(-abs(slope) / noise) < CHANCE:
         change = slope * steepness * float(np.ptp(line[:, 1]))

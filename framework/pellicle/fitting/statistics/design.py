@@ -45,8 +45,8 @@ def advice(
 ) -> str:
     """Return the bounds of modulus and tension, and which experiment would tighten them.
 
-    Empty if one of the two is fixed.  A curve that shows no tension is judged by one that it could
-    just miss.
+    Empty if one of the two is fixed.  If the curve shows no tension, the bounds are those at a
+    tension that it could just miss.
     """
     if not {MODULUS, TENSION} <= set(likelihood.free):
         return ""

@@ -110,7 +110,7 @@ def profile_likelihood(
     threshold: float,
     wanted: Sequence[Parameter],
     without_tension: Callable[[Minimum], Minimum],
-    report: Callable[[str], None] = lambda words: None,
+    report: Callable[[str], None] = lambda stage: None,
 ) -> ProfileResult:
     """Return the minimum near ``best``, the one without tension, and intervals of ``wanted``.
 
@@ -123,7 +123,7 @@ def profile_likelihood(
         report("without tension")
         without = without_tension(best)
         if TENSION in likelihood.free and without.chi_squared <= best.chi_squared + 1e-6:
-            # An equally good minimum without tension has it at exactly 0.
+            # Of equally good minima, this one has a tension of exactly 0.
             best = without
         ends: dict[Parameter, Ends] = {}
         failures = []
