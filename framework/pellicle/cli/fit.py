@@ -55,13 +55,16 @@ def fit(
     ] = None,
     baseline: Annotated[
         str | None,
-        typer.Option(help="Fitted of the force before contact: none (default), offset, slope."),
+        typer.Option(
+            help="Part of the force before contact to fit: none (default), offset, slope."
+        ),
     ] = None,
     segment: Annotated[
         str | None, typer.Option(help="Pass to fit: approach (default), retract.")
     ] = None,
     spring_constant: Annotated[
-        str | None, typer.Option(help='Of the cantilever, to subtract its bending: "0.05 N/m".')
+        str | None,
+        typer.Option(help='That of the cantilever, to subtract its bending: "0.05 N/m".'),
     ] = None,
     sensitivity: Annotated[
         str | None, typer.Option(help='Deflection over the signal in volts: "50 nm/V".')
@@ -71,11 +74,11 @@ def fit(
     ] = False,
     contact_points: Annotated[
         bool,
-        typer.Option("--contact-points", help="With --pool: intervals of contact points."),
+        typer.Option("--contact-points", help="With --pool: intervals of contact points, too."),
     ] = False,
     executor: Annotated[
         str | None,
-        typer.Option(help="What carries out many fits, and runs: serial, processes, dask."),
+        typer.Option(help="Executor of many fits and of runs: serial, processes, dask."),
     ] = None,
     kernel: Annotated[
         str | None, typer.Option(help="Type of the solid, if it is not a half-space: coated, …")
@@ -89,7 +92,7 @@ def fit(
         ),
     ] = None,
     grid_points: Annotated[
-        int | None, typer.Option(help="Cells along each grid, where contacts are simulated.")
+        int | None, typer.Option(help="Cells along each edge of simulated contacts.")
     ] = None,
     cache: Annotated[
         Path | None, typer.Option(help="Folder that keeps simulated force curves.")
@@ -98,7 +101,10 @@ def fit(
         Path | None, typer.Option("-o", "--output", help="Folder for JSON, table and figure.")
     ] = None,
     report: Annotated[
-        bool, typer.Option("--report", help="Leave a web page, there or in the current folder.")
+        bool,
+        typer.Option(
+            "--report", help="Write a web page, to the folder of --output or the current one."
+        ),
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
@@ -148,8 +154,8 @@ def fit(
         try:
             fits = fit_sources(config, sources, directory, progress=True)
         except KeyboardInterrupt:
-            kept = f"; what was finished is in {directory}, and the same command goes on"
-            typer.echo(f"interrupted{kept if directory else ''}", err=True)
+            hint = f"; finished fits are in {directory}, and the same command continues"
+            typer.echo(f"interrupted{hint if directory else ''}", err=True)
             raise typer.Exit(INTERRUPTED) from None
         _write_table(fits, wanted)
 
@@ -205,7 +211,7 @@ def _write_table(fits: ManyFits, wanted: _Wanted) -> None:
 
 
 def _override(text: str) -> str:
-    """Return ``name=value`` of ``--fix`` as ``--set`` has it; a bare number is in SI."""
+    """Return ``name=value`` of ``--fix`` in the form of ``--set``; a bare number is in SI."""
     name, equals, value = text.partition("=")
     if not equals:
         raise ConfigError(f"{text!r} is not of the form name=value, e.g. tension=0", "fix")

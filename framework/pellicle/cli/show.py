@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -16,9 +16,6 @@ from .results import (
     print_runs,
     print_steps,
 )
-
-if TYPE_CHECKING:
-    pass
 
 
 def show(
@@ -43,5 +40,5 @@ def show(
     print_contact(result)
     exit_by_convergence(result)
     if done < wanted:
-        typer.echo(f"interrupted: {done} of {wanted} steps are there; run it again", err=True)
+        typer.echo(f"interrupted: {done} of {wanted} steps are finished; run it again", err=True)
         raise typer.Exit(NOT_CONVERGED)

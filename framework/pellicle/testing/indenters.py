@@ -20,9 +20,9 @@ def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
     """Check that an indenter keeps its contract.
 
     Besides the rules of all components: ``profile`` returns float heights ≤ 0 of the grid's shape,
-    0 at the lowest point; it is pure; each height depends on its own point only, unless the indenter
-    ends with the domain; a force curve, if the indenter has one, rises and agrees with its partial
-    derivatives; and a small indentation converges.
+    0 at the lowest point; it is pure; each height depends on its own point only, unless the
+    indenter ends with the domain; a force curve, if the indenter has one, rises and agrees with its
+    partial derivatives; and a small indentation converges.
 
     Parameters
     ----------

@@ -101,7 +101,7 @@ def periodic_operator_is_the_compliance(kernel: Kernel) -> None:
 
 
 def uniform_pressure_sinks_by_the_mean_compliance(kernel: Kernel) -> None:
-    """On a periodic grid, uniform pressure p displaces by p mean_compliance(), by 0 if that is ∞."""
+    """On a periodic grid uniform pressure p displaces by p mean_compliance(), or 0 if that is ∞."""
     grid = Grid(points=[6, 5], size="1 mm", boundary="periodic")
     mean = mean_compliance(kernel)
     expected = np.full(grid.shape, 3 * mean if np.isfinite(mean) else 0.0)

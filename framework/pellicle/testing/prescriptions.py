@@ -45,8 +45,8 @@ def check_prescription(prescription: Prescription, values: Sequence[float] = ())
     Parameters
     ----------
     prescription
-        The component, checked on a rough surface of 1 mm × 1 mm and 10 µm root mean square height on
-        a periodic half-space of 10 kPa, under 0.1 and 0.2 mN.
+        The component, checked on a rough surface of 1 mm × 1 mm and 10 µm root mean square height
+        on a periodic half-space of 10 kPa, under 0.1 and 0.2 mN.
     values
         The prescribed quantity [its unit] under these two forces. They can be left out if a result
         has a variable named like the prescription's type, for example from ``report``.

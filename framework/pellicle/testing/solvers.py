@@ -58,8 +58,8 @@ def check_solver(solver: Solver) -> None:
     Besides the rules of all components: a paraboloid, a punch and a rough surface, on free and
     periodic grids, with depth, force and mean pressure prescribed, are solved to the solver's
     ``tolerance``, with pressure ≥ 0; the solution depends on neither the step before nor the unit
-    of stiffness; arguments are unchanged; the monitor is called; ``response`` is that of a flat punch;
-    and the ``residual`` of an iterative solver has no side effect.
+    of stiffness; arguments are unchanged; the monitor is called; ``response`` is that of a flat
+    punch; and the ``residual`` of an iterative solver has no side effect.
 
     Raises
     ------

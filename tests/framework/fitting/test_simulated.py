@@ -154,7 +154,7 @@ def test_simulated_curve_is_an_indenter(exact_nodes: SimulatedCurve) -> None:
     fine = pl.fit(depth, force, indenter=exact_nodes)
     true = pl.fit(depth, force, indenter=exact)
     assert fine.tension.value == pytest.approx(true.tension.value, rel=0.01)
-    with pytest.raises(pl.ConfigError, match="beside a force curve"):
+    with pytest.raises(pl.ConfigError, match="with a force curve"):
         pl.fit(depth, force, indenter=exact_nodes, kernel="tensed_membrane")
 
 
