@@ -142,14 +142,14 @@ def fit(
         grid_points=grid_points,
         cache=cache,
     )
-    progress, wanted = sys.stderr.isatty(), _Wanted(directory, report, json)
+    progress, destination = sys.stderr.isatty(), _Destination(directory, report, json)
     sources = config.sources()
     if config.pool:
         pooled = pool_sources(config, sources, progress=progress)
-        _write(pooled, "pool", "Pooled fit", wanted)
+        _write(pooled, "pool", "Pooled fit", destination)
     elif [source.name for source in sources] == [str(config.curves[0])]:
         stem = config.curves[0].stem
-        _write(fit_source(config, sources[0], progress=progress), f"{stem}-fit", stem, wanted)
+        _write(fit_source(config, sources[0], progress=progress), f"{stem}-fit", stem, destination)
     else:
         try:
             fits = fit_sources(config, sources, directory, progress=True)
@@ -157,11 +157,11 @@ def fit(
             hint = f"; finished fits are in {directory}, and the same command continues"
             typer.echo(f"interrupted{hint if directory else ''}", err=True)
             raise typer.Exit(INTERRUPTED) from None
-        _write_table(fits, wanted)
+        _write_table(fits, destination)
 
 
-class _Wanted(NamedTuple):
-    """What the command prints and writes."""
+class _Destination(NamedTuple):
+    """The output folder, whether to write a page, and whether to print JSON."""
 
     directory: Path | None
     report: bool
@@ -171,40 +171,40 @@ class _Wanted(NamedTuple):
         return (self.directory or Path()) / f"{name}.html"
 
 
-def _write(fit: Fit | PooledFit, name: str, title: str, wanted: _Wanted) -> None:
+def _write(fit: Fit | PooledFit, name: str, title: str, destination: _Destination) -> None:
     """Print a fit and write its files."""
     from pellicle.fitting.report.figures import save_figure
     from pellicle.fitting.report.page import save_report
 
-    if wanted.json:
+    if destination.json:
         print_json(fit.to_dict())
     else:
         print_fit(fit)
     files = []
-    if wanted.directory is not None:
-        files.append(fit.save(wanted.directory / f"{name}.json"))
-        files.append(save_figure(fit, wanted.directory / f"{name}.png"))
-    if wanted.report:
-        files.append(save_report(fit, wanted.page(name), title))
+    if destination.directory is not None:
+        files.append(fit.save(destination.directory / f"{name}.json"))
+        files.append(save_figure(fit, destination.directory / f"{name}.png"))
+    if destination.report:
+        files.append(save_report(fit, destination.page(name), title))
     for path in files:
-        typer.echo(f"wrote {path}", err=wanted.json)
+        typer.echo(f"wrote {path}", err=destination.json)
 
 
-def _write_table(fits: ManyFits, wanted: _Wanted) -> None:
+def _write_table(fits: ManyFits, destination: _Destination) -> None:
     """Print many fits and write their page."""
     from pellicle.fitting.report.page import save_report
 
     count, files = len(fits.rows), list(fits.files)
-    if wanted.json:
+    if destination.json:
         print_json({"curves": fits.rows})
     else:
         print_fits(fits.rows)
     if fits.resumed:
-        typer.echo(f"{fits.resumed} of {count} fits were done before", err=wanted.json)
-    if wanted.report:
-        files.append(save_report(fits.rows, wanted.page("fits"), f"Fits of {count} curves"))
+        typer.echo(f"{fits.resumed} of {count} fits were done before", err=destination.json)
+    if destination.report:
+        files.append(save_report(fits.rows, destination.page("fits"), f"Fits of {count} curves"))
     for path in files:
-        typer.echo(f"wrote {path}", err=wanted.json)
+        typer.echo(f"wrote {path}", err=destination.json)
     if fits.failed:
         typer.echo(f"{fits.failed} of {count} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)

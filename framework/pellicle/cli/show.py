@@ -35,10 +35,10 @@ def show(
         return
     result = load(results)
     print_origin(result.dataset)
-    wanted, done = result.planned_steps, result.dataset.sizes["step"]
+    total, done = result.planned_steps, result.dataset.sizes["step"]
     print_steps(result)
     print_contact(result)
     exit_by_convergence(result)
-    if done < wanted:
-        typer.echo(f"interrupted: {done} of {wanted} steps are finished; run it again", err=True)
+    if done < total:
+        typer.echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
         raise typer.Exit(NOT_CONVERGED)

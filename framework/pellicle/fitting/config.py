@@ -71,13 +71,13 @@ def _fixed(value: object) -> dict[str, float]:
     if not isinstance(value, Mapping):
         raise ConfigError(f"{shown(value)} is not a table; give one such as {{tension = 0}}")
     values = {}
-    for name, given in value.items():
+    for name, entry in value.items():
         if name not in FIXABLE:
             raise ConfigError(f"is not a parameter; {nearest(name, FIXABLE)}", str(name))
         parameter = FIXABLE[name]
         least = 1 / LARGEST if parameter.logarithmic else max(parameter.minimum, -LARGEST)
         try:
-            values[name] = Quantity(parameter.unit, at_least=least, at_most=LARGEST)(given)
+            values[name] = Quantity(parameter.unit, at_least=least, at_most=LARGEST)(entry)
         except ValueError as error:
             raise ConfigError(str(error), name) from None
     if {MODULUS.name, TENSION.name} <= values.keys():

@@ -236,8 +236,8 @@ def _fit_pool(
     factor = max(excess / degrees, 1.0) if chdtrc(degrees, excess) < _CHANCE else 1.0
     threshold = factor * chi_squared_threshold(sum(single.freedom for _, single in singles))
     points = [CONTACT_POINT.of_curve(index) for index in range(len(singles))]
-    wanted = [*shared, *(p for p in points if contact_points and p in pool.free)]
-    profile = profile_likelihood(pool, start, threshold, wanted, pool.without_tension, report)
+    parameters = [*shared, *(p for p in points if contact_points and p in pool.free)]
+    profile = profile_likelihood(pool, start, threshold, parameters, pool.without_tension, report)
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = []
     for index, part in enumerate(pool.parts(profile.best.parameters)):
@@ -297,7 +297,7 @@ def _agreement(curves: Sequence[PooledCurve], excess: float, degrees: int, facto
         return f"the curves agree ({figures} against each on its own)"
     worst = max(curves, key=lambda curve: curve.chi_squared - curve.chi_squared_alone)
     return (
-        f"the curves do not agree on modulus and tension ({figures} against each on its own), "
+        f"the curves do not agree on the shared parameters ({figures} against each on its own), "
         f"{worst.name} least of all; the intervals are widened by {np.sqrt(factor):.2g}"
     )
 

@@ -1,4 +1,4 @@
-"""What the fit of one curve and the pooled fit of several have in common."""
+"""The common part of the fit of one curve and the pooled fit of several."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class FitResult:
         "one curve of a solid that relaxes, softens with depth or adheres can look the same: a "
         "second speed or a dwell, a second radius, and the retract would tell"
     )
-    """What a tension can be mistaken for, and which measurement tells them apart."""
+    """Effects that look like a tension, and measurements that tell them apart."""
 
     reduced_modulus: Estimate
     """E* [Pa]."""

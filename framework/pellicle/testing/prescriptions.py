@@ -84,16 +84,16 @@ def _value(prescription: Prescription, step: Equilibrium) -> float | None:
     return float(data[name].item()) if name in data and data[name].size == 1 else None
 
 
-def _values(prescription: Prescription, given: Sequence[float]) -> list[float]:
+def _values(prescription: Prescription, candidates: Sequence[float]) -> list[float]:
     _, steps, _ = _known()
-    values: Sequence[float | None] = given or [_value(prescription, s) for s in steps]
-    known = [value for value in values if value is not None]
+    values: Sequence[float | None] = candidates or [_value(prescription, s) for s in steps]
+    numbers = [value for value in values if value is not None]
     require(
-        len(known) == len(steps),
+        len(numbers) == len(steps),
         f"no variable {prescription.type_name!r} in a result; report it, or call "
         "check_prescription with two values",
     )
-    return known
+    return numbers
 
 
 def report_is_as_declared(prescription: Prescription, values: Sequence[float]) -> None:

@@ -112,8 +112,8 @@ class XYFigure(TableFigure):
 def one_axis(dims: Iterable[object], chosen: str | None, field: str) -> None:
     """Refuse a ``chosen`` dimension that is not among ``dims``."""
     if chosen is not None and chosen not in dims:
-        known = nearest(chosen, map(str, dims))
-        raise ConfigError(f"{chosen!r} is not an axis of the table; {known}", field)
+        suggestion = nearest(chosen, map(str, dims))
+        raise ConfigError(f"{chosen!r} is not an axis of the table; {suggestion}", field)
 
 
 def along(table: xr.Dataset, dim: str | None) -> list[dict[str, int]]:
@@ -129,9 +129,9 @@ def label(template: str | None, data: xr.Dataset, dim: str | None) -> str:
     study for which ``data`` has only one.
     """
     if template is not None:
-        known = names(data)
+        variables = names(data)
         return _PLACEHOLDER.sub(
-            lambda match: f"{np.nanmean(np.asarray(evaluate(match[1], known))):.3g}", template
+            lambda match: f"{np.nanmean(np.asarray(evaluate(match[1], variables))):.3g}", template
         )
     axes = [dim] if dim else json.loads(data.attrs.get("axes", "[]"))
     return ", ".join(_value(data[axis]) for axis in axes if data[axis].ndim == 0)

@@ -77,8 +77,8 @@ class Compliance(XYFigure):
         axes.legend(frameon=False, fontsize="small")
 
     def _columns(self, picked: xr.Dataset, q: Array, values: Array) -> tuple[Array, Array]:
-        known = {**names(picked), "q": q, "compliance": values}
-        x, y = (np.asarray(evaluate(text, known)) + 0 * q for text in (self.x, self.y))
+        variables = {**names(picked), "q": q, "compliance": values}
+        x, y = (np.asarray(evaluate(text, variables)) + 0 * q for text in (self.x, self.y))
         return x, y
 
 

@@ -193,11 +193,11 @@ def _some(shown: int, count: int, what: str) -> str:
 
 
 def _status(result: Result) -> Notice:
-    wanted = result.planned_steps
+    total = result.planned_steps
     done, failed = result.dataset.sizes["step"], result.failures()
     sentences = []
-    if done < wanted:
-        sentences.append(f"The run ended early: {done} of {wanted} load steps are finished.")
+    if done < total:
+        sentences.append(f"The run ended early: {done} of {total} load steps are finished.")
     if failed:
         sentences.append(
             f"{len(failed)} of {done} load steps did not converge: do not rely on them."
@@ -208,7 +208,7 @@ def _status(result: Result) -> Notice:
     if coarse := result.coarse():
         sentences.append(f"In {len(coarse)} of {done} the cells are too coarse for the contact.")
     details = [f"Step {step}: {message}" for step, message in (*failed, *coarse)]
-    return Notice(" ".join(sentences), not details and done == wanted, details)
+    return Notice(" ".join(sentences), not details and done == total, details)
 
 
 def _status_of_study(table: xr.Dataset, count: int) -> Notice:
@@ -289,7 +289,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
     numbers = [_column(name, table[name]) for name in names]
     rows: list[list[str | Cell]] = []
     for index, row in enumerate(runs):
-        done, wanted, word = progress_of(row)
+        done, total, word = progress_of(row)
         point = [
             _text(row[name].item(), factor) for name, (_, factor) in zip(axes, varied, strict=True)
         ]
@@ -299,7 +299,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
         ]
         shown = mapped.index(index) if index in mapped else None
         run = Cell(str(row["run"].item()), frame=shown)
-        rows.append([run, *point, f"{done}/{wanted}", *last, _verdict(word)])
+        rows.append([run, *point, f"{done}/{total}", *last, _verdict(word)])
     columns = [
         Column("run", meaning="name of its file in the folder runs", words=True),
         *(column for column, _ in varied),

@@ -44,7 +44,7 @@ def exact_nodes() -> SimulatedCurve:
     )
     return SimulatedCurve(
         sphere,
-        material.given,
+        material.table,
         planned.depths,
         simulation._RATIOS,
         np.log(forces),

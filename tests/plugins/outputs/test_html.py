@@ -327,7 +327,7 @@ def test_study_with_failures(tmp_path: Path) -> None:
     with pytest.warns(pl.ConvergenceWarning):
         pl.run_study(study, tmp_path, progress=False, threads=1)
     page = Page(tmp_path / "study.html")
-    assert "of 2 runs 1 did not converge" in page.words
+    assert "Of 2 runs 1 did not converge" in page.words
     assert re.search(r"\w{16} \(solver.max_iterations = 2\): the surface", page.words)
     statuses = [row["status"] for row in page.table("The last load step")]
     assert statuses == ["NOT CONVERGED", "converged"]

@@ -51,7 +51,7 @@ def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve 
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
 
-    given = {
+    overrides = {
         name.replace("_", " "): value
         for name, value in calibration.model_dump(exclude_none=True).items()
     }
@@ -63,7 +63,7 @@ def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve 
         with _pellicle_errors(path):
             loader = get_recipe(path).loader
             try:
-                recordings = loader(path, meta_override=given)
+                recordings = loader(path, meta_override=overrides)
             except NotImplementedError:
                 # Formats that always hold their calibration do not take another.
                 recordings = loader(path)
@@ -71,7 +71,7 @@ def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve 
             label = "" if len(recordings) == 1 else str(recording["metadata"]["enum"])
             try:
                 with _pellicle_errors(path):
-                    curves[label] = _curve(path, recording, given, segment)
+                    curves[label] = _curve(path, recording, overrides, segment)
             except PellicleError as error:
                 curves[label] = error
     messages = tuple(dict.fromkeys(f"afmformats: {warning.message}" for warning in caught))
@@ -101,11 +101,11 @@ def _pellicle_errors(path: Path) -> Iterator[None]:
 
 
 def _curve(
-    path: Path, recording: Mapping[str, Any], given: Mapping[str, float], segment: str
+    path: Path, recording: Mapping[str, Any], overrides: Mapping[str, float], segment: str
 ) -> Curve:
     """Return one segment of one curve in SI."""
     data, metadata = recording["data"], recording["metadata"]
-    for name, value in given.items():
+    for name, value in overrides.items():
         if not np.isclose(metadata.get(name, value), value, rtol=1e-6):
             raise ConfigError(
                 f"{path}: holds a {name} of {metadata[name]:g} already, and this format takes no "
@@ -113,7 +113,7 @@ def _curve(
                 name.replace(" ", "_"),
             )
     force = np.asarray(data["force"], dtype=float)
-    stiffness = metadata.get(_SPRING, given.get(_SPRING))
+    stiffness = metadata.get(_SPRING, overrides.get(_SPRING))
     if _TIP in data:
         tip = np.asarray(data[_TIP], dtype=float)
     else:

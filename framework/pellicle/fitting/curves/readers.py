@@ -74,16 +74,16 @@ def gather(
     if isinstance(curves, Mapping):
         files: list[tuple[Any, dict[str, Any]]] = [(name, {}) for name in curves]
     else:
-        given = [curves] if isinstance(curves, (str, Path)) else curves
-        files = [file for text in given for path in expanded(text) for file in _files(path)]
+        paths = [curves] if isinstance(curves, (str, Path)) else curves
+        files = [file for text in paths for path in expanded(text) for file in _files(path)]
     if not files:
         raise ConfigError("holds no curve; give files, or a folder of them", "curves")
     sources = []
     for (file, listed), values in zip(files, fields_of_files(per_file, len(files)), strict=True):
         fields = values | listed
-        known = {name: fields.pop(name) for name in Calibration.model_fields if name in fields}
+        settings = {name: fields.pop(name) for name in Calibration.model_fields if name in fields}
         try:
-            own = Calibration(**calibration.model_dump() | known)
+            own = Calibration(**calibration.model_dump() | settings)
             if isinstance(curves, Mapping):
                 position, force = curves[file]
                 # `clean` checks the arrays.
@@ -112,17 +112,17 @@ def fields_of_files(per_file: Mapping[str, Sequence[Any]], count: int) -> list[d
     return [{name: values[n] for name, values in per_file.items()} for n in range(count)]
 
 
-def expanded(given: str | Path, folder: str | Path = "") -> list[Path]:
+def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is."""
-    path = Path(folder, given)
-    if path.exists() or not _PATTERN.search(str(given)):
+    path = Path(folder, pattern)
+    if path.exists() or not _PATTERN.search(str(pattern)):
         return [path]
-    anchor, files = Path(given).anchor, []
+    anchor, files = Path(pattern).anchor, []
     # Before Python 3.13, a pattern such as "**.csv" is a ValueError.
     with suppress(ValueError):
-        files = sorted(Path(anchor or folder).glob(str(Path(given).relative_to(anchor))))
+        files = sorted(Path(anchor or folder).glob(str(Path(pattern).relative_to(anchor))))
     if not files:
-        raise ConfigError(f"{given}: matches no file; give files, or a folder of them", "curves")
+        raise ConfigError(f"{pattern}: matches no file; give files, or a folder of them", "curves")
     return files
 
 

@@ -95,7 +95,7 @@ def simulate(
     curve = partial(
         SimulatedCurve,
         indenter,
-        solid.given,
+        solid.table,
         planned.depths,
         _RATIOS,
         width=planned.width,

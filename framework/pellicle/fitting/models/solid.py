@@ -32,7 +32,7 @@ class Solid:
     poissons_ratio: float | None
 
     @property
-    def given(self) -> dict[str, Any]:
+    def table(self) -> dict[str, Any]:
         """The table of the kernel without modulus and tension."""
         table: dict[str, Any] = self.kernel.model_dump(mode="json", exclude_none=True)
         for path in (self.modulus, self.tension):
@@ -41,7 +41,7 @@ class Solid:
         return table
 
 
-def solid(given: str | Mapping[str, Any], poissons_ratio: float | None = None) -> Solid:
+def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) -> Solid:
     """Return the solid that the type or the table of a kernel describes.
 
     ``poissons_ratio`` is used if the kernel needs one and its table has none.
@@ -52,7 +52,7 @@ def solid(given: str | Mapping[str, Any], poissons_ratio: float | None = None) -
         The kernel is not valid, has no field for the reduced modulus or the tension, or has a value
         for one of them.
     """
-    table: Any = {"type": given} if isinstance(given, str) else dict(given)
+    table: Any = {"type": spec} if isinstance(spec, str) else dict(spec)
     try:
         modulus, _ = _field(table, "reduced_modulus")
         tension, _ = _field(table, "tension")

@@ -46,16 +46,16 @@ def save_report(fit: Fit | PooledFit | Rows, path: Path, title: str) -> Path:
     advice: list[Block] = []
     content: dict[str, Any] = {"curves": fit}
     if isinstance(fit, (Fit, PooledFit)):
-        kind, content, (results, given) = "Fit", fit.to_dict(), _fit(fit)
+        kind, content, (results, input_blocks) = "Fit", fit.to_dict(), _fit(fit)
         advice = [Text(_sentence(fit.advice))] if fit.advice else []
     else:
-        kind, (results, given) = "Fits", _many(fit)
+        kind, (results, input_blocks) = "Fits", _many(fit)
     figures = [Picture(svg(p.draw, SIZE), p.caption, p.caption) for p in panels(fit)]
     sections = [
         Section("Result", results),
         Section("Figures", figures),
         Section("More informative experiments", advice),
-        Section("Inputs", given),
+        Section("Inputs", input_blocks),
         Section("As JSON", [Code(as_json(content), "All numbers, in SI.", f"{path.stem}.json")]),
     ]
     now = datetime.now(UTC).isoformat(" ", timespec="seconds").replace("+00:00", " UTC")

@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.fitting.models.force_model import MODULUS, TENSION, Coordinates, Parameter
 
-from .initial_guess import KEPT
+from .initial_guess import GUESSES
 from .likelihood import ChiSquared, Likelihood, Minimum, Range, least
 
 _Value = TypeVar("_Value")
@@ -106,7 +106,7 @@ class Pool(ChiSquared):
         median.
         """
         pairs = list(zip(self.members, single, strict=True))
-        informative = sorted(pairs, key=lambda pair: pair[0].deviations(pair[1])[MODULUS])[:KEPT]
+        informative = sorted(pairs, key=lambda pair: pair[0].deviations(pair[1])[MODULUS])[:GUESSES]
         tries = [part for _, part in informative]
         return least(
             self._minimise(single, {p: shared[p] for p in self.shared})

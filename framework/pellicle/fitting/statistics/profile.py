@@ -108,11 +108,11 @@ def profile_likelihood(
     likelihood: ChiSquared,
     best: Minimum,
     threshold: float,
-    wanted: Sequence[Parameter],
+    parameters: Sequence[Parameter],
     without_tension: Callable[[Minimum], Minimum],
     report: Callable[[str], None] = lambda stage: None,
 ) -> ProfileResult:
-    """Return the minimum near ``best``, the one without tension, and intervals of ``wanted``.
+    """Return the minimum near ``best``, the one without tension, and intervals of ``parameters``.
 
     ``without_tension`` finds a minimum without tension from one with it.  The intervals end where
     the profile of χ² exceeds its minimum by ``threshold``, and are widened by the change of the
@@ -128,7 +128,7 @@ def profile_likelihood(
         ends: dict[Parameter, Ends] = {}
         failures = []
         try:
-            for parameter in wanted:
+            for parameter in parameters:
                 report(f"interval of {parameter.name}")
                 try:
                     ends[parameter] = confidence_interval(likelihood, best, parameter, threshold)
@@ -238,10 +238,10 @@ def _end(
         share = min(2 * share, 1.0)
     if above == 0:
         return value + share * span
-    # brentq evaluates both ends again, which are known.
-    known = {inside: below, share: above}
+    # brentq evaluates both ends again, whose values are known.
+    values = {inside: below, share: above}
     root = brentq(
-        lambda at: known[at] if at in known else excess(at),
+        lambda at: values[at] if at in values else excess(at),
         inside,
         share,
         xtol=_LEAST,
