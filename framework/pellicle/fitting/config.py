@@ -117,7 +117,7 @@ class FitConfig(FromFile, Calibration):
         Indenter | HasForceCurve | dict[str, Any],
         PlainValidator(_indenter, json_schema_input_type=dict[str, Any] | str),
         PlainSerializer(_as_json),
-        Field(description="what was pressed in: its type and fields"),
+        Field(description="the indenter: its type and fields"),
     ]
     poissons_ratio: PoissonsRatio | None = Field(
         None, description="of the solid, to get Young's modulus as well"

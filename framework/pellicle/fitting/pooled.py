@@ -340,6 +340,6 @@ def _undecided(modulus: Estimate, tension: Estimate) -> tuple[str, ...]:
     if None not in (modulus.low, modulus.high, tension.high):
         return ()
     return (
-        "the curves together cannot tell modulus and tension apart: an interval is open, its value "
-        "is one of many; add curves of another radius or range",
+        "the curves together cannot tell modulus and tension apart: an interval is open, and its "
+        "value is one of many; add curves of another radius or range",
     )

@@ -25,7 +25,7 @@ def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:
     if "adhesion" in codes:
         return "no tension is needed where the force dips before contact: that is adhesion"
     checks = "a check" if len(codes) == 1 else "checks"
-    return f"this shows none, because the model fails {checks} ({', '.join(codes)})"
+    return f"this is not evidence of one, because the model fails {checks} ({', '.join(codes)})"
 
 
 @dataclass(frozen=True)

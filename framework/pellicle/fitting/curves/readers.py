@@ -175,7 +175,7 @@ def read(
             # Only afmformats can recognise the file of an instrument.
             hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
             if tables and suffix not in _HDF5:
-                hint = f"; its first line has {_first_cells(path)}{hint}"
+                hint = f"; its first line is {_first_cells(path)}{hint}"
     if not tables:
         raise StorageError(
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "

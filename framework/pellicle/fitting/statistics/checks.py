@@ -160,7 +160,7 @@ def _check_contact(residuals: Residuals, before: NoiseEstimate) -> NoiseEstimate
         failed.append(
             _misfit(
                 "misfit",
-                f"the residuals are {scatter / noise:.2g} times the noise before it",
+                f"the residuals are {scatter / noise:.2g} times the noise before contact",
                 residuals,
             )
         )

@@ -71,7 +71,7 @@ def undecided(
     which = "modulus" if modulus.low is None or modulus.high is None else "tension"
     text = (
         f"the curve cannot tell modulus and tension apart: the interval of the {which} is open, "
-        "its value is one of many"
+        "and its value is one of many"
     )
     now, others = _designs(likelihood, _with_tension(likelihood, parameters, tension))
     if min(design.worse for design in (now, *others)) < _USELESS:

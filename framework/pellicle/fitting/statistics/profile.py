@@ -143,8 +143,8 @@ def profile_likelihood(
             if failures:
                 messages += (
                     f"the search for the interval of {', '.join(failures)} did not converge, and "
-                    "it is left open: the curve does not tell the parameters apart; fix one of "
-                    "them, or fit less of the baseline",
+                    "the interval is left open: the curve does not tell the parameters apart; fix "
+                    "one of them, or fit less of the baseline",
                 )
             bounds = likelihood.deviations(best.parameters)
             return ProfileResult(likelihood, best, without, wider, bounds, messages)
@@ -164,8 +164,8 @@ def widen(
     if TENSION in ends and tension:
         changes.append(f"the tension by {100 * shift[TENSION] / tension:.2g} %")
     message = (
-        f"the force curve is simulated, to {100 * likelihood.accuracy:.2g} %; half as many cells "
-        f"change {' and '.join(changes)}, and the intervals are widened by that"
+        f"the force curve is simulated to {100 * likelihood.accuracy:.2g} %; half as many cells "
+        f"change {' and '.join(changes)}, and the intervals are widened by these changes"
     )
     wider: dict[Parameter, Ends] = {}
     for p, (low, high) in ends.items():
