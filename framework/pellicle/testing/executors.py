@@ -234,7 +234,7 @@ def messages_are_reported(executor: Executor, observations: Observations) -> Non
         sent = [("begun", task.number), ("nearly done", task.number)]
         received = [tuple(message) for owner, message in healthy.messages if owner is task]
         in_order = [message for message in sent if message in received]
-        require(received == in_order, f"the messages of {task.name} are {received}, not {sent}")
+        require(received == in_order, f"{task.name} sent {sent}, and report received {received}")
 
 
 def report_that_raises_ends_the_tasks(executor: Executor, observations: Observations) -> None:

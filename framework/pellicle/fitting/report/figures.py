@@ -67,11 +67,11 @@ def panels(fit: Fit | PooledFit | Rows) -> list[Panel]:
     """
     if isinstance(fit, Fit):
         caption = "Data, fit, and the fit without tension; below, the residuals of both."
-        panels = [Panel(partial(_with_residuals, fit), caption)]
+        drawings = [Panel(partial(_with_residuals, fit), caption)]
         if not (fit.reduced_modulus.held or fit.tension.held):
             caption = "The pairs of modulus and tension that describe the curve."
-            panels.append(Panel(lambda part: likelihood_map(fit, part.add_subplot()), caption))
-        return panels
+            drawings.append(Panel(lambda part: likelihood_map(fit, part.add_subplot()), caption))
+        return drawings
     if isinstance(fit, PooledFit):
         data = "Data and fit of each curve, relative to largest depth and force; below, residuals."
         profiles = (
