@@ -57,7 +57,9 @@ def test_name_that_is_none(name: str, tmp_path: Path) -> None:
 
 def test_name_of_a_component_that_there_is(tmp_path: Path) -> None:
     """A type that is taken in the family, by whom it says; another family may have it."""
-    with pytest.raises(ConfigError, match=r"'half_space' is the type of a kernel already, of pell"):
+    with pytest.raises(
+        ConfigError, match=r"'half_space' is already the type of a kernel from pell"
+    ):
         write_plugin("kernel", "half-space", tmp_path)
     folder = write_plugin("indenter", "half-space", tmp_path)
     assert '"indenter.half_space" = ' in (folder / "pyproject.toml").read_text(encoding="utf-8")
@@ -71,7 +73,7 @@ def test_name_of_a_module_that_there_is(tmp_path: Path) -> None:
 
 def test_family_that_is_none(tmp_path: Path) -> None:
     """Families are named."""
-    with pytest.raises(ConfigError, match="'kernal' is no family; give one of kernel, indenter"):
+    with pytest.raises(ConfigError, match="'kernal' is not a family; give one of kernel, indenter"):
         write_plugin("kernal", "graded", tmp_path)
 
 

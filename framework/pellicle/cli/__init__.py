@@ -1,6 +1,6 @@
-"""The command line: parses and prints, nothing else. One file for each command.
+"""The command line, one file for each command; it only parses and prints.
 
-Heavy imports are inside the commands, so that ``pellicle --help`` is there at once.
+Heavy imports are inside the commands, so that ``pellicle --help`` answers at once.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class _Group(TyperGroup):
                 typer.echo(f"error: {line}", err=True)
             raise typer.Exit(BAD_INPUT) from None
         except Exception as error:
-            # Noted by the orchestrator: the fault of a component, whose author wants its place.
+            # The orchestrator adds a note that names the component at fault.
             if not (notes := getattr(error, "__notes__", ())):
                 raise
             typer.echo(f"error: {notes[0]}: {type(error).__name__}: {error}", err=True)

@@ -55,13 +55,16 @@ def fit(
     ] = None,
     baseline: Annotated[
         str | None,
-        typer.Option(help="Fitted of the force before contact: none (default), offset, slope."),
+        typer.Option(
+            help="Part of the force before contact to fit: none (default), offset, slope."
+        ),
     ] = None,
     segment: Annotated[
         str | None, typer.Option(help="Pass to fit: approach (default), retract.")
     ] = None,
     spring_constant: Annotated[
-        str | None, typer.Option(help='Of the cantilever, to subtract its bending: "0.05 N/m".')
+        str | None,
+        typer.Option(help='That of the cantilever, to subtract its bending: "0.05 N/m".'),
     ] = None,
     sensitivity: Annotated[
         str | None, typer.Option(help='Deflection over the signal in volts: "50 nm/V".')
@@ -71,11 +74,11 @@ def fit(
     ] = False,
     contact_points: Annotated[
         bool,
-        typer.Option("--contact-points", help="With --pool: intervals of contact points."),
+        typer.Option("--contact-points", help="With --pool: intervals of contact points, too."),
     ] = False,
     executor: Annotated[
         str | None,
-        typer.Option(help="What carries out many fits, and runs: serial, processes, dask."),
+        typer.Option(help="Executor of many fits and of runs: serial, processes, dask."),
     ] = None,
     kernel: Annotated[
         str | None, typer.Option(help="Type of the solid, if it is not a half-space: coated, …")
@@ -89,7 +92,7 @@ def fit(
         ),
     ] = None,
     grid_points: Annotated[
-        int | None, typer.Option(help="Cells along each grid, where contacts are simulated.")
+        int | None, typer.Option(help="Cells along each edge of simulated contacts.")
     ] = None,
     cache: Annotated[
         Path | None, typer.Option(help="Folder that keeps simulated force curves.")
@@ -98,7 +101,10 @@ def fit(
         Path | None, typer.Option("-o", "--output", help="Folder for JSON, table and figure.")
     ] = None,
     report: Annotated[
-        bool, typer.Option("--report", help="Leave a web page, there or in the current folder.")
+        bool,
+        typer.Option(
+            "--report", help="Write a web page, to the folder of --output or the current one."
+        ),
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
@@ -136,26 +142,26 @@ def fit(
         grid_points=grid_points,
         cache=cache,
     )
-    progress, wanted = sys.stderr.isatty(), _Wanted(directory, report, json)
+    progress, destination = sys.stderr.isatty(), _Destination(directory, report, json)
     sources = config.sources()
     if config.pool:
         pooled = pool_sources(config, sources, progress=progress)
-        _write(pooled, "pool", "Pooled fit", wanted)
+        _write(pooled, "pool", "Pooled fit", destination)
     elif [source.name for source in sources] == [str(config.curves[0])]:
         stem = config.curves[0].stem
-        _write(fit_source(config, sources[0], progress=progress), f"{stem}-fit", stem, wanted)
+        _write(fit_source(config, sources[0], progress=progress), f"{stem}-fit", stem, destination)
     else:
         try:
             fits = fit_sources(config, sources, directory, progress=True)
         except KeyboardInterrupt:
-            kept = f"; what was finished is in {directory}, and the same command goes on"
-            typer.echo(f"interrupted{kept if directory else ''}", err=True)
+            hint = f"; finished fits are in {directory}, and the same command continues"
+            typer.echo(f"interrupted{hint if directory else ''}", err=True)
             raise typer.Exit(INTERRUPTED) from None
-        _write_table(fits, wanted)
+        _write_table(fits, destination)
 
 
-class _Wanted(NamedTuple):
-    """What the command prints and writes."""
+class _Destination(NamedTuple):
+    """The output folder, whether to write a page, and whether to print JSON."""
 
     directory: Path | None
     report: bool
@@ -165,47 +171,47 @@ class _Wanted(NamedTuple):
         return (self.directory or Path()) / f"{name}.html"
 
 
-def _write(fit: Fit | PooledFit, name: str, title: str, wanted: _Wanted) -> None:
+def _write(fit: Fit | PooledFit, name: str, title: str, destination: _Destination) -> None:
     """Print a fit and write its files."""
     from pellicle.fitting.report.figures import save_figure
     from pellicle.fitting.report.page import save_report
 
-    if wanted.json:
+    if destination.json:
         print_json(fit.to_dict())
     else:
         print_fit(fit)
     files = []
-    if wanted.directory is not None:
-        files.append(fit.save(wanted.directory / f"{name}.json"))
-        files.append(save_figure(fit, wanted.directory / f"{name}.png"))
-    if wanted.report:
-        files.append(save_report(fit, wanted.page(name), title))
+    if destination.directory is not None:
+        files.append(fit.save(destination.directory / f"{name}.json"))
+        files.append(save_figure(fit, destination.directory / f"{name}.png"))
+    if destination.report:
+        files.append(save_report(fit, destination.page(name), title))
     for path in files:
-        typer.echo(f"wrote {path}", err=wanted.json)
+        typer.echo(f"wrote {path}", err=destination.json)
 
 
-def _write_table(fits: ManyFits, wanted: _Wanted) -> None:
+def _write_table(fits: ManyFits, destination: _Destination) -> None:
     """Print many fits and write their page."""
     from pellicle.fitting.report.page import save_report
 
     count, files = len(fits.rows), list(fits.files)
-    if wanted.json:
+    if destination.json:
         print_json({"curves": fits.rows})
     else:
         print_fits(fits.rows)
     if fits.resumed:
-        typer.echo(f"{fits.resumed} of {count} fits were done before", err=wanted.json)
-    if wanted.report:
-        files.append(save_report(fits.rows, wanted.page("fits"), f"Fits of {count} curves"))
+        typer.echo(f"{fits.resumed} of {count} fits were done before", err=destination.json)
+    if destination.report:
+        files.append(save_report(fits.rows, destination.page("fits"), f"Fits of {count} curves"))
     for path in files:
-        typer.echo(f"wrote {path}", err=wanted.json)
+        typer.echo(f"wrote {path}", err=destination.json)
     if fits.failed:
         typer.echo(f"{fits.failed} of {count} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
 
 def _override(text: str) -> str:
-    """Return ``name=value`` of ``--fix`` as ``--set`` has it; a bare number is in SI."""
+    """Return ``name=value`` of ``--fix`` in the form of ``--set``; a bare number is in SI."""
     name, equals, value = text.partition("=")
     if not equals:
         raise ConfigError(f"{text!r} is not of the form name=value, e.g. tension=0", "fix")

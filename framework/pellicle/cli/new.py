@@ -13,7 +13,9 @@ from pellicle.errors import ConfigError, StorageError
 def new(
     path: Annotated[
         Path | None,
-        typer.Argument(help="File to write, indent.toml; with --plugin, the component's name."),
+        typer.Argument(
+            help="File to write (default: indent.toml); with --plugin, the component's name."
+        ),
     ] = None,
     plugin: Annotated[
         str | None,

@@ -22,7 +22,7 @@ def plot(
         Path, typer.Argument(help="Result file (.h5), or the folder or study.h5 of a study.")
     ],
     directory: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder; that of the result.")
+        Path | None, typer.Option("-o", "--output", help="Folder (default: that of the result).")
     ] = None,
     formats: Annotated[
         list[Format] | None, typer.Option("--format", help="png, svg or pdf; repeat for several.")

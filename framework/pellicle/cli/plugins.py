@@ -13,7 +13,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
     """List the components that are installed, and what is broken and why."""
     from pellicle.plugins import registry
 
-    known = registry()
+    contents = registry()
     rows = [
         {
             "family": family,
@@ -22,7 +22,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
             "version": registered.origin.version,
             "description": registered.summary,
         }
-        for family, members in known.components.items()
+        for family, members in contents.components.items()
         for registered in members.values()
     ]
     broken = [
@@ -32,7 +32,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
             "version": broken.origin.version,
             "error": broken.error,
         }
-        for broken in known.broken
+        for broken in contents.broken
     ] + [
         {
             "entry_point": f"{family}.{type_}",
@@ -40,9 +40,9 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
             "version": ", ".join(owner.version for owner in owners),
             "error": f"claimed by {' and by '.join(map(str, owners))}",
         }
-        for (family, type_), owners in known.clashes.items()
+        for (family, type_), owners in contents.clashes.items()
     ]
-    disabled = [str(origin) for origin in known.disabled]
+    disabled = [str(origin) for origin in contents.disabled]
     if json:
         print_json({"components": rows, "broken": broken, "disabled": disabled})
         return

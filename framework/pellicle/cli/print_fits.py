@@ -1,4 +1,4 @@
-"""Prints fits."""
+"""Print fits on the terminal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def print_fit(fit: FitResult) -> None:
 
     rows = []
     for name, estimate in fit.estimates().items():
-        ends = "held" if estimate.held else interval_text(estimate.low, estimate.high)
+        ends = "fixed" if estimate.held else interval_text(estimate.low, estimate.high)
         value = f"{estimate.value:.4g}"
         rows.append({"": name, "value": value, "95 % interval": ends, "unit": estimate.unit})
     print_table(["", "value", "95 % interval", "unit"], rows)
@@ -31,7 +31,7 @@ def print_fit(fit: FitResult) -> None:
 
 
 def print_fits(rows: list[dict[str, Any]]) -> None:
-    """Print a line for each curve; the sentences of the fits are in the table that is kept."""
+    """Print a line for each curve; the table in the folder has their sentences."""
     from pellicle.fitting.result import interval_text
 
     lines = []

@@ -20,7 +20,9 @@ def run(
     file: Annotated[Path, typer.Argument(help="TOML file (`pellicle new` writes one).")],
     directory: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Folder for the results; FILE's name without .toml."),
+        typer.Option(
+            "-o", "--output", help="Folder for the results (default: FILE's name without .toml)."
+        ),
     ] = None,
     set_: Annotated[
         list[str] | None,
@@ -32,17 +34,17 @@ def run(
     threads: Annotated[
         int | None,
         typer.Option(
-            min=1, help="Threads of the Fourier transforms; if not given, what is fastest."
+            min=1, help="Threads of the Fourier transforms (default: the fastest number)."
         ),
     ] = None,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Start over, in place of whatever result there is.")
+        bool, typer.Option("--overwrite", help="Start over and replace an existing result.")
     ] = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Print what would be run, and run nothing.")
+        bool, typer.Option("--dry-run", help="Print the planned runs without executing them.")
     ] = False,
 ) -> None:
-    """Solve a run, or all runs of a study, and write the results; go on where it was interrupted.
+    """Solve a run, or all runs of a study, and write the results; continue after an interruption.
 
     Exit code 0 only if every step converged.
     """
@@ -119,7 +121,7 @@ def _run_study(
         result = execute(study, folder, progress=not quiet, overwrite=overwrite, threads=threads)
     except KeyboardInterrupt:
         typer.echo(
-            f"interrupted; finished runs are in {folder}, and the same command goes on", err=True
+            f"interrupted; finished runs are in {folder}, and the same command continues", err=True
         )
         raise typer.Exit(INTERRUPTED) from None
     if not quiet:

@@ -1,4 +1,4 @@
-"""Writes the package of a plugin: what ``pellicle new --plugin`` leaves."""
+"""Write the package of a plugin, for ``pellicle new --plugin``."""
 
 from __future__ import annotations
 
@@ -28,17 +28,19 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
     name
         The component's type, such as ``graded`` or ``graded-solid``.
     parent
-        Folder in which that of the package is made.
+        Folder in which the folder of the package is created.
 
     Raises
     ------
     ConfigError
-        No such family, or a name that cannot be used.
+        The family does not exist, or the name cannot be used.
     StorageError
         The folder exists already, or cannot be written.
     """
     if family not in FAMILIES:
-        raise ConfigError(f"{family!r} is no family; give one of {', '.join(FAMILIES)}", "--plugin")
+        raise ConfigError(
+            f"{family!r} is not a family; give one of {', '.join(FAMILIES)}", "--plugin"
+        )
     names = _names(family, name)
     folder = parent / names["distribution"]
     templates = files("pellicle.cli") / "templates"
@@ -61,7 +63,7 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
 
 
 def _names(family: str, name: str) -> dict[str, str]:
-    """Return all that is named after the component."""
+    """Return the names that derive from that of the component."""
     type_ = name.replace("-", "_")
     class_name = "".join(word.capitalize() for word in type_.split("_"))
     if not _NAME.fullmatch(name) or iskeyword(type_) or iskeyword(class_name):
@@ -70,11 +72,10 @@ def _names(family: str, name: str) -> dict[str, str]:
             "and digits, joined by - or _, such as 'graded-solid'",
             "NAME",
         )
-    found = registry()
-    if owner := found.components[family].get(type_):
+    if owner := registry().components[family].get(type_):
         what = f"{'an' if family[0] in 'aeiou' else 'a'} {family}"
         raise ConfigError(
-            f"{type_!r} is the type of {what} already, of {owner.origin}; give another", "NAME"
+            f"{type_!r} is already the type of {what} from {owner.origin}; give another", "NAME"
         )
     module = f"pellicle_{type_}"
     if find_spec(module):

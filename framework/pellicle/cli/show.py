@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -16,9 +16,6 @@ from .results import (
     print_runs,
     print_steps,
 )
-
-if TYPE_CHECKING:
-    pass
 
 
 def show(
@@ -38,10 +35,10 @@ def show(
         return
     result = load(results)
     print_origin(result.dataset)
-    wanted, done = result.planned_steps, result.dataset.sizes["step"]
+    total, done = result.planned_steps, result.dataset.sizes["step"]
     print_steps(result)
     print_contact(result)
     exit_by_convergence(result)
-    if done < wanted:
-        typer.echo(f"interrupted: {done} of {wanted} steps are there; run it again", err=True)
+    if done < total:
+        typer.echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
         raise typer.Exit(NOT_CONVERGED)

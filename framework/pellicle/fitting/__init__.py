@@ -1,1 +1,1 @@
-"""From a measured curve of force to the modulus and the tension."""
+"""Fits of reduced modulus and tension to measured force curves."""

@@ -46,12 +46,12 @@ _COMPONENTS = ("indenter", "kernel", "executor")
 
 
 def _component(value: object) -> object:
-    """Return the table of a component whose type alone is given."""
+    """Return the type of a component as its table; any other value unchanged."""
     return {"type": value} if isinstance(value, str) else value
 
 
 def _indenter(value: object) -> Any:
-    """Return an indenter, or its table where fields are missing that each file may have."""
+    """Return an indenter, or its table if it lacks fields that each file may provide."""
     table = _component(value)
     if isinstance(table, HasForceCurve):
         return table
@@ -71,13 +71,13 @@ def _fixed(value: object) -> dict[str, float]:
     if not isinstance(value, Mapping):
         raise ConfigError(f"{shown(value)} is not a table; give one such as {{tension = 0}}")
     values = {}
-    for name, given in value.items():
+    for name, entry in value.items():
         if name not in FIXABLE:
             raise ConfigError(f"is not a parameter; {nearest(name, FIXABLE)}", str(name))
         parameter = FIXABLE[name]
         least = 1 / LARGEST if parameter.logarithmic else max(parameter.minimum, -LARGEST)
         try:
-            values[name] = Quantity(parameter.unit, at_least=least, at_most=LARGEST)(given)
+            values[name] = Quantity(parameter.unit, at_least=least, at_most=LARGEST)(entry)
         except ValueError as error:
             raise ConfigError(str(error), name) from None
     if {MODULUS.name, TENSION.name} <= values.keys():
@@ -86,7 +86,7 @@ def _fixed(value: object) -> dict[str, float]:
 
 
 def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the content of a file with its paths as seen from the current folder."""
+    """Return the content of a file with its relative paths starting from ``folder``."""
     curves, cache = data.get("curves"), data.get("cache")
     curves = [curves] if isinstance(curves, str) else curves
     if isinstance(curves, list) and all(isinstance(curve, str) for curve in curves):
@@ -95,17 +95,17 @@ def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _as_json(indenter: object) -> dict[str, Any]:
-    """Return an indenter as JSON has it."""
+    """Return an indenter as JSON data."""
     if isinstance(indenter, Component):
         return indenter.model_dump(mode="json", exclude_none=True)
     return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
 
 
 class FitConfig(FromFile, Calibration):
-    """What is fitted to which curves, and how.
+    """Configuration of a fit: curves, indenter, solid, and options.
 
-    Keyword arguments of `fit`, `fit_many` and `fit_pooled`, options of ``pellicle fit`` and the
-    keys of a TOML file have the names of these fields, and make such an object.
+    The keyword arguments of `fit`, `fit_many` and `fit_pooled`, the options of ``pellicle fit`` and
+    the keys of a TOML file have the names of these fields.
     """
 
     curves: Annotated[
@@ -117,7 +117,7 @@ class FitConfig(FromFile, Calibration):
         Indenter | HasForceCurve | dict[str, Any],
         PlainValidator(_indenter, json_schema_input_type=dict[str, Any] | str),
         PlainSerializer(_as_json),
-        Field(description="what was pressed in: its type and fields"),
+        Field(description="the indenter: its type and fields"),
     ]
     poissons_ratio: PoissonsRatio | None = Field(
         None, description="of the solid, to get Young's modulus as well"
@@ -132,7 +132,9 @@ class FitConfig(FromFile, Calibration):
         BeforeValidator(_fixed),
         Field(description="parameters that are not fitted, with their values"),
     ] = Field(default_factory=dict)
-    baseline: Baseline = Field("none", description="what is fitted of the force before contact")
+    baseline: Baseline = Field(
+        "none", description="part of the force before contact that is fitted"
+    )
     segment: Segment = Field("approach", description="the pass that is fitted")
     per_file: Annotated[
         dict[str, tuple[Any, ...]],
@@ -149,7 +151,7 @@ class FitConfig(FromFile, Calibration):
         Executor,
         FromRegistry(),
         BeforeValidator(_component),
-        Field(description="what carries out many fits and simulations"),
+        Field(description="executor of many fits and of simulations"),
     ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
     cache: Annotated[Path | None, Field(description="folder that keeps simulated force curves")] = (
         None
@@ -163,7 +165,8 @@ class FitConfig(FromFile, Calibration):
     def _check(self) -> Self:
         if self.contact_points and not self.pool:
             raise ConfigError(
-                "is of a pool; otherwise they have intervals anyway", "contact_points"
+                "needs pool = true; fits of single curves always have these intervals",
+                "contact_points",
             )
         if self.kernel is not None:
             self._solid = solid(self.kernel, self.poissons_ratio)
@@ -198,9 +201,9 @@ class FitConfig(FromFile, Calibration):
     ) -> Self:
         """Return a configuration with options in place of the values of another or of a TOML file.
 
-        An option that is None keeps the value of ``base``.  One that is not a field of the
-        configuration is a field of the indenter; a list as such, or as spring_constant or
-        sensitivity, has a value for each file.  Overrides replace values and options.
+        An option that is None keeps the value of ``base``.  An option that is not a field of the
+        configuration is a field of the indenter; a list for such a field, for spring_constant or
+        for sensitivity has one value for each file.  Overrides replace values and options.
 
         Raises
         ------
@@ -239,7 +242,7 @@ class FitConfig(FromFile, Calibration):
         return Calibration(spring_constant=self.spring_constant, sensitivity=self.sensitivity)
 
     def sources(self, curves: Curves | None = None) -> list[Source]:
-        """Return the curves, or other ones that are given, as they are read."""
+        """Return ``curves``, or those of the configuration if None, as read from their files."""
         return gather(
             self.curves if curves is None else curves, self.segment, self.calibration, self.per_file
         )
@@ -248,7 +251,9 @@ class FitConfig(FromFile, Calibration):
         """Return the indenter with the fields of one curve in place of its own."""
         indenter: Any = self.indenter
         if fields and not isinstance(indenter, (Indenter, Mapping)):
-            raise ConfigError(f"{', '.join(fields)} given beside an indenter that is complete")
+            raise ConfigError(
+                f"{', '.join(fields)} cannot be set: the indenter is complete already"
+            )
         for name, value in fields.items():
             indenter = replaced(indenter, name, value)
         if isinstance(indenter, HasForceCurve):
@@ -264,5 +269,7 @@ class FitConfig(FromFile, Calibration):
             closed = isinstance(indenter, HasForceCurve)
             return None if closed else solid(DEFAULT_KERNEL, self.poissons_ratio)
         if not isinstance(indenter, Indenter):
-            raise ConfigError("is given beside a force curve, which has one already", "kernel")
+            raise ConfigError(
+                "cannot be given with a force curve, which includes its solid", "kernel"
+            )
         return self._solid

@@ -39,7 +39,7 @@ class Fit(FitResult):
     noise: float
     """Standard deviation of the force [N]."""
     noise_from: str
-    """What it was estimated from."""
+    """Source of the noise estimate."""
     points: int
     """Number of rows that were used."""
     likelihood: Likelihood
@@ -52,9 +52,9 @@ class Fit(FitResult):
         return [noise, *super().sentences]
 
     def model(self) -> dict[str, Any]:
-        """Return indenter and kernel that were fitted with, as JSON data.
+        """Return the indenter and the kernel of the fit as JSON data.
 
-        A kernel is there only if its force curve was simulated, without modulus and tension.
+        The kernel, without modulus and tension, is included only if the force curve was simulated.
         """
         return self.likelihood.force_model.description()
 
@@ -89,12 +89,12 @@ def fit(
     """Fit reduced modulus, tension and contact point to one measured curve.
 
     The solid is a half-space under tension unless a kernel is given; the contact is frictionless
-    and without adhesion.  Errors of the force are taken as normal, independent and equal at all
-    points; the intervals hold with 95 %.
+    and without adhesion.  Errors of the force are assumed to be normal and independent, with equal
+    variance at all points; the intervals have a confidence of 95 %.
 
     An indenter that has a force curve of its own (paraboloid, sphere, cone, flat_punch) is fitted
-    at once.  Any other, or any on another kernel, first needs a study of some 150 runs, which is
-    kept in ``cache`` and serves all curves of the same proportions.
+    at once.  Any other indenter, or any on another kernel, first needs a study of some 150 runs,
+    which is kept in ``cache`` and serves all curves of the same proportions.
 
     Parameters
     ----------
@@ -108,24 +108,25 @@ def fit(
     kernel
         Type or table of the kernel, without the modulus and the tension that are fitted.
     poissons_ratio
-        ν, to give Young's modulus as well; also that of a kernel that needs one and has none.
+        ν, to give Young's modulus as well; also used by a kernel that needs one and has none.
     fix
         Values of parameters that are not fitted, e.g. ``{"tension": 0}``: reduced_modulus,
         tension, contact_point.
     baseline
-        What is fitted of the force before contact: ``"none"`` (the default), its ``"offset"``, or
-        offset and ``"slope"``.
+        Part of the force before contact that is fitted: ``"none"`` (the default), its ``"offset"``,
+        or offset and ``"slope"``.
     segment
-        The pass that is fitted of a curve with two: ``"approach"`` (the default) or ``"retract"``.
+        The pass of a curve that is fitted: ``"approach"`` (the default) or ``"retract"``.
     spring_constant
-        That of the cantilever [N/m], if position is that of its base less its deflection: the
-        noise of the deflection is then in both position and force, which the fit accounts for.
+        Spring constant of the cantilever [N/m], if position is that of its base less its
+        deflection: the noise of the deflection is then in both position and force, which the fit
+        accounts for.
     cache, executor, grid_points
-        Of a study: the folder that keeps it (the user's cache folder), what carries it out
-        (``"serial"``), and the cells of each grid along x and y (64).
+        Options of a study: the folder that keeps it (the user's cache folder), the executor of its
+        runs (``"serial"``), and the cells of each grid along x and y (64).
     config
-        A configuration or the TOML file that has one; the other arguments, if given, replace its
-        values.  Without position and force the curve is the one that it names.
+        A configuration or its TOML file; the other arguments, if given, replace its values.
+        Without position and force, the curve that it names is fitted.
     progress
         Show the progress of a study and of the fit on a terminal.
 
@@ -134,7 +135,7 @@ def fit(
     ConfigError, PluginError
         The curve cannot be fitted, or an argument is not allowed.
     ConvergenceError, StorageError
-        A study did not come to its end.
+        A study failed, or its folder cannot be used.
     """
     config = FitConfig.merged(
         config,
@@ -153,7 +154,7 @@ def fit(
     if position is None and depth is None and force is None and config.curves:
         sources = config.sources()
         if len(sources) > 1:
-            raise ConfigError(f"hold {len(sources)} curves; use fit_many or fit_pooled", "curves")
+            raise ConfigError(f"names {len(sources)} curves; use fit_many or fit_pooled", "curves")
         return fit_source(config, sources[0], progress=progress)
     if (position is None) == (depth is None):
         raise ConfigError("give either position or depth")
@@ -180,10 +181,10 @@ def fit_source(config: FitConfig, source: Source, *, progress: bool) -> Fit:
         return replace(fit_problem(problem, report), config=config)
 
 
-def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda words: None) -> Fit:
+def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stage: None) -> Fit:
     """Return the fit of a curve whose indenter has a force curve.
 
-    ``report`` is called with what the fit is doing.
+    ``report`` is called with a description of each stage.
     """
     report("least squares")
     single = fit_single(problem.likelihood(), problem.fixed)
@@ -229,7 +230,7 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda word
 
 
 def _without_tension(likelihood: Likelihood, best: Minimum) -> Minimum:
-    """Return the least χ² without tension, near the best and near the best of a scan."""
+    """Return the minimum of χ² without tension, from ``best`` and from the best initial guess."""
     start = best.parameters | {TENSION: 0.0}
     fixed = replace(likelihood, free=tuple(p for p in likelihood.free if p != TENSION))
     return best_minimum(fixed, (start, *initial_guesses(fixed, start)[:1]))

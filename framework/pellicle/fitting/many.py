@@ -97,7 +97,7 @@ def fit_many(
 ) -> xr.Dataset:
     """Fit each of many curves on its own and return a table with a row for each.
 
-    A curve that cannot be fitted does not stop the others: its row says why.
+    A curve that cannot be fitted does not stop the others: its row has the reason.
 
     Parameters
     ----------
@@ -109,23 +109,23 @@ def fit_many(
     indenter, kernel, poissons_ratio, fix, baseline, segment, cache, grid_points, config
         As for `fit`.
     executor
-        How the fits, and the runs of a study that they need, are carried out: ``"serial"`` (the
-        default), ``"processes"``, ``"dask"``, a table such as
-        ``{"type": "processes", "workers": 2}``, or an executor.
+        Executor of the fits and of the runs of a study that they need: ``"serial"`` (the default),
+        ``"processes"``, ``"dask"``, a table such as ``{"type": "processes", "workers": 2}``, or an
+        executor.
     directory
         Folder for the table, as ``fits.h5``, ``fits.csv`` and ``fits.json``, and a file for each
-        curve in ``curves``. A fit that it holds already is not repeated.
+        curve in ``curves``. A fit that it contains already is not repeated.
     progress
         Show a bar on a terminal; without one, a line for each curve.
     **fields
-        Of the indenter, and spring_constant and sensitivity if the files lack force or deflection;
-        a list has a value for each file: ``radius=["5 um", "20 um"]``.
+        Fields of the indenter, and spring_constant and sensitivity if the files lack force or
+        deflection; a list has a value for each file: ``radius=["5 um", "20 um"]``.
 
     Returns
     -------
     xarray.Dataset
         Over ``curve``: each parameter as value, ``_low``, ``_high`` (NaN: open) and ``_bound``,
-        with noise, χ² and the messages. ``status`` is ``fitted``, or says why there is no fit.
+        with noise, χ² and the messages. ``status`` is ``fitted``, or why there is no fit.
 
     Raises
     ------
@@ -167,8 +167,8 @@ def fit_sources(
             if isinstance(problem, PellicleError):
                 raise problem
             path = _path(directory, problem, config.grid_points)
-            if (kept := _read(path)) is not None:
-                rows[number] |= kept | {"status": FITTED}
+            if (earlier := _read(path)) is not None:
+                rows[number] |= earlier | {"status": FITTED}
                 continue
             tasks.append(FitTask(number, problem.simulated(config, progress=progress), path))
         except PellicleError as error:
@@ -225,7 +225,7 @@ def _identity(problem: FitProblem, grid_points: int) -> str:
 
 
 def _read(path: Path | None) -> Row | None:
-    """Return the fit that a file keeps."""
+    """Return the fit that a file stores; None if it stores none."""
     if path is None:
         return None
     try:

@@ -1,4 +1,4 @@
-"""One modulus and one tension for several curves, of other radii or depths."""
+"""Pooled fits: one modulus and one tension for curves of several radii or depths."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from .statistics.pooled_likelihood import Pool
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 
 _CHANCE = 1e-3
-"""Probability below which a disagreement is not taken for chance."""
+"""Probability below which a disagreement is not attributed to chance."""
 _FAILING = 0.01
 """Probability that a curve without fault fails some check of the model."""
 _RARE = 0.05
-"""Probability below which the number of failing curves is not taken for chance."""
+"""Probability below which the number of failing curves is not attributed to chance."""
 _NAMED = 5
 """Largest number of failing curves that a message names."""
 
@@ -56,9 +56,9 @@ class PooledCurve:
     chi_squared_alone: float
     """χ² of the curve with a modulus and a tension of its own."""
     reduced_modulus_alone: float
-    """That modulus, E* [Pa]."""
+    """The modulus of its own, E* [Pa]."""
     tension_alone: float
-    """That tension, τ₀ [N/m]."""
+    """The tension of its own, τ₀ [N/m]."""
     failed_checks: tuple[FailedCheck, ...]
     """Checks that its residuals fail; their sentences are among the messages."""
     messages: tuple[str, ...]
@@ -76,7 +76,7 @@ class PooledCurve:
 class PooledFit(FitResult):
     """Modulus and tension that several curves of one solid share."""
 
-    _does: ClassVar[str] = "these curves do"
+    _subject: ClassVar[str] = "these curves do"
     _look_alikes: ClassVar[str] = (
         "curves of one speed on a solid that relaxes, or that adheres, can look the same: a second "
         "speed or a dwell, and the retract would tell"
@@ -110,7 +110,7 @@ class PooledFit(FitResult):
             point = curve.contact_point
             row = {"curve": curve.name, "contact_point [m]": f"{point.value:.6g}"}
             if self.contact_points:
-                ends = "held" if point.held else interval_text(point.low, point.high)
+                ends = "fixed" if point.held else interval_text(point.low, point.high)
                 row["95 % of contact_point"] = ends
             rows.append(
                 row
@@ -165,11 +165,11 @@ def fit_pooled(
     progress
         Show the progress of studies and of the fit on a terminal.
     contact_points
-        Whether to find the interval of each contact point too. Each takes searches over the
-        parameters of all curves, so that the time grows with the square of their number.
+        Whether to determine the interval of each contact point too. Each interval needs searches
+        over the parameters of all curves, so the time grows with the square of their number.
     **fields
-        Of the indenter and, if needed by files, spring_constant and sensitivity; a list has a
-        value for each file: ``radius=["5 um", "20 um"]``.
+        Fields of the indenter and, if needed by files, spring_constant and sensitivity; a list has
+        a value for each file: ``radius=["5 um", "20 um"]``.
 
     Raises
     ------
@@ -236,8 +236,8 @@ def _fit_pool(
     factor = max(excess / degrees, 1.0) if chdtrc(degrees, excess) < _CHANCE else 1.0
     threshold = factor * chi_squared_threshold(sum(single.freedom for _, single in singles))
     points = [CONTACT_POINT.of_curve(index) for index in range(len(singles))]
-    wanted = [*shared, *(p for p in points if contact_points and p in pool.free)]
-    profile = profile_likelihood(pool, start, threshold, wanted, pool.without_tension, report)
+    parameters = [*shared, *(p for p in points if contact_points and p in pool.free)]
+    profile = profile_likelihood(pool, start, threshold, parameters, pool.without_tension, report)
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = []
     for index, part in enumerate(pool.parts(profile.best.parameters)):
@@ -297,7 +297,7 @@ def _agreement(curves: Sequence[PooledCurve], excess: float, degrees: int, facto
         return f"the curves agree ({figures} against each on its own)"
     worst = max(curves, key=lambda curve: curve.chi_squared - curve.chi_squared_alone)
     return (
-        f"the curves do not agree on what they share ({figures} against each on its own), "
+        f"the curves do not agree on the shared parameters ({figures} against each on its own), "
         f"{worst.name} least of all; the intervals are widened by {np.sqrt(factor):.2g}"
     )
 
@@ -308,7 +308,7 @@ def _failures(curve: PooledCurve) -> list[FailedCheck]:
 
 
 def _doubt(curves: Sequence[PooledCurve]) -> str:
-    """Return why the curves are not evidence of a tension, if more fail a check than by chance."""
+    """Return why the curves are not evidence of a tension, if too many fail a check."""
     failing = [curve for curve in curves if _failures(curve)]
     if not failing or bdtrc(len(failing) - 1, len(curves), _FAILING) > _RARE:
         return ""
@@ -340,6 +340,6 @@ def _undecided(modulus: Estimate, tension: Estimate) -> tuple[str, ...]:
     if None not in (modulus.low, modulus.high, tension.high):
         return ()
     return (
-        "the curves together cannot tell modulus and tension apart: an interval is open, its value "
-        "is one of many; add curves of another radius or range",
+        "the curves together cannot tell modulus and tension apart: an interval is open, and its "
+        "value is one of many; add curves of another radius or range",
     )

@@ -49,7 +49,7 @@ class FitProblem:
         span = float(np.ptp(position))
         point = self.fixed.get(CONTACT_POINT)
         reach = (1 + BEFORE) * span if point is None else float(position[-1]) - point
-        # Where nothing reaches contact, the fit itself reports it.
+        # If no position reaches contact, the fit itself reports it.
         curve = simulate(
             self.indenter,  # type: ignore[arg-type]
             self.solid,
@@ -70,7 +70,7 @@ class FitProblem:
         return replace(whole, free=tuple(p for p in whole.parameters if p not in self.fixed))
 
     def check_plausible(self, point: float, modulus: float, tension: float) -> list[str]:
-        """Return warnings of results that a wrong unit or radius would give.
+        """Return warnings of implausible results, such as a wrong unit or radius causes.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What the fit of one curve and the pooled fit of several have in common."""
+"""The common part of the fit of one curve and the pooled fit of several."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from .statistics.profile import CONFIDENCE, Estimate
 
 
 def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:
-    """Return why failed checks leave no evidence of a tension; empty if they leave it."""
+    """Return why failed checks invalidate the evidence of a tension; empty if none does."""
     codes = list(dict.fromkeys(check.code for check in failed if check.of_model))
     if not codes:
         return ""
     if "adhesion" in codes:
         return "no tension is needed where the force dips before contact: that is adhesion"
     checks = "a check" if len(codes) == 1 else "checks"
-    return f"this shows none, because the model fails {checks} ({', '.join(codes)})"
+    return f"this is not evidence of one, because the model fails {checks} ({', '.join(codes)})"
 
 
 @dataclass(frozen=True)
 class FitResult:
-    """Modulus and tension, and how well they explain what was measured."""
+    """Modulus and tension, and how well they describe the measured force."""
 
-    _does: ClassVar[str] = "this curve does"
+    _subject: ClassVar[str] = "this curve does"
     _look_alikes: ClassVar[str] = (
         "one curve of a solid that relaxes, softens with depth or adheres can look the same: a "
         "second speed or a dwell, a second radius, and the retract would tell"
     )
-    """What a tension can be mistaken for, and which measurement tells them apart."""
+    """Effects that look like a tension, and measurements that tell them apart."""
 
     reduced_modulus: Estimate
     """E* [Pa]."""
@@ -54,18 +54,17 @@ class FitResult:
     messages: tuple[str, ...]
     """Warnings."""
     parameters: Coordinates
-    """Best coordinates: a value for each `Parameter`, of the modulus its natural logarithm."""
+    """Best coordinates: the value of each `Parameter`, for the modulus its natural logarithm."""
     parameters_without_tension: Coordinates
     """The same with the tension fixed at 0 (Hertz, for a paraboloid)."""
     rise: float
-    """Rise of χ² at the ends of the intervals."""
+    """Δχ² threshold, reached at the ends of the intervals."""
     failed_checks: tuple[FailedCheck, ...]
     """Checks that the residuals fail; their sentences are among the messages."""
     doubt: str
-    """Why a tension that fits better than none is not shown by this; empty if there is no reason
-    to doubt it."""
+    """Why a better fit with tension is not evidence of a tension; empty if it is."""
     config: FitConfig | None = field(default=None, kw_only=True)
-    """The configuration that was fitted with."""
+    """The configuration of the fit."""
 
     @property
     def youngs_modulus(self) -> Estimate | None:
@@ -94,8 +93,8 @@ class FitResult:
             return f"tension is needed ({figures} against none); {self._look_alikes}"
         if tension.high is not None:
             bound = f"it is below {tension.high:.3g} N/m"
-            return f"{self._does} not show tension ({figures}); {bound}"
-        return f"{self._does} not show tension ({figures}), nor set a bound on it"
+            return f"{self._subject} not show tension ({figures}); {bound}"
+        return f"{self._subject} not show tension ({figures}), nor set a bound on it"
 
     @property
     def _gain(self) -> float:
@@ -163,7 +162,7 @@ def interval_text(low: float | None, high: float | None) -> str:
 
 
 def as_json(value: object) -> str:
-    """Return JSON that is indented for people."""
+    """Return indented JSON."""
     return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
 
 
@@ -176,12 +175,12 @@ def write_json(value: object, path: Path) -> Path:
 
 @contextmanager
 def status_line(enabled: bool) -> Iterator[Callable[[str], None]]:
-    """Show on a terminal what a fit is doing; yield a function that takes it in words."""
+    """Show the stage of a fit on a terminal; yield a function that sets its description."""
     from rich.console import Console
 
     console = Console(stderr=True)
     if not (enabled and console.is_terminal):
-        yield lambda words: None
+        yield lambda stage: None
         return
     with console.status("fitting") as line:
-        yield lambda words: line.update(f"fitting: {words}")
+        yield lambda stage: line.update(f"fitting: {stage}")

@@ -82,7 +82,7 @@ class Maps:
     fields: Sequence[Field]
     frames: Sequence[Frame]
     begin: int = 0
-    """Index of the frame that is shown at first."""
+    """Index of the frame that is shown first."""
     shared: bool = True
     """Whether all frames share one range of colours."""
 

@@ -20,7 +20,7 @@ for (const head of document.querySelectorAll("th")) {
 const NOTHING = 65535;
 const MARGIN = { left: 58, right: 84, top: 26, bottom: 40 };
 const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-const said = (value) => String(Number(value.toPrecision(4))).replace("-", "−");
+const rounded = (value) => String(Number(value.toPrecision(4))).replace("-", "−");
 
 // The values of a field, NaN where there is none: see _pack in maps.py.
 async function unpack(packed, count) {
@@ -36,14 +36,14 @@ async function unpack(packed, count) {
   return values;
 }
 
-// Round numbers from low to high, at most about so many.
+// Round numbers from low to high, at most about `most` of them.
 function ticks(low, high, most) {
   if (!(high > low)) return [low];
   const power = 10 ** Math.floor(Math.log10((high - low) / most));
   const step = [1, 2, 5, 10].map((m) => m * power).find((s) => (high - low) / s <= most);
-  const found = [];
-  for (let n = Math.ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; n++) found.push(n * step);
-  return found;
+  const numbers = [];
+  for (let n = Math.ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; n++) numbers.push(n * step);
+  return numbers;
 }
 
 function makeMaps(figure, data) {
@@ -55,7 +55,7 @@ function makeMaps(figure, data) {
   const pictures = canvases.map(() => document.createElement("canvas"));
   let frame, values, view, cursor = null, shown = -1, limits = [];
 
-  // Where a length lies, in pixels of pixels: f(view) -> canvas, and back.
+  // The area of the map within the canvas, in CSS pixels.
   const box = (canvas) => {
     const width = canvas.clientWidth - MARGIN.left - MARGIN.right;
     const height = canvas.clientHeight - MARGIN.top - MARGIN.bottom;
@@ -77,7 +77,7 @@ function makeMaps(figure, data) {
     const count = wanted.shape[0] * wanted.shape[1];
     shown = index;
     const unpacked = await Promise.all(wanted.fields.map((field) => unpack(field, count)));
-    if (shown !== index) return; // another one was chosen meanwhile
+    if (shown !== index) return; // another frame was chosen meanwhile
     const moved = !frame || frame.size.some((edge, axis) => edge !== wanted.size[axis]);
     frame = wanted;
     values = unpacked;
@@ -102,12 +102,12 @@ function makeMaps(figure, data) {
     return low <= high ? [low, high] : [least, most];
   }
 
-  // How far up the colours a value is, and where the colour of such a share begins.
+  // The position of a value in the colour map, from 0 to 1, and the index of its first byte there.
   const shareOf = (number, value, [low, high]) =>
     high > low ? Math.max(0, (value - low) / (high - low)) ** data.fields[number].power : 0;
   const colourAt = (share) => 3 * Math.min(255, Math.floor(share * 256));
 
-  // One pixel for each value; what is empty is left transparent.
+  // One pixel for each value; empty pixels are transparent.
   function paint() {
     const [nx, ny] = frame.shape;
     pictures.forEach((picture, number) => {
@@ -180,14 +180,14 @@ function makeMaps(figure, data) {
     pen.textBaseline = "top";
     for (const at of ticks(view.x, view.x + view.width, Math.max(2, width / 60))) {
       pen.fillRect(toX(at) - 0.5, y + height, 1, 4);
-      pen.fillText(said(at), toX(at), y + height + 6);
+      pen.fillText(rounded(at), toX(at), y + height + 6);
     }
     pen.fillText(`x [${data.unit}]`, x + width / 2, y + height + 23);
     pen.textAlign = "right";
     pen.textBaseline = "middle";
     for (const at of ticks(view.y, view.y + view.height, Math.max(2, height / 50))) {
       pen.fillRect(x - 4, toY(at) - 0.5, 4, 1);
-      pen.fillText(said(at), x - 7, toY(at));
+      pen.fillText(rounded(at), x - 7, toY(at));
     }
     pen.save();
     pen.translate(10, y + height / 2);
@@ -214,7 +214,7 @@ function makeMaps(figure, data) {
     for (const at of ticks(low, high, Math.max(2, height / 50))) {
       const where = y + height * (1 - shareOf(number, at, limits[number]));
       pen.fillRect(x + width, where - 0.5, 4, 1);
-      pen.fillText(said(at), x + width + 7, where);
+      pen.fillText(rounded(at), x + width + 7, where);
     }
   }
 
@@ -222,12 +222,12 @@ function makeMaps(figure, data) {
     if (!cursor) return;
     const parts = data.fields.map((field, number) => {
       const value = valueAt(number, cursor);
-      return `${field.name} ${Number.isNaN(value) ? "none" : `${said(value)} ${field.unit}`}`;
+      return `${field.name} ${Number.isNaN(value) ? "none" : `${rounded(value)} ${field.unit}`}`;
     });
-    readout.value = `x = ${said(cursor.x)} ${data.unit}, y = ${said(cursor.y)} ${data.unit}: ${parts.join(", ")}`;
+    readout.value = `x = ${rounded(cursor.x)} ${data.unit}, y = ${rounded(cursor.y)} ${data.unit}: ${parts.join(", ")}`;
   }
 
-  // Every change of the view: by a factor about a place, or by a distance; never out of the domain.
+  // Show the view `next`, limited to the domain and to a width of four pixels.
   function look(next) {
     const all = whole();
     const least = 4 * Math.min(...frame.pixel.map((edge, axis) => edge / frame.size[axis]));
@@ -261,7 +261,7 @@ function makeMaps(figure, data) {
   };
 
   for (const canvas of canvases) {
-    // Where in the view an event is, as shares of its width and height from below.
+    // The position of an event as shares of the width and height of the view, from below.
     const share = (event) => {
       const { x, y, width, height } = box(canvas), edge = canvas.getBoundingClientRect();
       return [(event.clientX - edge.left - x) / width, 1 - (event.clientY - edge.top - y) / height];

@@ -48,7 +48,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Notice:
-    """The sentence that a reader must see first."""
+    """A sentence that stands out."""
 
     kind: ClassVar[str] = "notice"
     text: str
@@ -102,7 +102,7 @@ class Picture:
     svg: bytes
     caption: str
     description: str
-    """Text for readers who do not see it."""
+    """Text for readers who cannot see the drawing."""
 
     @property
     def source(self) -> str:

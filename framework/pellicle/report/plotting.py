@@ -56,7 +56,7 @@ def pressure_map(result: Result, axes: Axes, step: int = -1) -> None:
         cmap="viridis",
         vmin=0.0,
         interpolation="nearest",
-        # The other stage converts every cell to a colour before it resamples.
+        # The stage "rgba" converts every cell to a colour before it resamples.
         interpolation_stage="data",
     )
     axes.set_facecolor("0.93")
@@ -84,13 +84,13 @@ def profile(result: Result, axes: Axes, step: int = -1) -> None:
     axes.set(xlabel=f"x [{length_name}] at y = {line['y'].item() * length:.3g} {length_name}")
     axes.set_ylabel(f"contact pressure [{name}]", color="C0")
     axes.set_title(_caption(result, step))
-    beside = axes.twinx()
-    beside.plot(x, np.where(near, gap * gap_scale, np.nan), color="C1", linestyle="--")
-    beside.set_ylabel(f"gap [{gap_name}]", color="C1")
-    for side in (axes, beside):
+    gap_axes = axes.twinx()
+    gap_axes.plot(x, np.where(near, gap * gap_scale, np.nan), color="C1", linestyle="--")
+    gap_axes.set_ylabel(f"gap [{gap_name}]", color="C1")
+    for side in (axes, gap_axes):
         side.set_ylim(bottom=0.0)
     if not opens and float(data["depth"]) > 0:
-        beside.set_ylim(top=float(data["depth"]) * gap_scale)
+        gap_axes.set_ylim(top=float(data["depth"]) * gap_scale)
 
 
 def force_depth(result: Result, axes: Axes) -> None:
@@ -99,7 +99,7 @@ def force_depth(result: Result, axes: Axes) -> None:
 
 
 def area_force(result: Result, axes: Axes) -> None:
-    """Draw the contact area, as counted and as corrected, against force."""
+    """Draw the contact area, of the cells and corrected, against force."""
     corrected = [
         (str(name), f"{str(name).removeprefix('contact_area_')} correction", "s--")
         for name in result.dataset.data_vars
@@ -131,7 +131,7 @@ def save_figures(
     StorageError
         A file cannot be written.
     """
-    drawings = {ending: partial(draw, result) for ending, draw in FIGURES.items()}
+    drawings = {suffix: partial(draw, result) for suffix, draw in FIGURES.items()}
     return _save(drawings, directory, name, formats)
 
 
@@ -149,7 +149,9 @@ def save_study_figures(
     """
     if "force" not in table:
         return ()
-    drawings = {what: partial(study_curves, table, variable=what) for what in STUDY_FIGURES}
+    drawings = {
+        variable: partial(study_curves, table, variable=variable) for variable in STUDY_FIGURES
+    }
     return _save(drawings, directory, name, formats)
 
 
@@ -199,12 +201,12 @@ def _save(
     formats: Iterable[str],
 ) -> tuple[Path, ...]:
     files: list[Path] = []
-    for ending, draw in drawings.items():
+    for suffix, draw in drawings.items():
 
         def fill(figure: Figure, draw: Callable[[Axes], None] = draw) -> None:
             draw(figure.add_subplot())
 
-        files += save_figure(fill, directory / f"{name}-{ending}", formats)
+        files += save_figure(fill, directory / f"{name}-{suffix}", formats)
     return tuple(files)
 
 
@@ -233,7 +235,7 @@ def save_figure(
 
 
 def svg(draw: Callable[[Figure], None], size: tuple[float, float] = (5.4, 4.2)) -> bytes:
-    """Let ``draw`` fill a figure of ``size`` [inch], and return it as SVG, the same every time."""
+    """Let ``draw`` fill a figure of ``size`` [inch], and return it as reproducible SVG."""
     import matplotlib as mpl
 
     with mpl.rc_context(), _figure(draw, size) as figure:

@@ -26,7 +26,7 @@ _LONGEST_SUMMARY = 100
 def check(component: object, family: str, rules: list[Rule], *arguments: Any) -> None:
     """Check the rules of all components, then the family's own rules with ``arguments``.
 
-    Rules that need an installed plugin come last, so that the others can be tried before that.
+    Rules that need an installed plugin come last, so that the others can be checked without it.
     """
     keep([is_an_instance], component, family)
     keep(RULES, component)
@@ -38,7 +38,9 @@ def is_an_instance(component: object, family: str) -> None:
     """The check of a family takes an instance of a component of that family."""
     base = FAMILIES[family]
     if isinstance(component, type):
-        raise AssertionError(f"the class {component.__name__}; make one: {component.__name__}(…)")
+        raise AssertionError(
+            f"{component.__name__} is a class; pass an instance: {component.__name__}(…)"
+        )
     require(
         isinstance(component, base),
         f"{component!r}, which is not a pellicle.{base.__name__}",
@@ -73,7 +75,7 @@ def numbers_have_units(component: Component) -> None:
         for unit in {quantity.unit for quantity in quantities} - {"1"}:
             require(
                 f"[{unit}]" in (info.description or ""),
-                f"the description of {name}, {info.description!r}, does not hold [{unit}]",
+                f"the description of {name}, {info.description!r}, lacks [{unit}]",
             )
 
 
@@ -166,7 +168,7 @@ def libraries_are_installed(component: Component) -> None:
             version(name)
         except PackageNotFoundError:
             raise AssertionError(
-                f"{name!r} is not installed; give the name that pip installs it by"
+                f"{name!r} is not installed; give the name under which pip installs it"
             ) from None
 
 
@@ -186,7 +188,7 @@ def is_registered(component: Component) -> None:
     require(
         registered is type(component),
         f"{type_!r} is {registered.__module__}.{registered.__qualname__}, not this class of "
-        f"{module}; give yours another type, or import it by the name that the entry point has",
+        f"{module}; give yours another type, or import it under the name in the entry point",
     )
 
 
@@ -196,7 +198,7 @@ def goes_through_the_registry(component: Component) -> None:
     for table in (_table(component), _by_toml(_table(component)), component.model_dump()):
         again = registry().make(base, table)
         require(again == component, f"{again!r} of {component!r}")
-    require(registry().make(base, component) is component, "a component is made anew")
+    require(registry().make(base, component) is component, "a component is copied")
 
 
 RULES: list[Rule] = [

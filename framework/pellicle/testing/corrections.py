@@ -19,7 +19,7 @@ _CELL = _SPACING[0] * _SPACING[1]
 def check_correction(correction: AreaCorrection) -> None:
     """Check that an area correction keeps its contract.
 
-    Beside the rules of all components: ``area`` is pure, 0 without contact, that of the domain in
+    Besides the rules of all components: ``area`` is pure, 0 without contact, that of the domain in
     full contact, between the contact eroded and dilated by one cell, scales with the cells, and is
     the same if the contact is mirrored, shifted or has x and y exchanged; an overridden
     ``periodic_area`` does not depend on where the edge of the domain lies; and the area goes into
@@ -28,7 +28,7 @@ def check_correction(correction: AreaCorrection) -> None:
     Raises
     ------
     AssertionError
-        It does not; says what was asked and what was found.
+        A rule is broken; the message states the rule and the violation.
     """
     check(correction, "correction", RULES)
 
@@ -88,17 +88,19 @@ def area_does_not_depend_on_the_view(correction: AreaCorrection) -> None:
     """A contact that is mirrored, shifted or has x and y exchanged has the same area."""
     contact = _islands()
     area = correction.area(contact, _SPACING)
-    for view, seen, spacing in (
+    for view, cells, spacing in (
         ("mirrored across x", contact[::-1], _SPACING),
         ("mirrored across y", contact[:, ::-1], _SPACING),
-        ("moved", np.roll(contact, (1, -1), axis=(0, 1)), _SPACING),
+        ("shifted", np.roll(contact, (1, -1), axis=(0, 1)), _SPACING),
         ("with x and y exchanged", contact.T, _SPACING[::-1]),
     ):
-        require_close(correction.area(seen, spacing), area, f"the area [m²] {view}", relative=1e-12)
+        require_close(
+            correction.area(cells, spacing), area, f"the area [m²] {view}", relative=1e-12
+        )
 
 
 def periodic_area_has_no_seam(correction: AreaCorrection) -> None:
-    """An overridden ``periodic_area`` does not depend on which cells lie at the edge."""
+    """An overridden ``periodic_area`` does not depend on the position of the edge."""
     if type(correction).periodic_area is AreaCorrection.periodic_area:
         return
     contact = _islands()
@@ -109,7 +111,7 @@ def periodic_area_has_no_seam(correction: AreaCorrection) -> None:
     for shift in ((7, 0), (0, 11), (20, 15)):
         shifted = correction.periodic_area(np.roll(contact, shift, axis=(0, 1)), _SPACING)
         require_close(
-            shifted, area, f"the area [m²] moved by {shift} cells across the edge", relative=1e-12
+            shifted, area, f"the area [m²] shifted by {shift} cells across the edge", relative=1e-12
         )
 
 

@@ -28,15 +28,15 @@ _DURATION = 0.1
 def check_executor(executor: Executor) -> None:
     """Check that an executor keeps its contract.
 
-    Beside the rules of all components: ``map`` executes each task once and yields it with what its
-    work returned or raised; a failure, ``sys.exit()`` or the death of a worker process stops no
-    other task; messages of the work come to ``report``, in the calling thread, with their task; and
-    if the iterator is closed early, no task goes on.
+    Besides the rules of all components: ``map`` executes each task once and yields it with the
+    value or exception of its work; a failure, ``sys.exit()`` or the death of a worker process stops
+    no other task; ``report`` receives the messages of the work with their task, in the calling
+    thread; and if the iterator is closed early, no task continues.
 
     Raises
     ------
     AssertionError
-        It does not; says what was asked and what was found.
+        A rule is broken; the message states the rule and the violation.
     """
     check(executor, "executor", RULES, Observations(executor))
 
@@ -105,7 +105,7 @@ def _by_number(tasks: list[Chore], pairs: list[tuple[Chore, Any]]) -> dict[int, 
         )
     require(
         {id(task) for task, _ in pairs} == {id(task) for task in tasks},
-        "a yielded task is not the object that was given",
+        "a yielded task is not one of the objects passed to map()",
     )
     return {task.number: outcome for task, outcome in pairs}
 
@@ -129,7 +129,7 @@ class Healthy(NamedTuple):
 
 
 class Observations:
-    """What many rules check; observed once, because starting an executor may take long."""
+    """Observations that several rules check; made once, because an executor may start slowly."""
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor
@@ -161,39 +161,39 @@ class Observations:
         return outcomes, False
 
 
-def each_task_comes_once_with_its_outcome(executor: Executor, seen: Observations) -> None:
-    """map() yields each task once, the same object, with what work(task, say) returned."""
-    healthy = seen.healthy
+def each_task_comes_once_with_its_outcome(executor: Executor, observations: Observations) -> None:
+    """map() yields each task once, the same object, with the return value of work(task, say)."""
+    healthy = observations.healthy
     pairs = [(task, outcome) for task, outcome in healthy.pairs if task not in healthy.equal]
     _require_squares(_by_number(healthy.tasks, pairs))
 
 
-def each_task_is_carried_out_once(executor: Executor, seen: Observations) -> None:
-    """Each task is executed exactly once, and all have ended when map() has."""
-    counts = Counter(trace.rpartition(" ")[0] for trace in seen.healthy.traces)
+def each_task_is_executed_once(executor: Executor, observations: Observations) -> None:
+    """Each task is executed exactly once, and all have ended when map() ends."""
+    counts = Counter(trace.rpartition(" ")[0] for trace in observations.healthy.traces)
     for number in range(1, _TASKS + 1):
         for event in ("began", "ended"):
             times = counts[f"{number} {event}"]
             require(times == 1, f"when map() has ended, task {number} {event} {times} times")
 
 
-def equal_tasks_are_two_tasks(executor: Executor, seen: Observations) -> None:
+def equal_tasks_are_two_tasks(executor: Executor, observations: Observations) -> None:
     """Equal tasks are two tasks: they are distinguished by identity, not by content."""
-    equal = seen.healthy.equal
-    pairs = [(task, outcome) for task, outcome in seen.healthy.pairs if task in equal]
+    equal = observations.healthy.equal
+    pairs = [(task, outcome) for task, outcome in observations.healthy.pairs if task in equal]
     require([outcome for _, outcome in pairs] == [64, 64], f"two tasks of 8 give {pairs}")
 
 
-def no_tasks_are_no_trouble(executor: Executor, seen: Observations) -> None:
+def no_tasks_yield_nothing(executor: Executor, observations: Observations) -> None:
     """Without tasks map() yields nothing."""
     none: list[Chore] = []
     pairs = list(executor.map(work, none, _ignore))
     require(not pairs, f"{pairs}")
 
 
-def failure_is_an_outcome(executor: Executor, seen: Observations) -> None:
+def failure_is_an_outcome(executor: Executor, observations: Observations) -> None:
     """An exception of work is yielded unchanged as its task's outcome, and stops no other task."""
-    outcomes, exited = seen.troubled
+    outcomes, exited = observations.troubled
     bad = outcomes.get(_FAILS)
     require(
         (isinstance(bad, ValueError) and str(bad) == "the third task is bad")
@@ -203,17 +203,17 @@ def failure_is_an_outcome(executor: Executor, seen: Observations) -> None:
     _require_squares({n: outcome for n, outcome in outcomes.items() if n not in (_FAILS, _EXITS)})
 
 
-def exit_is_an_outcome(executor: Executor, seen: Observations) -> None:
+def exit_is_an_outcome(executor: Executor, observations: Observations) -> None:
     """Work that calls sys.exit() has failed; it ends neither other tasks nor this process."""
-    outcomes, exited = seen.troubled
+    outcomes, exited = observations.troubled
     require(not exited, "sys.exit() in a task leaves map()")
     bad = outcomes.get(_EXITS)
     require(isinstance(bad, Exception), f"task {_EXITS} comes with {bad!r}, not an Exception")
     missing = sorted(set(range(1, _TASKS + 1)) - outcomes.keys())
-    require(not missing, f"beside one that fails and one that exits, these do not come: {missing}")
+    require(not missing, f"if one task fails and one exits, tasks {missing} are not yielded")
 
 
-def death_of_a_worker_is_an_outcome(executor: Executor, seen: Observations) -> None:
+def death_of_a_worker_is_an_outcome(executor: Executor, observations: Observations) -> None:
     """A task that ends its worker process comes with an exception, and stops no other task."""
     tasks = _chores(home=os.getpid())
     outcomes = _by_number(tasks, list(executor.map(die_third, tasks, _ignore)))
@@ -222,22 +222,22 @@ def death_of_a_worker_is_an_outcome(executor: Executor, seen: Observations) -> N
     _require_squares(outcomes)
 
 
-def what_is_said_is_reported(executor: Executor, seen: Observations) -> None:
+def messages_are_reported(executor: Executor, observations: Observations) -> None:
     """report(task, message) is called in this thread, with the messages of the task in order."""
-    healthy = seen.healthy
+    healthy = observations.healthy
     here = threading.get_ident(), os.getpid()
     require(healthy.callers <= {here}, "report is called in another thread")
-    given = {id(task) for task in (*healthy.tasks, *healthy.equal)}
+    passed = {id(task) for task in (*healthy.tasks, *healthy.equal)}
     for task, _ in healthy.messages:
-        require(id(task) in given, f"report is called with {task!r}, an object that was not given")
+        require(id(task) in passed, f"report is called with {task!r}, not one of the tasks")
     for task in (*healthy.tasks, *healthy.equal):
         sent = [("begun", task.number), ("nearly done", task.number)]
         received = [tuple(message) for owner, message in healthy.messages if owner is task]
         in_order = [message for message in sent if message in received]
-        require(received == in_order, f"{task.name} said {received}")
+        require(received == in_order, f"{task.name} sent {sent}, and report received {received}")
 
 
-def report_that_raises_ends_the_tasks(executor: Executor, seen: Observations) -> None:
+def report_that_raises_ends_the_tasks(executor: Executor, observations: Observations) -> None:
     """An interruption raised by report comes out of map()."""
     messages = []
 
@@ -252,8 +252,8 @@ def report_that_raises_ends_the_tasks(executor: Executor, seen: Observations) ->
     require(not messages, "KeyboardInterrupt raised by report does not come out of map()")
 
 
-def nothing_goes_on_after_closing(executor: Executor, seen: Observations) -> None:
-    """After the iterator is closed early, no task goes on or begins."""
+def nothing_goes_on_after_closing(executor: Executor, observations: Observations) -> None:
+    """After the iterator is closed early, no task continues or begins."""
     with TemporaryDirectory() as folder:
         running = executor.map(work, _chores(folder=folder), _ignore)
         list(islice(running, 1))
@@ -269,12 +269,12 @@ def nothing_goes_on_after_closing(executor: Executor, seen: Observations) -> Non
 
 RULES: list[Rule] = [
     each_task_comes_once_with_its_outcome,
-    each_task_is_carried_out_once,
+    each_task_is_executed_once,
     equal_tasks_are_two_tasks,
-    no_tasks_are_no_trouble,
+    no_tasks_yield_nothing,
     failure_is_an_outcome,
     exit_is_an_outcome,
-    what_is_said_is_reported,
+    messages_are_reported,
     report_that_raises_ends_the_tasks,
     nothing_goes_on_after_closing,
     death_of_a_worker_is_an_outcome,

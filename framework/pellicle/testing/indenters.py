@@ -19,10 +19,10 @@ from .runs import solved
 def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
     """Check that an indenter keeps its contract.
 
-    Beside the rules of all components: ``profile`` returns float heights ≤ 0 of the grid's shape, 0
-    at the lowest point; it is pure; each height depends on its own point only, unless the indenter
-    ends with the domain; a force curve, if the indenter has one, rises and agrees with its partial
-    derivatives; and a small indentation converges.
+    Besides the rules of all components: ``profile`` returns float heights ≤ 0 of the grid's shape,
+    0 at the lowest point; it is pure; each height depends on its own point only, unless the
+    indenter ends with the domain; a force curve, if the indenter has one, rises and agrees with its
+    partial derivatives; and a small indentation converges.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
     Raises
     ------
     AssertionError
-        It does not; says what was asked and what was found.
+        A rule is broken; the message states the rule and the violation.
     """
     check(indenter, "indenter", RULES, grid or Grid(points=[13, 11], size=["1.3 mm", "1.1 mm"]))
 
@@ -76,7 +76,7 @@ def profile_is_nowhere_positive(indenter: Indenter, grid: Grid) -> None:
 
 
 def footprint_is_known(indenter: Indenter, grid: Grid) -> None:
-    """The footprint is "unbounded" or "domain", by which contact at the edge is judged."""
+    """The footprint is "unbounded" or "domain", which decides how contact at the edge is judged."""
     require(indenter.footprint in get_args(Footprint), repr(indenter.footprint))
 
 
@@ -96,7 +96,7 @@ def heights_depend_on_their_own_point(indenter: Indenter, grid: Grid) -> None:
     part = indenter.profile(x[1:4], y[:, 2:4])
     require(
         np.allclose(part, whole[1:4, 2:4], rtol=1e-12, atol=0),
-        f"heights of a part of the points are {part.tolist()} m, and of the whole there "
+        f"heights at some points are {part.tolist()} m, but as a part of the whole grid "
         f"{whole[1:4, 2:4].tolist()} m; a shape that ends with the domain has footprint 'domain'",
     )
 

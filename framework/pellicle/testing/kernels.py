@@ -23,7 +23,7 @@ _FORMS = ("greens_function", "radial_primitive")
 def check_kernel(kernel: Kernel) -> None:
     """Check that a kernel keeps its contract.
 
-    Beside the rules of all components: ``compliance`` is vectorised, pure, positive and finite for
+    Besides the rules of all components: ``compliance`` is vectorised, pure, positive and finite for
     10⁻³ to 10¹² rad/m, and does not grow towards ever shorter waves; a closed form, if the kernel
     has one, agrees with it; so do the operators of both boundaries; a small indentation converges
     on both.
@@ -31,7 +31,7 @@ def check_kernel(kernel: Kernel) -> None:
     Raises
     ------
     AssertionError
-        It does not; says what was asked and what was found.
+        A rule is broken; the message states the rule and the violation.
     """
     check(kernel, "kernel", RULES)
 
@@ -101,7 +101,7 @@ def periodic_operator_is_the_compliance(kernel: Kernel) -> None:
 
 
 def uniform_pressure_sinks_by_the_mean_compliance(kernel: Kernel) -> None:
-    """On a periodic grid uniform pressure displaces by mean_compliance(), by 0 if that is ∞."""
+    """On a periodic grid uniform pressure p displaces by p mean_compliance(), or 0 if that is ∞."""
     grid = Grid(points=[6, 5], size="1 mm", boundary="periodic")
     mean = mean_compliance(kernel)
     expected = np.full(grid.shape, 3 * mean if np.isfinite(mean) else 0.0)
@@ -133,7 +133,7 @@ def _indent(kernel: Kernel, boundary: str) -> None:
 def closed_form_is_whole(kernel: Kernel) -> None:
     """A kernel has both of greens_function and radial_primitive, or neither."""
     present = [name for name in _FORMS if hasattr(kernel, name)]
-    require(len(present) != 1, f"only {' '.join(present)}")
+    require(len(present) != 1, f"{' '.join(present)} alone is defined")
 
 
 def closed_form_leaves_its_argument(kernel: Kernel) -> None:
@@ -171,7 +171,7 @@ def primitive_is_the_integral_of_the_closed_form(kernel: Kernel) -> None:
 
 
 def closed_form_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
-    """Amid a Gaussian pressure, greens_function and compliance give the same displacement."""
+    """At the centre of a Gaussian pressure, greens_function and compliance agree."""
     if not isinstance(kernel, HasClosedForm):
         return
     form = kernel
@@ -179,20 +179,20 @@ def closed_form_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
     require_close(
         2 * np.pi * _WIDTH * middle,
         _middle_by_compliance(kernel),
-        "by greens_function, the displacement [m] amid a Gaussian of 1 Pa, 0.1 mm wide,",
+        "by greens_function, the central displacement [m] of a Gaussian of 1 Pa, 0.1 mm wide,",
         relative=1e-9,
     )
 
 
 def free_operator_is_the_transform_of_the_compliance(kernel: Kernel) -> None:
-    """On a free grid the displacement amid a Gaussian pressure is that of the Hankel integral."""
+    """On a free grid, a Gaussian pressure displaces its centre by the Hankel integral."""
     grid = Grid(points=255, size=10 * _WIDTH, boundary="free")
     x, y = grid.coordinates()
     pressure = np.exp(-(x**2 + y**2) / (2 * _WIDTH**2))
     require_close(
         displacement(pressure, kernel=kernel, grid=grid)[127, 127],
         _middle_by_compliance(kernel, grid.spacing[0]),
-        "on a free grid, the displacement [m] amid a Gaussian of 1 Pa, 0.1 mm wide,",
+        "on a free grid, the central displacement [m] of a Gaussian of 1 Pa, 0.1 mm wide,",
         # The grid ends at five widths, where the Gaussian is 4e-6.
         relative=1e-5,
     )
@@ -223,7 +223,7 @@ def _integral(function: Callable[[Array], float]) -> float:
     def integrand(t: float) -> float:
         return function(np.array([t])) * float(np.exp(-(t**2) / 2))
 
-    # Without full_output, quad may warn of its accuracy, and some turn warnings into errors.
+    # Without full_output, quad may warn of its accuracy, which pytest may turn into an error.
     return float(quad(integrand, 0, 9, epsabs=0, epsrel=1e-11, limit=200, full_output=1)[0])
 
 

@@ -1,4 +1,4 @@
-"""Checks that an output keeps its contract."""
+"""Contract rules of outputs: all files, all steps, in runs and studies."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ _VARIED = "kernel.tension"
 def check_output(output: Output) -> None:
     """Check that an output keeps its contract.
 
-    Besides the rules of all components: it leaves exactly the files that it returns, in its
-    `suffixes`, also where a run was interrupted and is repeated; an output of scope ``"run"`` shows
+    Besides the rules of all components: it leaves exactly the files that it returns, with
+    its `suffixes`, also if a run is interrupted and repeated; an output of scope ``"run"`` shows
     every step; and it works in the runs and studies of its scope.
 
     Raises
     ------
     AssertionError
-        It breaks a rule; the message has the rule and what was found.
+        A rule is broken; the message states the rule and the violation.
     """
     check(output, "output", RULES)
 
@@ -110,46 +110,47 @@ def leaves_its_data_as_they_are(output: Output) -> None:
 
 
 def leaves_the_files_it_returns(output: Output) -> None:
-    """Interrupted, and repeated with all steps, a run has the files of write(), in `suffixes`."""
+    """A run, also if interrupted and repeated, has the files of write(), with its `suffixes`."""
     with _stem() as stem:
         for steps in range(1, _STEPS + 1):
             files = _write(output, stem, _dataset().isel(step=slice(steps)))
             require_files(output, files, stem)
             names = {path.relative_to(stem.parent).as_posix() for path in files}
-            left = _contents(stem.parent)
+            contents = _contents(stem.parent)
             require(
-                left.keys() == names,
-                f"after {steps} of {_STEPS} steps write() returns {sorted(names)}, and there are "
-                f"{sorted(left)}",
+                contents.keys() == names,
+                f"after {steps} of {_STEPS} steps write() returns {sorted(names)}, but the folder "
+                f"has {sorted(contents)}",
             )
             own = stem_of(output, stem).name
-            for name, content in left.items():
+            for name, content in contents.items():
                 require(bool(content), f"{name} is empty")
                 require(
                     any(fnmatch(name, f"{own}{suffix}") for suffix in output.suffixes),
-                    f"{name} is left, and suffixes are {output.suffixes}",
+                    f"{name} is written, but the suffixes are {output.suffixes}",
                 )
 
 
 def loses_no_step(output: Output) -> None:
-    """The files differ if any of the steps does, unless a study as a whole can be shown."""
+    """The files differ if any step does, unless the output can also show a study."""
     if output.scope != "run":
         return
     whole = _dataset()
-    left = _left(output, whole)
+    contents = _files(output, whole)
     # A file with a date or a random name differs between two equal runs, and proves nothing.
-    steady = {name for name, content in _left(output, whole).items() if content == left[name]}
+    again = _files(output, whole)
+    steady = {name for name, content in again.items() if content == contents[name]}
     for lost in range(_STEPS):
         other = whole.where(whole["step"] != lost + 1, whole.isel(step=(lost + 1) % _STEPS))
         other = other.transpose(*whole.dims).astype({n: v.dtype for n, v in whole.items()})
-        changed = _left(output, other)
+        changed = _files(output, other)
         require(
-            not steady or any(changed.get(name) != left[name] for name in steady),
-            f"step {lost + 1} of {_STEPS} leaves no trace in {sorted(left)}",
+            not steady or any(changed.get(name) != contents[name] for name in steady),
+            f"step {lost + 1} of {_STEPS} leaves no trace in {sorted(contents)}",
         )
 
 
-def _left(output: Output, steps: xr.Dataset) -> dict[str, bytes]:
+def _files(output: Output, steps: xr.Dataset) -> dict[str, bytes]:
     with _stem() as stem:
         _write(output, stem, steps)
         return _contents(stem.parent)

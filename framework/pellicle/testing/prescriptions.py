@@ -1,4 +1,4 @@
-"""What every prescription keeps: a step has the value that was prescribed."""
+"""Contract rules of prescriptions: a step has the prescribed value."""
 
 from __future__ import annotations
 
@@ -30,31 +30,31 @@ _ROUGH = {
     },
     "loading": {"force": ["0.1 mN", "0.2 mN"]},
 }
-# Whole cells miss a contact area by more than other quantities are missed.
+# A contact area of whole cells misses its value by more than other quantities do.
 _NEAR = 0.05
 
 
 def check_prescription(prescription: Prescription, values: Sequence[float] = ()) -> None:
     """Check that a prescription keeps its contract.
 
-    Beside what all components keep: ``target`` is pure and returns finite numbers; what cannot be
-    reached is refused by a ConfigError; ``report`` has the variables that are declared; the
-    quantity of a search does not fall as the force grows; and a step at the value that a known
-    step has is that step again.
+    Besides the rules of all components: ``target`` is pure and returns finite numbers; a value
+    that cannot be reached raises a ConfigError; ``report`` has the declared variables; the quantity
+    of a search does not fall as the force grows; and prescribing the value of a known step
+    reproduces that step.
 
     Parameters
     ----------
     prescription
-        What is checked, on a rough surface of 1 mm × 1 mm and 10 µm root mean square height on a
-        periodic half-space of 10 kPa, under 0.1 and 0.2 mN.
+        The component, checked on a rough surface of 1 mm × 1 mm and 10 µm root mean square height
+        on a periodic half-space of 10 kPa, under 0.1 and 0.2 mN.
     values
-        Its values [its unit] under these two forces. They can be left out if a result has a
-        variable of the prescription's type, be it by ``report``.
+        The prescribed quantity [its unit] under these two forces. They can be left out if a result
+        has a variable named like the prescription's type, for example from ``report``.
 
     Raises
     ------
     AssertionError
-        It does not; says what was asked and what was found.
+        A rule is broken; the message states the rule and the violation.
     """
     check(prescription, "prescription", RULES, tuple(values))
 
@@ -84,20 +84,20 @@ def _value(prescription: Prescription, step: Equilibrium) -> float | None:
     return float(data[name].item()) if name in data and data[name].size == 1 else None
 
 
-def _values(prescription: Prescription, given: Sequence[float]) -> list[float]:
+def _values(prescription: Prescription, candidates: Sequence[float]) -> list[float]:
     _, steps, _ = _known()
-    values: Sequence[float | None] = given or [_value(prescription, s) for s in steps]
-    known = [value for value in values if value is not None]
+    values: Sequence[float | None] = candidates or [_value(prescription, s) for s in steps]
+    numbers = [value for value in values if value is not None]
     require(
-        len(known) == len(steps),
+        len(numbers) == len(steps),
         f"no variable {prescription.type_name!r} in a result; report it, or call "
         "check_prescription with two values",
     )
-    return known
+    return numbers
 
 
 def report_is_as_declared(prescription: Prescription, values: Sequence[float]) -> None:
-    """report() returns numbers under the names of `variables`, the same if asked twice."""
+    """report() returns numbers under the names of `variables`, the same in a second call."""
     setting, steps, _ = _known()
     for step in steps:
         report = report_of(prescription, setting, step)
@@ -105,7 +105,7 @@ def report_is_as_declared(prescription: Prescription, values: Sequence[float]) -
 
 
 def target_is_pure(prescription: Prescription, values: Sequence[float]) -> None:
-    """target() returns a Depth, Force or Search of finite numbers, the same if asked twice."""
+    """target() returns a Depth, Force or Search of finite numbers, the same in a second call."""
     setting, _, _ = _known()
     for value in _values(prescription, values):
         check_value(prescription, setting, value, "")
@@ -129,7 +129,7 @@ def values_are_refused_in_words(prescription: Prescription, values: Sequence[flo
 
 
 def search_does_not_fall(prescription: Prescription, values: Sequence[float]) -> None:
-    """The quantity of a search is a number that is no less under twice the force."""
+    """The quantity of a search does not fall if the force doubles."""
     setting, steps, _ = _known()
     target = target_of(prescription, setting, _values(prescription, values)[0])
     if isinstance(target, Search):
@@ -138,7 +138,7 @@ def search_does_not_fall(prescription: Prescription, values: Sequence[float]) ->
 
 
 def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[float]) -> None:
-    """At the value of a known step the force is the one of that step, and so is the value."""
+    """Prescribing the value of a known step reproduces its force and its value."""
     setting, steps, solver = _known()
     for value, known in zip(_values(prescription, values), steps, strict=True):
         target = target_of(prescription, setting, value)

@@ -19,7 +19,7 @@ def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:
     Raises
     ------
     AssertionError
-        A rule is broken; names the class, the rule and what was found.
+        A rule is broken; the message states the class, the rule and the violation.
     """
     for rule in rules:
         try:
@@ -30,14 +30,14 @@ def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:
             text = " ".join((inspect.getdoc(rule) or "").split())
             raise AssertionError(
                 f"{type(component).__name__} breaks the rule {rule.__name__}\n"
-                f"asked: {text}\n"
-                f"found: {message}"
+                f"required: {text}\n"
+                f"violation: {message}"
             ) from (None if own else error)
 
 
-def require(kept: bool | np.bool_, message: str) -> None:
-    """Raise AssertionError with a message unless a rule is kept."""
-    if not kept:
+def require(holds: bool | np.bool_, message: str) -> None:
+    """Raise AssertionError with a message unless a condition holds."""
+    if not holds:
         raise AssertionError(message)
 
 

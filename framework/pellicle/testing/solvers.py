@@ -1,4 +1,4 @@
-"""The contract of solvers: the answer is right, and depends on the problem alone."""
+"""Contract rules of solvers: the solution is right and depends on the problem alone."""
 
 from __future__ import annotations
 
@@ -55,16 +55,16 @@ _CONDITION = 1e4
 def check_solver(solver: Solver) -> None:
     """Check that a solver keeps its contract.
 
-    In addition to the rules for all components: a paraboloid, a punch and a rough surface, on free
-    and periodic grids, with depth, force and mean pressure prescribed, are solved to the solver's
-    ``tolerance``, with pressure ≥ 0; the answer depends on neither the step before nor the unit of
-    stiffness; arguments are unchanged; the monitor is called; ``response`` is that of a flat punch;
-    and the ``residual`` of an iterative solver only looks.
+    Besides the rules of all components: a paraboloid, a punch and a rough surface, on free and
+    periodic grids, with depth, force and mean pressure prescribed, are solved to the solver's
+    ``tolerance``, with pressure ≥ 0; the solution depends on neither the step before nor the unit
+    of stiffness; arguments are unchanged; the monitor is called; ``response`` is that of a flat
+    punch; and the ``residual`` of an iterative solver has no side effect.
 
     Raises
     ------
     AssertionError
-        A rule is broken; the message names it and what was found.
+        A rule is broken; the message states the rule and the violation.
     """
     check(solver, "solver", RULES)
 
@@ -76,7 +76,7 @@ def _solve(problem: dict[str, Any], solver: Solver, prescribed: str, *values: fl
 
 
 @lru_cache(maxsize=len(_CASES))
-def _afresh(solver: Solver, case: int) -> xr.Dataset:
+def _from_scratch(solver: Solver, case: int) -> xr.Dataset:
     """Return the only step of a case; several rules compare with it."""
     problem, prescribed, value = _CASES[case]
     return _solve(problem, solver, prescribed, value)
@@ -117,7 +117,7 @@ def pressure_is_nowhere_negative(solver: Solver) -> None:
 
 
 def done_means_solved(solver: Solver) -> None:
-    """A solver that stops with Stop.DONE has met its tolerance, measured afresh."""
+    """A solver that stops with Stop.DONE has met its tolerance, measured independently."""
     for problem in _problems():
         solution = solver.solve(problem, None, _ignore)
         residual = measure(problem, solution.pressure).residual
@@ -125,10 +125,10 @@ def done_means_solved(solver: Solver) -> None:
         require(solution.stop is not Stop.DONE or residual <= solver.tolerance, what)
 
 
-def what_is_prescribed_is_solved(solver: Solver) -> None:
+def prescribed_values_are_met(solver: Solver) -> None:
     """Pressure, gap and load meet the tolerance, for depth, force and mean pressure."""
     for case, (_, prescribed, value) in enumerate(_CASES):
-        result = _afresh(solver, case)[prescribed].item()
+        result = _from_scratch(solver, case)[prescribed].item()
         require_close(result, value, f"the {prescribed}", relative=solver.tolerance)
 
 
@@ -152,7 +152,7 @@ def pressure_is_proportional_to_the_stiffness(solver: Solver) -> None:
 def _require_same_pressure(
     result: xr.Dataset, case: int, factor: float, solver: Solver, what: str
 ) -> None:
-    pressure = factor * _afresh(solver, case)["pressure"].values
+    pressure = factor * _from_scratch(solver, case)["pressure"].values
     allowed = _CONDITION * solver.tolerance * float(pressure.max())
     require_close(
         result["pressure"].values, pressure, f"the pressure [Pa] {what}", absolute=allowed
@@ -160,7 +160,7 @@ def _require_same_pressure(
 
 
 def start_belongs_to_the_caller(solver: Solver) -> None:
-    """The start given to a solver is as it was, and the result is not the same array."""
+    """solve() changes neither the start nor the profile, and returns another array."""
     for problem in _problems():
         pressure = np.full(problem.grid.shape, 100.0)
         profile = problem.profile.copy()
@@ -172,7 +172,7 @@ def start_belongs_to_the_caller(solver: Solver) -> None:
 
 
 def monitor_is_called(solver: Solver) -> None:
-    """monitor(iteration, residual / tolerance) is called, at the end with the result's."""
+    """monitor(iteration, residual / tolerance) is called, the last time with the result's."""
     for problem in _problems():
         calls: list[tuple[int, float]] = []
         solution = solver.solve(problem, None, lambda *call, calls=calls: calls.append(call))
@@ -190,13 +190,13 @@ def response_is_that_of_a_flat_punch(solver: Solver) -> None:
         contact = problem.profile > 0.1 * problem.profile.min()
         pressure = solver.response(problem, _state(contact.astype(np.float64)), _ignore)
         require(np.shape(pressure) == problem.grid.shape, f"shape {np.shape(pressure)}")
-        require(not pressure[~contact].any(), "response() presses off the contact")
+        require(not pressure[~contact].any(), "response() has pressure outside the contact")
         residual = measure_stiffness(problem, contact, pressure).residual
         what = f"response() misses the displacement 1 by {residual:.1e}"
         require(residual <= solver.tolerance, what)
 
 
-def residual_only_looks(solver: Solver) -> None:
+def residual_has_no_side_effect(solver: Solver) -> None:
     """residual() of an iterative solver neither applies the operator nor changes the iterate."""
     if not isinstance(solver, IterativeSolver):
         return
@@ -216,8 +216,8 @@ RULES: list[Rule] = [
     done_means_solved,
     start_belongs_to_the_caller,
     response_is_that_of_a_flat_punch,
-    residual_only_looks,
-    what_is_prescribed_is_solved,
+    residual_has_no_side_effect,
+    prescribed_values_are_met,
     start_does_not_matter,
     pressure_is_proportional_to_the_stiffness,
     monitor_is_called,

@@ -1,1 +1,1 @@
-"""Outputs: what a run leaves behind."""
+"""Outputs of runs and studies."""

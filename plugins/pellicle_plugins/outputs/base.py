@@ -36,7 +36,7 @@ Formats = Annotated[
 Log = Annotated[tuple[Literal["x", "y"], ...], Field(description="axes that are logarithmic: x, y")]
 Reference = Annotated[
     Literal["axisymmetric"] | None,
-    Field(description="draw the same expressions of the semi-analytic solution too"),
+    Field(description="draw the semi-analytic solution of the same expressions too"),
 ]
 
 
@@ -47,7 +47,7 @@ class TableFigure(Output):
     """Whether the numbers drawn are written as CSV beside the figure."""
 
     name: Annotated[
-        str, Field(pattern=r"^[\w-]*$", description="ending of the file names; its type if absent")
+        str, Field(pattern=r"^[\w-]*$", description="suffix of the file names; the type if absent")
     ] = ""
     formats: Formats = ("png",)
     title: Annotated[str, Field(description="title of the figure")] = ""
@@ -64,13 +64,13 @@ class TableFigure(Output):
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """Those of the figure and of its numbers."""
+        """Suffixes of the figure and of its numbers."""
         return tuple(f".{kind}" for kind in (*self.formats, *["csv"] * self.numbers))
 
     def picked(self, table: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
         """Yield the name of each curve or panel and the point of the table that it shows.
 
-        Of the other axes it is the first value, of the steps the last.
+        Other axes are at their first value, steps at the last.
         """
         one_axis(table.sizes, self.by, "by")
         first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
@@ -112,8 +112,8 @@ class XYFigure(TableFigure):
 def one_axis(dims: Iterable[object], chosen: str | None, field: str) -> None:
     """Refuse a ``chosen`` dimension that is not among ``dims``."""
     if chosen is not None and chosen not in dims:
-        known = nearest(chosen, map(str, dims))
-        raise ConfigError(f"{chosen!r} is not an axis of the table; {known}", field)
+        suggestion = nearest(chosen, map(str, dims))
+        raise ConfigError(f"{chosen!r} is not an axis of the table; {suggestion}", field)
 
 
 def along(table: xr.Dataset, dim: str | None) -> list[dict[str, int]]:
@@ -129,9 +129,9 @@ def label(template: str | None, data: xr.Dataset, dim: str | None) -> str:
     study for which ``data`` has only one.
     """
     if template is not None:
-        known = names(data)
+        variables = names(data)
         return _PLACEHOLDER.sub(
-            lambda match: f"{np.nanmean(np.asarray(evaluate(match[1], known))):.3g}", template
+            lambda match: f"{np.nanmean(np.asarray(evaluate(match[1], variables))):.3g}", template
         )
     axes = [dim] if dim else json.loads(data.attrs.get("axes", "[]"))
     return ", ".join(_value(data[axis]) for axis in axes if data[axis].ndim == 0)

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-_SYMBOLS = 40
+_MARKERS = 40
 
 
 class Compliance(XYFigure):
     """Compliance of the cells against the kernel's symbol, over the wavenumber.
 
-    Symbols are the Fourier transform of the displacement under a pressure on one cell, along x,
+    Markers are the Fourier transform of the displacement under a pressure on one cell, along x,
     divided by that of the pressure; lines are the kernel's formula. ``x`` and ``y`` are arithmetic
     over ``q`` [rad/m], ``compliance`` [m/Pa] and the numbers of the configuration; the numbers
     drawn are written as CSV beside the figure.
@@ -46,11 +46,11 @@ class Compliance(XYFigure):
             except StorageError:
                 continue
             run = Run.from_json(configuration)
-            q, of_cells = of_cells_along_x(run)
+            q, cells = of_cells_along_x(run)
             # A grid with a single cell along x has no waves.
-            shown = np.unique(np.geomspace(1, max(1, q.size), _SYMBOLS).astype(int)) - 1
+            shown = np.unique(np.geomspace(1, max(1, q.size), _MARKERS).astype(int)) - 1
             for values, series, style in (
-                (of_cells, "cells", "o"),
+                (cells, "cells", "o"),
                 (run.kernel.compliance(q), "symbol", "-"),
             ):
                 x, y = self._columns(picked, q, values)
@@ -77,8 +77,8 @@ class Compliance(XYFigure):
         axes.legend(frameon=False, fontsize="small")
 
     def _columns(self, picked: xr.Dataset, q: Array, values: Array) -> tuple[Array, Array]:
-        known = {**names(picked), "q": q, "compliance": values}
-        x, y = (np.asarray(evaluate(text, known)) + 0 * q for text in (self.x, self.y))
+        variables = {**names(picked), "q": q, "compliance": values}
+        x, y = (np.asarray(evaluate(text, variables)) + 0 * q for text in (self.x, self.y))
         return x, y
 
 

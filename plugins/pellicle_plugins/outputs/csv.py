@@ -28,7 +28,7 @@ class Csv(Output):
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """That of the table."""
+        """Suffix of the table."""
         return (".csv",)
 
     def step(self, record: xr.Dataset, stem: Path) -> None:

@@ -95,7 +95,7 @@ class Curves(XYFigure):
         ),
     ] = False
     published: Annotated[
-        tuple[Published, ...], Field(description="numbers of others: label, x, y, style")
+        tuple[Published, ...], Field(description="published numbers: label, x, y, style")
     ] = ()
 
     @model_validator(mode="after")
@@ -105,7 +105,7 @@ class Curves(XYFigure):
                 f"{len(self.series)} names for {len(self.y)} of y; give as many", "series"
             )
         if self.by is not None and self.by == self.over:
-            raise ConfigError(f"{self.over!r} is by already; give another axis", "over")
+            raise ConfigError(f"{self.over!r} is the axis of by already; give another", "over")
         return self
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
@@ -152,7 +152,7 @@ class Curves(XYFigure):
             for index, point in enumerate(along(runs.table, self.by)):
                 part = runs.table.isel(point)
                 name = label(self.label, part, self.by)
-                # Colours distinguish the values of by, markers the several y.
+                # Colours distinguish the values of `by`, markers those of `y`.
                 style = _Style(f"C{index if self.by else number}", number, reference is not None)
                 legend = "" if number else name
                 if not self.by and (self.series or len(ys) > 1):
@@ -223,7 +223,7 @@ class _Style:
     number: int | None
     """Index of the marker and line style; None for a plain thin line."""
     scattered: bool = False
-    """Whether markers alone are drawn, beside a line of something else."""
+    """Whether only markers are drawn, beside the line of a reference."""
 
     def keywords(self) -> dict[str, Any]:
         """Return keywords of ``Axes.plot``."""

@@ -29,7 +29,7 @@ _Curves = list[tuple[str, dict[str, analysis.Distribution]]]
 class Distributions(TableFigure):
     """Probability densities of the pressure in contact and of the gap outside it.
 
-    Each counts the cells of its own part and integrates to 1; infinite gaps do not count. The bins
+    Each is over the cells of its own part and integrates to 1; infinite gaps are left out. The bins
     are written as CSV beside the figure, with the mean of the values in each: mean pressure times
     density times width, summed up and multiplied by the contact area, is the force.
     """

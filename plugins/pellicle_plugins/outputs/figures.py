@@ -23,7 +23,7 @@ class Figures(Output):
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """Those of the figures of a run and of a study."""
+        """Suffixes of the figures of a run and of a study."""
         names = dict.fromkeys((*FIGURES, *STUDY_FIGURES))
         return tuple(f"-{name}.{format_}" for name in names for format_ in self.formats)
 

@@ -60,14 +60,14 @@ FIELDS = {
 _CURVES = {
     "profile": "Pressure and gap of the last step along x through the centre.",
     "force_depth": "Force against depth over the load steps.",
-    "area_force": "Contact area, as counted and as corrected, against force over the load steps.",
+    "area_force": "Contact area, of the cells and corrected, against force over the load steps.",
 }
 
 
 class Html(Output):
     """Web page of a run or a study: status, numbers, zoomable maps, figures, inputs, provenance.
 
-    It is one file that loads nothing, so it can be kept, sent and viewed without a network. Of a
+    It is one file that loads nothing, so it can be kept, sent and viewed without a network. For a
     study it shows the last step of each run.
     """
 
@@ -78,30 +78,30 @@ class Html(Output):
         Field(
             ge=8,
             le=4096,
-            description="pixels a side that a map has at most; of more cells, and where there are "
-            "many maps, a pixel is the mean over a block, and the page says so",
+            description="largest number of pixels along each side of a map; with more cells or "
+            "many maps, a pixel is the mean over a block, as the page states",
         ),
     ] = 512
     frames: Annotated[
         int,
         Field(
             ge=1,
-            description="load steps of a run, or runs of a study, that are mapped at most; of "
-            "more, evenly chosen ones, the last among them",
+            description="largest number of load steps of a run, or runs of a study, that are "
+            "mapped; of more, evenly spaced ones up to the last",
         ),
     ] = 64
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """That of the page."""
+        """Suffix of the page."""
         return (".html",)
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the page."""
         table, path = runs.table, Path(f"{stem}.html")
-        given = json.loads(runs.configuration)
+        configuration = json.loads(runs.configuration)
         if runs.axes is None:
-            data, run = runs.open(), given
+            data, run = runs.open(), configuration
             result = Result(data)
             sections = [
                 Section("Status", [_status(result)]),
@@ -123,7 +123,7 @@ class Html(Output):
             ]
         sections += [
             Section("Provenance", [*_origin(table.attrs, run)]),
-            Section("How to reproduce it", [*_reproduce(given, stem)]),
+            Section("How to reproduce it", [*_reproduce(configuration, stem)]),
         ]
         date = table.attrs["date"].replace("T", " ").replace("+00:00", " UTC")
         kind = "Run" if runs.axes is None else "Study"
@@ -157,7 +157,7 @@ class Html(Output):
             row = rows[index]
             last = progress_of(row)[0] - 1
             try:
-                # Only what is drawn is read, not all steps.
+                # Read only the step that is drawn.
                 attributes, fields = storage.fields(
                     folder / f"{row['run'].item()}.h5", RESULT_FIELDS, last
                 )
@@ -193,11 +193,11 @@ def _some(shown: int, count: int, what: str) -> str:
 
 
 def _status(result: Result) -> Notice:
-    wanted = result.planned_steps
+    total = result.planned_steps
     done, failed = result.dataset.sizes["step"], result.failures()
     sentences = []
-    if done < wanted:
-        sentences.append(f"The run ended early: {done} of {wanted} load steps are there.")
+    if done < total:
+        sentences.append(f"The run ended early: {done} of {total} load steps are finished.")
     if failed:
         sentences.append(
             f"{len(failed)} of {done} load steps did not converge: do not rely on them."
@@ -208,14 +208,14 @@ def _status(result: Result) -> Notice:
     if coarse := result.coarse():
         sentences.append(f"In {len(coarse)} of {done} the cells are too coarse for the contact.")
     details = [f"Step {step}: {message}" for step, message in (*failed, *coarse)]
-    return Notice(" ".join(sentences), not details and done == wanted, details)
+    return Notice(" ".join(sentences), not details and done == total, details)
 
 
 def _status_of_study(table: xr.Dataset, count: int) -> Notice:
     failed, warnings = failures(table), [*coarse(table)]
     if not failed:
         return Notice(f"Every step of all {count} runs converged.", not warnings, warnings)
-    return Notice(f"Not all is well: {failed}.", False, [*reasons(table), *warnings])
+    return Notice(f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings])
 
 
 def _column(name: str, variable: xr.DataArray) -> tuple[Column, float]:
@@ -245,11 +245,9 @@ def _steps(data: xr.Dataset) -> list[Table]:
     effort = [n for n in _numbers(data) if _is_effort(n)]
     shape = [n for n in _numbers(data) if n in names_of("contact")]
     tables = {
-        "What was found in each load step.": [
-            n for n in _numbers(data) if n not in (*effort, *shape)
-        ],
-        "Of what shape the contact is.": shape,
-        "How exactly each load step was solved, and at what effort.": effort,
+        "Results of each load step.": [n for n in _numbers(data) if n not in (*effort, *shape)],
+        "Shape of the contact in each load step.": shape,
+        "Residuals and effort of each load step.": effort,
     }
     # Files of earlier versions lack the shape.
     return [_table_of_steps(data, names, caption) for caption, names in tables.items() if names]
@@ -281,7 +279,7 @@ def _verdict(word: str) -> Cell:
 
 
 def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table:
-    """Return a row for each run: what is varied, and the numbers of its last step.
+    """Return a row for each run: its values on the axes, and the numbers of its last step.
 
     ``mapped`` has the indices of the runs that are mapped, in the order of their maps.
     """
@@ -291,7 +289,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
     numbers = [_column(name, table[name]) for name in names]
     rows: list[list[str | Cell]] = []
     for index, row in enumerate(runs):
-        done, wanted, word = progress_of(row)
+        done, total, word = progress_of(row)
         point = [
             _text(row[name].item(), factor) for name, (_, factor) in zip(axes, varied, strict=True)
         ]
@@ -301,11 +299,11 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
         ]
         shown = mapped.index(index) if index in mapped else None
         run = Cell(str(row["run"].item()), frame=shown)
-        rows.append([run, *point, f"{done}/{wanted}", *last, _verdict(word)])
+        rows.append([run, *point, f"{done}/{total}", *last, _verdict(word)])
     columns = [
         Column("run", meaning="name of its file in the folder runs", words=True),
         *(column for column, _ in varied),
-        Column("steps", meaning="load steps that are there, of those that there should be"),
+        Column("steps", meaning="finished load steps, of those planned"),
         *(column for column, _ in numbers),
         Column("status", words=True),
     ]
@@ -355,7 +353,7 @@ def _inputs(fields: list[Input]) -> Table:
         for i in fields
         if i.name != "title" and not i.name.startswith("outputs.")
     ]
-    return Table("All that decides the result, defaults included.", columns, rows)
+    return Table("All inputs that determine the result, defaults included.", columns, rows)
 
 
 def _varied(table: xr.Dataset, fields: list[Input]) -> list[Input]:
@@ -381,23 +379,23 @@ def _origin(attributes: dict[str, str], configuration: dict[str, Any]) -> Iterat
         ("identity", attributes.get("identity", "")),
     ]
     heads = [Column("what", words=True), Column("value", words=True)]
-    yield Table("What it was computed with.", heads, [list(fact) for fact in facts if fact[1]])
+    yield Table("Versions, date and identity.", heads, [list(fact) for fact in facts if fact[1]])
     rows = [
         [i.name, i.value, i.origin.distribution, i.origin.version, i.origin.entry_point]
         for i in inputs(configuration)
         if i.origin
     ]
     names = ("used as", "type", "package", "version", "entry point")
-    yield Table("Where the components come from.", [Column(n, words=True) for n in names], rows)
+    yield Table("Origin of the components.", [Column(n, words=True) for n in names], rows)
 
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:
     name, folder = f"{stem.name}.toml", stem.parent.resolve().name or stem.name
-    yield Code(tomli_w.dumps(configuration), "All that was asked, in SI.", name)
+    yield Code(tomli_w.dumps(configuration), "The whole configuration, in SI.", name)
     yield Code(
         f"pellicle run {shlex.quote(name)} -o {shlex.quote(folder)}",
-        "With that file in the current folder, and files that it names where their paths say; what "
-        "they hold is compared with its hash where there is one:",
+        "With that file in the current folder, and the files that it names at their paths; their "
+        "content is compared with its hash where the configuration has one:",
     )
 
 

@@ -29,7 +29,7 @@ _COLUMNS = 4
 class Maps(TableFigure):
     """A field over the domain, one panel for each value of an axis.
 
-    Of the other axes of a study the first value is drawn, and of the steps the last. ``field`` is
+    Other axes of a study are at their first value, steps at the last. ``field`` is
     arithmetic over the fields and numbers of a run: ``contact`` is drawn black on white, and
     ``displacement - depth - gap`` is the profile of the indenter.
     """
@@ -89,7 +89,7 @@ class Maps(TableFigure):
                 vmin=low,
                 vmax=high,
                 interpolation="nearest" if is_bool else None,
-                # The other stage converts every cell to four colour values first.
+                # The stage "rgba" converts every cell to four colour values first.
                 interpolation_stage="data",
             )
             axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")

@@ -1,4 +1,4 @@
-"""Fields along a line through the centre, run beside run."""
+"""Fields along a line through the centre, of several runs."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _ACROSS = {"x": "y", "y": "x"}
-_SYMBOLS = 90
+_MARKERS = 90
 
 
 class Profiles(XYFigure):
     """Fields along x or y through the centre, one curve for each value of an axis.
 
-    Of the other axes of a study the first value is drawn, and of the steps the last. ``x`` and
+    Other axes of a study are at their first value, steps at the last. ``x`` and
     ``y`` are arithmetic over the fields and numbers of each run; the numbers drawn are written as
     CSV beside the figure.
     """
@@ -56,7 +56,7 @@ class Profiles(XYFigure):
                 color=f"C{number}",
                 markersize=3.5,
                 markerfacecolor="white",
-                markevery=max(1, x.size // _SYMBOLS) if self.reference else None,
+                markevery=max(1, x.size // _MARKERS) if self.reference else None,
                 linewidth=1.2,
                 label=name or None,
             )

@@ -32,7 +32,7 @@ class Vtk(Output):
 
     The .vts files are structured grids of the cell centres. The surface lies at z = −displacement,
     so the solid is below it, and all fields are point data; the numbers of the step are field data.
-    The .pvd file lists the steps in order: open that.
+    The .pvd file, which lists the steps in order, opens them all.
     """
 
     type: Literal["vtk"] = "vtk"
@@ -42,7 +42,7 @@ class Vtk(Output):
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """Those of the list and of the steps."""
+        """Suffixes of the list and of the steps."""
         return ".pvd", "-*.vts"
 
     def step(self, record: xr.Dataset, stem: Path) -> None:
@@ -78,7 +78,7 @@ def _write_step(step: xr.Dataset, path: Path) -> None:
         )
 
     extent = f"0 {x.size - 1} 0 {y.size - 1} 0 0"
-    with _written(path) as xml, _file_of(xml, "StructuredGrid", WholeExtent=extent):
+    with _writer(path) as xml, _file_of(xml, "StructuredGrid", WholeExtent=extent):
         with _element(xml, "FieldData"):
             for name, number in numbers.items():
                 _array(xml, name, number.dtype, [_encoded(number.tobytes())], NumberOfTuples="1")
@@ -94,15 +94,15 @@ def _write_step(step: xr.Dataset, path: Path) -> None:
 
 def _write_list(steps: Mapping[int, str], path: Path) -> None:
     """Write the list of the files of the steps."""
-    with _written(path) as xml, _file_of(xml, "Collection"):
+    with _writer(path) as xml, _file_of(xml, "Collection"):
         for index, name in steps.items():
             with _element(xml, "DataSet", timestep=str(index), file=name):
                 pass
 
 
 @contextmanager
-def _written(path: Path) -> Iterator[XMLGenerator]:
-    """Yield what writes the elements of a file."""
+def _writer(path: Path) -> Iterator[XMLGenerator]:
+    """Yield a writer of the elements of a file."""
     with atomic_write(path) as part, part.open("wb") as file:
         xml = XMLGenerator(file, "utf-8", short_empty_elements=True)
         xml.startDocument()
@@ -119,7 +119,7 @@ def _element(xml: XMLGenerator, name: str, **attributes: str) -> Iterator[None]:
 
 @contextmanager
 def _file_of(xml: XMLGenerator, kind: str, **attributes: str) -> Iterator[None]:
-    """Write a VTK file of one kind around what is written inside."""
+    """Write the outer elements of a VTK file around the elements inside."""
     with (
         _element(
             xml,
@@ -161,8 +161,8 @@ def _encoded(data: bytes) -> str:
 def _base64(blocks: Iterable[bytes]) -> Iterator[str]:
     """Yield blocks of bytes, all of one size but the last, in base64, each compressed.
 
-    Ahead stand the number of blocks, their size, that of the last if it is less, and the compressed
-    size of each.
+    The header holds the number of blocks, their size, that of the last block if it is smaller, else
+    0, and the compressed size of each block.
     """
     packed, sizes = [], []
     for block in blocks:

@@ -171,7 +171,7 @@ def test_schema() -> None:
         ('curves = [1]\nindenter = "sphere"', "curves.0: 1 is not allowed"),
         ('indenter = "sphere"\nfix = 1', "fix: 1 is not a table"),
         ('indenter = "sphere"\n[fix]\nmodulus = 1', "fix.modulus: is not a parameter"),
-        ('indenter = "sphere"\ncontact_points = true', "contact_points: is of a pool"),
+        ('indenter = "sphere"\ncontact_points = true', "contact_points: needs pool = true"),
         ('indenter = "sphere"\nkernel = "winkler"', "kernel: 'winkler' has no field"),
         ('indenter = "sphere"\nexecutor = "abacus"', "'abacus' is not an executor"),
         ('indenter = "sphere"\n[per_file]\nradius = "1 um"', "per_file.radius: '1 um'"),
@@ -200,7 +200,7 @@ def test_bad_commands(cli: Cli) -> None:
 def test_bad_arguments() -> None:
     """A configuration of several curves is not one for `fit`, nor has a force curve fields."""
     config = pl.FitConfig(indenter={"type": "sphere", "radius": "5 um"}, curves=["a", "b"])
-    with pytest.raises(pl.ConfigError, match="hold 2 curves; use fit_many"):
+    with pytest.raises(pl.ConfigError, match="names 2 curves; use fit_many"):
         pl.fit(config=config)
     with pytest.raises(pl.ConfigError, match="indenter: is missing"):
         pl.fit([1, 2], [1, 2])

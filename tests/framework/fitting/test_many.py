@@ -79,7 +79,7 @@ def test_folder(cli: Cli, tmp_path: Path) -> None:
     assert lines[0].startswith("curve,status,reduced_modulus [Pa],reduced_modulus_low [Pa],")
     assert len(lines) == 7
     page = Path("out/fits.html").read_text(encoding="utf-8")
-    for words in ("2 of 6 curves were fitted", "10 µm", "held", "no contact", "svg+xml"):
+    for words in ("2 of 6 curves were fitted", "10 µm", "fixed", "no contact", "svg+xml"):
         assert words in page
     assert page.count(">failed</td>") == 4
 
@@ -245,7 +245,7 @@ def test_radius_of_each(cli: Cli, listed: bool) -> None:
         (("list.csv", *OPTIONS), "has a row without a file"),
         (("a.csv", *OPTIONS, "--spring-constant", "1 m"), "spring_constant"),
         (("a.csv", *OPTIONS, "--pool"), "a pool needs two"),
-        (("a.csv", *OPTIONS, "--contact-points"), "is of a pool"),
+        (("a.csv", *OPTIONS, "--contact-points"), "needs pool = true"),
         (("a.csv", "none.csv", *OPTIONS, "--pool"), "none.csv: cannot be read"),
         (("a.csv", "b.csv", *OPTIONS, "--pool", "--fix", "contact_point=0"), "is not shared"),
     ],

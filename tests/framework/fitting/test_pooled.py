@@ -325,4 +325,4 @@ def test_page_of_curves_that_disagree(tmp_path: Path) -> None:
     notice = re.search(r'<div class="notice bad">.*?do not agree', page, re.DOTALL)
     assert notice is not None
     assert "notice good" not in notice[0]
-    assert page.count("held") >= 2
+    assert page.count("fixed") >= 2

@@ -44,7 +44,7 @@ def exact_nodes() -> SimulatedCurve:
     )
     return SimulatedCurve(
         sphere,
-        material.given,
+        material.table,
         planned.depths,
         simulation._RATIOS,
         np.log(forces),
@@ -154,7 +154,7 @@ def test_simulated_curve_is_an_indenter(exact_nodes: SimulatedCurve) -> None:
     fine = pl.fit(depth, force, indenter=exact_nodes)
     true = pl.fit(depth, force, indenter=exact)
     assert fine.tension.value == pytest.approx(true.tension.value, rel=0.01)
-    with pytest.raises(pl.ConfigError, match="beside a force curve"):
+    with pytest.raises(pl.ConfigError, match="with a force curve"):
         pl.fit(depth, force, indenter=exact_nodes, kernel="tensed_membrane")
 
 
@@ -163,12 +163,12 @@ def test_simulated_curve_is_an_indenter(exact_nodes: SimulatedCurve) -> None:
     [
         ("winkler", "has no field reduced_modulus"),
         ("bonded_layer", "put it under a skin"),
-        ({"type": "tensed_membrane", "tension": 1}, "kernel.tension: is what the fit finds"),
+        ({"type": "tensed_membrane", "tension": 1}, "kernel.tension: is determined by the fit"),
         ({"type": "coated", "substrate": LAYER}, "kernel.substrate.poissons_ratio: is missing"),
         ({"type": "bendy"}, "'bendy' is not a kernel"),
         (
             {"type": "coated", "substrate": LAYER | {"youngs_modulus": 1e3}},
-            "kernel.substrate.youngs_modulus: is what the fit finds",
+            "kernel.substrate.youngs_modulus: is determined by the fit",
         ),
     ],
 )
@@ -191,7 +191,7 @@ def test_poissons_ratio_is_the_kernels() -> None:
 def test_what_counts_against_the_modulus_is_refused() -> None:
     """A bending stiffness has no meaning while the modulus is not known."""
     material = solid({"type": "bending_skin", "bending": "1 pN*m"})
-    with pytest.raises(pl.ConfigError, match="counts against the modulus"):
+    with pytest.raises(pl.ConfigError, match="scales with the modulus"):
         scaled(material.kernel, 1e-6, (material.modulus, material.tension))
 
 

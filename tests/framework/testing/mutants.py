@@ -24,13 +24,13 @@ def complaint(family: str, component: Any) -> str:
 
 
 def check_mutant(family: str, mutant: Any, rule: str) -> None:
-    """Check that the kit names the class, the rule, what is asked and what was found."""
+    """Check that the kit names the class, the rule, the requirement and the violation."""
     message = complaint(family, mutant)
     first, demand, finding = message.split("\n")[:3]
     assert first.startswith(f"{type(mutant).__name__} breaks the rule ")
     assert first.split()[-1] == rule, message
-    assert demand.startswith("asked: ")
-    assert len(finding) > len("found: ")
+    assert demand.startswith("required: ")
+    assert len(finding) > len("violation: ")
 
 
 def check_base(family: str, component: Any) -> None:

@@ -137,7 +137,7 @@ def test_every_number_is_there_with_its_unit(ran: tuple[Path, xr.Dataset]) -> No
     """What a step has in the result is in the row of the step, in the unit of its column."""
     path, data = ran
     page = Page(path)
-    heads = ("What was found", "Of what shape", "How exactly")
+    heads = ("Results of each", "Shape of the contact", "Residuals and effort")
     measures, shape, effort = (page.table(head) for head in heads)
     scalars = [
         str(name)
@@ -168,14 +168,14 @@ def test_inputs_and_provenance(ran: tuple[Path, xr.Dataset]) -> None:
     """Values with units, versions, the identity and where components come from."""
     path, data = ran
     page = Page(path)
-    inputs = {row["field"]: row["value"] for row in page.table("All that decides")}
+    inputs = {row["field"]: row["value"] for row in page.table("All inputs")}
     assert inputs["kernel.tension"] == "100 mN/m"
     assert inputs["indenter.radius"] == "1 mm"
     assert inputs["loading.depth"] == "5, 10 µm"
     assert inputs["solver"] == "active_set"
-    facts = {row["what"]: row["value"] for row in page.table("What it was computed with")}
+    facts = {row["what"]: row["value"] for row in page.table("Versions, date")}
     assert facts == {name: data.attrs[name] for name in ("versions", "date", "identity")}
-    origins = {row["used as"]: row for row in page.table("Where the components")}
+    origins = {row["used as"]: row for row in page.table("Origin of the")}
     assert origins["kernel"]["entry point"] == "kernel.tensed_membrane"
     assert origins["kernel"]["version"] == pl.__version__
 
@@ -219,7 +219,7 @@ def test_study(studied: tuple[Path, xr.Dataset]) -> None:
     links = [attrs["data-frame"] for tag, attrs in page.tags if "data-frame" in attrs]
     assert links == ["0", "1"]
     assert page.maps["frames"][1]["label"] == "indenter.radius = 1 mm"
-    inputs = {row["field"]: row["value"] for row in page.table("All that decides")}
+    inputs = {row["field"]: row["value"] for row in page.table("All inputs")}
     assert inputs["indenter.radius"] == "0.5, 1 mm"
     assert inputs["kernel.tension"] == "100 mN/m"
     assert "runs converged" in page.words
@@ -251,7 +251,7 @@ def test_odd_results(tmp_path: Path, changes: dict[str, Any]) -> None:
     """Each has its page, with numbers that JSON and a browser take."""
     page = page_of(tmp_path, **changes)
     assert all(np.isfinite([f["low"], f["high"]]).all() for f in page.maps["frames"][0]["fields"])
-    assert page.table("What was found")
+    assert page.table("Results of each")
 
 
 def test_steps_that_did_not_converge_are_marked(tmp_path: Path) -> None:
@@ -260,7 +260,7 @@ def test_steps_that_did_not_converge_are_marked(tmp_path: Path) -> None:
     page = page_of(tmp_path, solver=hasty)
     assert "2 of 2 load steps did not converge" in page.words
     assert "Step 2: the surface" in page.words
-    assert [row["status"] for row in page.table("What was found")] == ["NOT CONVERGED"] * 2
+    assert [row["status"] for row in page.table("Results of each")] == ["NOT CONVERGED"] * 2
     assert [frame["label"] for frame in page.maps["frames"]][1].endswith("NOT CONVERGED")
 
 
@@ -286,9 +286,9 @@ def test_values_that_are_not_numbers(tmp_path: Path) -> None:
     with np.errstate(all="ignore"):
         page = page_of(tmp_path, solver=Lost())
     assert "the pressure became NaN" in page.words
-    (force,) = (v for k, v in page.table("What was found")[0].items() if k.startswith("force"))
+    (force,) = (v for k, v in page.table("Results of each")[0].items() if k.startswith("force"))
     assert force == "nan"
-    inputs = {row["field"]: row["value"] for row in page.table("All that decides")}
+    inputs = {row["field"]: row["value"] for row in page.table("All inputs")}
     assert inputs["solver"] == "lost"
 
 
@@ -306,8 +306,8 @@ def test_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(KeyboardInterrupt):
         page_of(tmp_path)
     page = Page(tmp_path / "odd.html")
-    assert "The run ended early: 1 of 2 load steps are there." in page.words
-    assert len(page.table("What was found")) == 1
+    assert "The run ended early: 1 of 2 load steps are finished." in page.words
+    assert len(page.table("Results of each")) == 1
 
 
 def test_what_is_left_out_or_coarser_is_said(tmp_path: Path) -> None:
@@ -317,7 +317,7 @@ def test_what_is_left_out_or_coarser_is_said(tmp_path: Path) -> None:
     page = page_of(tmp_path, loading=loading, outputs=outputs)
     assert [frame["label"][0] for frame in page.maps["frames"]] == ["3", "5"]
     assert "in 2 of 5 load steps. Each pixel is the mean over 3 × 3 cells." in page.words
-    assert len(page.table("What was found")) == 5
+    assert len(page.table("Results of each")) == 5
 
 
 def test_study_with_failures(tmp_path: Path) -> None:
@@ -327,7 +327,7 @@ def test_study_with_failures(tmp_path: Path) -> None:
     with pytest.warns(pl.ConvergenceWarning):
         pl.run_study(study, tmp_path, progress=False, threads=1)
     page = Page(tmp_path / "study.html")
-    assert "of 2 runs 1 did not converge" in page.words
+    assert "Of 2 runs 1 did not converge" in page.words
     assert re.search(r"\w{16} \(solver.max_iterations = 2\): the surface", page.words)
     statuses = [row["status"] for row in page.table("The last load step")]
     assert statuses == ["NOT CONVERGED", "converged"]

@@ -26,7 +26,7 @@ SUFFIXES = (
     ".tab",
     ".zip",
 )
-"""Suffixes of instrument files alone; .h5, .csv and .txt may be an instrument's as well."""
+"""Suffixes that only instrument files have; .h5, .csv and .txt may be an instrument's too."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
 _SPRING, _TIP = "spring constant", "tip position"
 _HEIGHTS = ("height (measured)", "height (piezo)")
@@ -38,7 +38,7 @@ def installed() -> bool:
 
 
 def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve | PellicleError]:
-    """Return the ``segment`` of each curve of a file by its number; that of an only one is empty.
+    """Return the ``segment`` of each curve by its number; the label of a single curve is empty.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve 
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
 
-    given = {
+    overrides = {
         name.replace("_", " "): value
         for name, value in calibration.model_dump(exclude_none=True).items()
     }
@@ -63,7 +63,7 @@ def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve 
         with _pellicle_errors(path):
             loader = get_recipe(path).loader
             try:
-                recordings = loader(path, meta_override=given)
+                recordings = loader(path, meta_override=overrides)
             except NotImplementedError:
                 # Formats that always hold their calibration do not take another.
                 recordings = loader(path)
@@ -71,7 +71,7 @@ def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve 
             label = "" if len(recordings) == 1 else str(recording["metadata"]["enum"])
             try:
                 with _pellicle_errors(path):
-                    curves[label] = _curve(path, recording, given, segment)
+                    curves[label] = _curve(path, recording, overrides, segment)
             except PellicleError as error:
                 curves[label] = error
     messages = tuple(dict.fromkeys(f"afmformats: {warning.message}" for warning in caught))
@@ -101,11 +101,11 @@ def _pellicle_errors(path: Path) -> Iterator[None]:
 
 
 def _curve(
-    path: Path, recording: Mapping[str, Any], given: Mapping[str, float], segment: str
+    path: Path, recording: Mapping[str, Any], overrides: Mapping[str, float], segment: str
 ) -> Curve:
     """Return one segment of one curve in SI."""
     data, metadata = recording["data"], recording["metadata"]
-    for name, value in given.items():
+    for name, value in overrides.items():
         if not np.isclose(metadata.get(name, value), value, rtol=1e-6):
             raise ConfigError(
                 f"{path}: holds a {name} of {metadata[name]:g} already, and this format takes no "
@@ -113,7 +113,7 @@ def _curve(
                 name.replace(" ", "_"),
             )
     force = np.asarray(data["force"], dtype=float)
-    stiffness = metadata.get(_SPRING, given.get(_SPRING))
+    stiffness = metadata.get(_SPRING, overrides.get(_SPRING))
     if _TIP in data:
         tip = np.asarray(data[_TIP], dtype=float)
     else:
@@ -127,5 +127,5 @@ def _curve(
 
 
 def _rows(segments: Any, segment: str) -> Any:
-    """Return which rows belong to the first segment, or to the last: all if there is only one."""
+    """Return the rows of the first or of the last segment: all if there is only one."""
     return segments == (segments.min() if segment == "approach" else segments.max())

@@ -17,7 +17,7 @@ from .curve import Curve
 EXAMPLE = "position [um],force [nN]"
 _POSITIONS = {
     "position": "position of the indenter, growing into the solid",
-    "depth": "position seen from first touch",
+    "depth": "position relative to first touch",
     "height": "height of the cantilever's base, falling on approach",
     "extension": "extension of the piezo, growing on approach",
 }

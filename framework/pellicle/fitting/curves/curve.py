@@ -58,10 +58,10 @@ def clean(curve: Curve, segment: Segment = "approach") -> Curve:
             f"has {f.size} values and position {z.size}; give one for each position", "force"
         )
     messages = list(curve.messages)
-    known = np.isfinite(z) & np.isfinite(f)
-    if missing := int(np.sum(~known)):
+    finite = np.isfinite(z) & np.isfinite(f)
+    if missing := int(np.sum(~finite)):
         messages.append(f"{missing} of {z.size} rows hold no finite number and were left out")
-        z, f = z[known], f[known]
+        z, f = z[finite], f[finite]
     _check_count(z, "the curve")
     _check_si(z, "position", "m")
     _check_si(f, "force", "N")
@@ -185,7 +185,7 @@ def _one_pass(z: Array, segment: Segment, messages: list[str]) -> slice:
 
 
 def _turns(z: Array, least: float) -> list[int]:
-    """Return the rows after which the position moves the other way by at least this much."""
+    """Return the rows after which the position moves the other way by ``least`` or more."""
     turns: list[int] = []
     low = high = 0
     direction = 0

@@ -74,16 +74,16 @@ def gather(
     if isinstance(curves, Mapping):
         files: list[tuple[Any, dict[str, Any]]] = [(name, {}) for name in curves]
     else:
-        given = [curves] if isinstance(curves, (str, Path)) else curves
-        files = [file for text in given for path in expanded(text) for file in _files(path)]
+        paths = [curves] if isinstance(curves, (str, Path)) else curves
+        files = [file for text in paths for path in expanded(text) for file in _files(path)]
     if not files:
         raise ConfigError("holds no curve; give files, or a folder of them", "curves")
     sources = []
     for (file, listed), values in zip(files, fields_of_files(per_file, len(files)), strict=True):
         fields = values | listed
-        known = {name: fields.pop(name) for name in Calibration.model_fields if name in fields}
+        settings = {name: fields.pop(name) for name in Calibration.model_fields if name in fields}
         try:
-            own = Calibration(**calibration.model_dump() | known)
+            own = Calibration(**calibration.model_dump() | settings)
             if isinstance(curves, Mapping):
                 position, force = curves[file]
                 # `clean` checks the arrays.
@@ -112,22 +112,22 @@ def fields_of_files(per_file: Mapping[str, Sequence[Any]], count: int) -> list[d
     return [{name: values[n] for name, values in per_file.items()} for n in range(count)]
 
 
-def expanded(given: str | Path, folder: str | Path = "") -> list[Path]:
+def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is."""
-    path = Path(folder, given)
-    if path.exists() or not _PATTERN.search(str(given)):
+    path = Path(folder, pattern)
+    if path.exists() or not _PATTERN.search(str(pattern)):
         return [path]
-    anchor, files = Path(given).anchor, []
-    # A pattern such as "**.csv" is not one, before Python 3.13.
+    anchor, files = Path(pattern).anchor, []
+    # Before Python 3.13, a pattern such as "**.csv" is a ValueError.
     with suppress(ValueError):
-        files = sorted(Path(anchor or folder).glob(str(Path(given).relative_to(anchor))))
+        files = sorted(Path(anchor or folder).glob(str(Path(pattern).relative_to(anchor))))
     if not files:
-        raise ConfigError(f"{given}: matches no file; give files, or a folder of them", "curves")
+        raise ConfigError(f"{pattern}: matches no file; give files, or a folder of them", "curves")
     return files
 
 
 def _files(path: Path) -> list[tuple[Path, dict[str, str]]]:
-    """Return the files that a path stands for, each with the fields that a list has for it."""
+    """Return the files that a path stands for, each with its fields in a list of files."""
     if path.is_dir():
         files = sorted(
             file
@@ -149,7 +149,7 @@ def read(
 ) -> dict[str, Curve | PellicleError]:
     """Return the curves of a file, or the errors of reading them, by their labels.
 
-    The label of an only curve is empty.  A table (CSV, TSV, semicolons) has a header such as
+    The label of a single curve is empty.  A table (CSV, TSV, semicolons) has a header such as
     ``position [um],force [nN]``; cells that hold no number are NaN, columns of other names are
     ignored, and rows that differ in a column ``curve`` are different curves.  An HDF5 file has
     datasets of the same names with an attribute ``units``, or groups of them, one for each curve; a
@@ -172,13 +172,13 @@ def read(
         try:
             return afm.read(path, calibration, segment)
         except StorageError:
-            # Without afmformats nobody can tell whether it is the file of an instrument.
-            hint = "" if afm.installed() else f"; if it is of an instrument: {afm.INSTALL}"
+            # Only afmformats can recognise the file of an instrument.
+            hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
             if tables and suffix not in _HDF5:
-                hint = f"; its first line has {_first_cells(path)}{hint}"
+                hint = f"; its first line is {_first_cells(path)}{hint}"
     if not tables:
         raise StorageError(
-            f"{path}: is neither text, nor HDF5, nor of an instrument that can be read{hint}; "
+            f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
             f"export it as a table with a header such as {EXAMPLE!r}"
         )
     curves: dict[str, Curve | PellicleError] = {}

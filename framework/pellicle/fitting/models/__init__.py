@@ -1,1 +1,1 @@
-"""What force a material gives at a depth."""
+"""Models of the force at a depth."""

@@ -42,7 +42,7 @@ class Parameter:
         return self if self.shared else replace(self, curve=index)
 
     def coordinate(self, value: float) -> float:
-        """Return what the fit varies: the value, or its natural logarithm."""
+        """Return the coordinate that the fit varies: the value, or its natural logarithm."""
         return float(np.log(value)) if self.logarithmic else value
 
     def value(self, coordinate: float) -> float:
@@ -53,7 +53,7 @@ class Parameter:
 Values = Mapping[Parameter, float]
 """Values of parameters, each in its unit."""
 Coordinates = dict[Parameter, float]
-"""What a fit varies: values of parameters, of the logarithmic ones their natural logarithm."""
+"""What a fit varies: the value of each parameter, or its natural logarithm if `logarithmic`."""
 
 CONTACT_POINT = Parameter("contact_point", "m")
 """Position of first touch."""
@@ -75,7 +75,7 @@ class ModelForce(NamedTuple):
     by_depth: Array
     """∂F/∂δ [N/m]."""
     by_parameter: Mapping[Parameter, Array]
-    """∂F by the value of each parameter [N per unit]."""
+    """Derivative of F with respect to the value of each parameter [N per unit]."""
 
 
 class ForceModel(Protocol):
@@ -150,7 +150,7 @@ class ClosedFormModel(TensionModel):
 
     indenter: HasForceCurve
     accuracy: ClassVar[float] = 1e-6
-    """Of the master curves that the shipped indenters interpolate."""
+    """Accuracy of the master curves that the shipped indenters interpolate."""
     coarse: ClassVar[None] = None
 
     @property

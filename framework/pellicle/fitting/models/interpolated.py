@@ -30,7 +30,7 @@ class SimulatedCurve(TensionModel):
 
     log(F/E*) is a cubic spline of log δ and of `stretched` s/w, where w(δ) is approximately the
     width of the contact; beyond the nodes it is extrapolated linearly.  Lengths are stored over a
-    unit length, so that one table serves every size; `unit` is the value of that length here.
+    unit length, so that one table serves every size; `unit` is that length.
     """
 
     indenter: Indenter

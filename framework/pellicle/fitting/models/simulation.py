@@ -95,7 +95,7 @@ def simulate(
     curve = partial(
         SimulatedCurve,
         indenter,
-        solid.given,
+        solid.table,
         planned.depths,
         _RATIOS,
         width=planned.width,
@@ -133,8 +133,8 @@ def plan(indenter: Indenter, solid: Solid, deepest: float, grid_points: int = GR
     """
     if indenter.footprint != "unbounded":
         raise ConfigError(
-            "ends where the grid does, so it has no force curve of its own; give one that has a "
-            "shape",
+            "ends where the grid does, so it has no force curve of its own; give one whose shape "
+            "does not depend on the grid",
             "indenter",
         )
     if grid_points < _FEWEST or grid_points % 2:
@@ -211,7 +211,7 @@ def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
 
 
 def _table(study: Study, cache: Path, progress: bool) -> xr.Dataset:
-    """Return the table of a study, run unless it is cached; fields of its runs are not kept."""
+    """Return the table of a study, run unless it is cached; the fields of its runs are deleted."""
     runs = [point.run.identity for point in study.points]
     folder = cache / hashlib.sha256("".join(runs).encode()).hexdigest()[:16]
     if is_table(folder):

@@ -32,7 +32,7 @@ class Solid:
     poissons_ratio: float | None
 
     @property
-    def given(self) -> dict[str, Any]:
+    def table(self) -> dict[str, Any]:
         """The table of the kernel without modulus and tension."""
         table: dict[str, Any] = self.kernel.model_dump(mode="json", exclude_none=True)
         for path in (self.modulus, self.tension):
@@ -41,7 +41,7 @@ class Solid:
         return table
 
 
-def solid(given: str | Mapping[str, Any], poissons_ratio: float | None = None) -> Solid:
+def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) -> Solid:
     """Return the solid that the type or the table of a kernel describes.
 
     ``poissons_ratio`` is used if the kernel needs one and its table has none.
@@ -52,14 +52,14 @@ def solid(given: str | Mapping[str, Any], poissons_ratio: float | None = None) -
         The kernel is not valid, has no field for the reduced modulus or the tension, or has a value
         for one of them.
     """
-    table: Any = {"type": given} if isinstance(given, str) else dict(given)
+    table: Any = {"type": spec} if isinstance(spec, str) else dict(spec)
     try:
         modulus, _ = _field(table, "reduced_modulus")
         tension, _ = _field(table, "tension")
         for path in (modulus, tension, f"{modulus.rpartition('.')[0]}.youngs_modulus".lstrip(".")):
             if get(table, path) is not None:
                 raise ConfigError(
-                    "is what the fit finds; leave it out of the kernel, or fix it with fix", path
+                    "is determined by the fit; leave it out of the kernel, or fix it with fix", path
                 )
         path, info = _field(table, "poissons_ratio")
         ratio = get(table, path)
@@ -72,7 +72,7 @@ def solid(given: str | Mapping[str, Any], poissons_ratio: float | None = None) -
 
 
 def _field(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:
-    """Return path and definition of the first field of a name in a kernel and those inside it."""
+    """Return path and definition of the first field ``name`` in a kernel or a kernel inside it."""
     for path, inner, _ in [("", table, None), *walk(table)]:
         if isinstance(inner, Mapping):
             fields = registry().find("kernel", inner.get("type")).model_fields
@@ -96,7 +96,7 @@ def lengths(component: Component) -> list[float]:
 
 
 def scales(component: Component) -> bool:
-    """Return whether every field of a component has a unit, text and integers aside."""
+    """Return whether every field of a component has a unit, except texts and integers."""
     return all(
         quantity is not None or isinstance(value, (str, int))
         for _, quantity, value in _quantities(component)
@@ -118,7 +118,7 @@ def scaled(component: Component, unit: float, free: tuple[str, ...] = ()) -> dic
         pressure, length = quantity.powers()
         if pressure and value:
             raise ConfigError(
-                f"{shown(value)} {quantity.unit} counts against the modulus, which is not known "
+                f"{shown(value)} {quantity.unit} scales with the modulus, which is not known "
                 "yet; a fit allows only lengths and plain numbers, so leave it out",
                 path,
             )
@@ -127,7 +127,7 @@ def scaled(component: Component, unit: float, free: tuple[str, ...] = ()) -> dic
 
 
 def _quantities(component: Component) -> Iterator[tuple[str, Quantity | None, Any]]:
-    """Yield path, quantity and value of each field that has a value, the type aside."""
+    """Yield path, quantity and value of each field that has a value, except the type."""
     for path, value, info in walk(component):
         is_type = path.rpartition(".")[2] == "type"
         if info is not None and value is not None and not isinstance(value, Model) and not is_type:

@@ -66,20 +66,20 @@ def panels(fit: Fit | PooledFit | Rows) -> list[Panel]:
     The likelihood map needs a fitted modulus and tension, a table at least one fitted curve.
     """
     if isinstance(fit, Fit):
-        caption = "Data, fit, and the fit without tension; below, what each leaves."
-        drawn = [Panel(partial(_with_residuals, fit), caption)]
+        caption = "Data, fit, and the fit without tension; below, the residuals of both."
+        drawings = [Panel(partial(_with_residuals, fit), caption)]
         if not (fit.reduced_modulus.held or fit.tension.held):
-            caption = "The pairs of modulus and tension that explain the curve."
-            drawn.append(Panel(lambda part: likelihood_map(fit, part.add_subplot()), caption))
-        return drawn
+            caption = "The pairs of modulus and tension that describe the curve."
+            drawings.append(Panel(lambda part: likelihood_map(fit, part.add_subplot()), caption))
+        return drawings
     if isinstance(fit, PooledFit):
-        data = "Data and fit of each curve, depth and force over its largest; below, what is left."
+        data = "Data and fit of each curve, relative to largest depth and force; below, residuals."
         profiles = (
-            "The rise of the least χ² where a parameter is held; dotted, the ends of its interval"
+            "The rise of the least χ² with a parameter fixed; dotted, the ends of its interval."
         )
         return [
             Panel(partial(_with_residuals, fit), data),
-            Panel(partial(_profiles, fit), f"{profiles}."),
+            Panel(partial(_profiles, fit), profiles),
         ]
     if not any(name in row for name in ("reduced_modulus", "tension") for row in fit):
         return []
@@ -136,7 +136,7 @@ def curves(fit: PooledFit, axes: Axes) -> None:
         depth, colour = _relative_depth(member, parameters), f"C{number}"
         axes.plot(depth, data, ".", color=colour, alpha=0.3, markersize=2)
         axes.plot(depth, model / largest, color=colour, label=fit.curves[number].name)
-    axes.set_ylabel("force / its largest")
+    axes.set_ylabel("force / largest force")
     if len(fit.curves) <= _LEGEND_CURVES:
         axes.legend(fontsize="small")
 
@@ -148,7 +148,7 @@ def residuals(fit: Fit | PooledFit, axes: Axes) -> None:
     for each curve against the depth relative to its maximum.
     """
     if isinstance(fit, PooledFit):
-        label = "depth / its largest"
+        label = "depth / largest depth"
         lines = [
             (f"C{number}", _relative_depth(*part), *part)
             for number, part in enumerate(_members(fit))

@@ -46,17 +46,17 @@ def save_report(fit: Fit | PooledFit | Rows, path: Path, title: str) -> Path:
     advice: list[Block] = []
     content: dict[str, Any] = {"curves": fit}
     if isinstance(fit, (Fit, PooledFit)):
-        kind, content, (results, given) = "Fit", fit.to_dict(), _fit(fit)
+        kind, content, (results, input_blocks) = "Fit", fit.to_dict(), _fit(fit)
         advice = [Text(_sentence(fit.advice))] if fit.advice else []
     else:
-        kind, (results, given) = "Fits", _many(fit)
+        kind, (results, input_blocks) = "Fits", _many(fit)
     figures = [Picture(svg(p.draw, SIZE), p.caption, p.caption) for p in panels(fit)]
     sections = [
         Section("Result", results),
         Section("Figures", figures),
-        Section("What would tell more", advice),
-        Section("Inputs", given),
-        Section("As JSON", [Code(as_json(content), "All numbers, SI.", f"{path.stem}.json")]),
+        Section("More informative experiments", advice),
+        Section("Inputs", input_blocks),
+        Section("As JSON", [Code(as_json(content), "All numbers, in SI.", f"{path.stem}.json")]),
     ]
     now = datetime.now(UTC).isoformat(" ", timespec="seconds").replace("+00:00", " UTC")
     text = render(title, sections, f"{kind} of pellicle {version('pellicle')}, {now}")
@@ -102,7 +102,7 @@ def _sentence(text: str) -> str:
 
 
 def _warnings(messages: Sequence[str]) -> list[Notice]:
-    return [Notice("To be careful of:", good=False, details=messages)] if messages else []
+    return [Notice("Warnings:", good=False, details=messages)] if messages else []
 
 
 def _estimates(fit: Fit | PooledFit) -> Table:
@@ -117,7 +117,7 @@ def _estimates(fit: Fit | PooledFit) -> Table:
         Column(head, meaning=_MEANINGS.get(head, ""), words=head in ("parameter", "unit"))
         for head in ("parameter", "value", "low", "high", "unit", "bound")
     ]
-    caption = f"What was found, with {100 * CONFIDENCE:.0f} % intervals of the profile likelihood."
+    caption = f"Estimates, with {100 * CONFIDENCE:.0f} % intervals of the profile likelihood."
     return Table(caption, columns, rows)
 
 
@@ -129,7 +129,11 @@ def _data(fit: Fit) -> Table:
         ["χ² of the fit", f"{fit.chi_squared:.5g}"],
         ["χ² without tension", f"{fit.chi_squared_without_tension:.5g}"],
     ]
-    return Table("What the curve holds.", [Column(n, words=True) for n in ("what", "value")], rows)
+    return Table(
+        "Noise and residuals of the curve.",
+        [Column(n, words=True) for n in ("what", "value")],
+        rows,
+    )
 
 
 def _curves(fit: PooledFit) -> Table:
@@ -148,7 +152,7 @@ def _curves(fit: PooledFit) -> Table:
         **_numbers("modulus alone", [c.reduced_modulus_alone for c in curves], "Pa"),
         **_numbers("tension alone", [c.tension_alone for c in curves], "N/m"),
     }
-    return _table("Each curve in the pool, and what it says alone.", columns)
+    return _table("Each curve in the pool, and its own fit.", columns)
 
 
 def _inputs(models: Sequence[Mapping[str, Any]]) -> Table:
@@ -169,7 +173,7 @@ def _inputs(models: Sequence[Mapping[str, Any]]) -> Table:
             text = f"{values[0]} … {values[-1]} ({distinct} values)"
         rows.append([name, text, field.meaning])
     columns = [Column(head, words=True) for head in ("field", "value", "meaning")]
-    return Table("What was pressed in, and what was known of the solid.", columns, rows)
+    return Table("The indenter, and the known properties of the solid.", columns, rows)
 
 
 def _table(caption: str, columns: Mapping[Column, Sequence[str | Cell]]) -> Table:
@@ -177,7 +181,7 @@ def _table(caption: str, columns: Mapping[Column, Sequence[str | Cell]]) -> Tabl
 
 
 def _numbers(name: str, values: Sequence[float], unit: str) -> dict[Column, list[str]]:
-    """Return a column of numbers, in a unit that brings them near 1 … 1000."""
+    """Return a column of numbers, in a unit that brings them between about 1 and 1000."""
     factor, prefixed = axis_unit(np.array(values), unit)
     return {Column(name, prefixed): [f"{value * factor:.4g}" for value in values]}
 
@@ -201,5 +205,5 @@ def _intervals(
 
 def _end(value: float | None, factor: float, fixed: bool) -> str:
     if fixed:
-        return "held"
+        return "fixed"
     return "open" if value is None else f"{value * factor:.4g}"

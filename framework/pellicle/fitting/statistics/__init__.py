@@ -1,1 +1,1 @@
-"""What a curve can tell: likelihoods, intervals, checks."""
+"""Statistics of fits: likelihoods, intervals, checks."""

@@ -56,7 +56,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
         message = (
             f"the force dips by {drop:.3g} N below its baseline over the last {window} points "
             "before contact: that is adhesion, which the model does not have, and which bends a "
-            "curve as tension does; measure where nothing attracts, or fit the tension with a "
+            "curve as tension does; measure without attraction, or fit the tension with a "
             "model of adhesion"
         )
         failed.append(FailedCheck("adhesion", message))
@@ -67,7 +67,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
         message = (
             f"the noise before contact is correlated: {far} points carry as much information as "
             f"{max(far / slow.excess(independent), 1):.2g} independent ones, and the intervals are "
-            "widened by that"
+            "widened accordingly"
         )
         failed.append(FailedCheck("slow_noise", message))
     if residuals.step > _COARSE * neighbour_noise(force):
@@ -102,7 +102,7 @@ def falling_baseline(residuals: Residuals) -> tuple[str, ...]:
     return (
         f"the baseline falls by {-change:.3g} N towards contact: drift does that, but so does "
         "attraction of long range, which bends a curve as tension does; check whether it falls as "
-        "much further out",
+        "steeply further out",
     )
 
 
@@ -166,13 +166,13 @@ def _equal_bins(points: int) -> Array:
 def _drift_or_offset(
     residuals: Residuals, force: Array, line: Array, noise: float
 ) -> list[FailedCheck]:
-    """Return the check that the force before contact is constant and 0, unless that is fitted."""
+    """Return a failed check if the force before contact is neither fitted nor constant and 0."""
     slope, steepness = _slope(force, line)
     if SLOPE not in residuals.baseline and 2 * ndtr(-abs(slope) / noise) < CHANCE:
         change = slope * steepness * float(np.ptp(line[:, 1]))
         message = (
-            f"the force drifts by {change:.3g} N before contact, and modulus and tension are off "
-            "by its drift in contact; fit the baseline too, with baseline 'slope'"
+            f"the force drifts by {change:.3g} N before contact, and modulus and tension are "
+            "biased by its drift in contact; fit the baseline too, with baseline 'slope'"
         )
         return [FailedCheck("drift", message)]
     mean = float(np.mean(force))
@@ -180,7 +180,7 @@ def _drift_or_offset(
     if residuals.baseline or abs(mean) <= max(_OFFSET_LIMIT * noise / np.sqrt(force.size), least):
         return []
     message = (
-        f"the force before contact is {mean:.3g} N, not 0, and modulus and tension are off by it; "
-        "fit the baseline too, with baseline 'offset'"
+        f"the force before contact is {mean:.3g} N, not 0, and modulus and tension are biased by "
+        "it; fit the baseline too, with baseline 'offset'"
     )
     return [FailedCheck("offset", message)]

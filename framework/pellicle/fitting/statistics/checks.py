@@ -65,8 +65,9 @@ class SingleFit:
 def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
     """Return the best parameters of a curve, its noise, and the checks that it fails.
 
-    The noise is the scatter before contact about drift or a dip there, or, if a check fails, what
-    sums of residuals over bins show.  The noise of ``likelihood`` has no effect but to scale χ².
+    The noise is the scatter before contact about a line and, if the force dips, the dip.  A check
+    that fails may raise it to the scatter in contact or to the noise of sums over bins.  The noise
+    of ``likelihood`` only scales χ².
 
     Raises
     ------
@@ -78,7 +79,7 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
     guesses = initial_guesses(likelihood, fixed)
     if not guesses:
         raise ConfigError(
-            "is nowhere pushed back as an indenter would be; check signs, indenter and fix", "force"
+            "is not described by any modulus above 0; check signs, indenter and fix", "force"
         )
     minimum = best_minimum(likelihood, guesses)
     residuals = Residuals.of(likelihood, minimum.parameters)
@@ -113,7 +114,7 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
 
 
 def _spikes(residuals: Residuals) -> list[FailedCheck]:
-    """Return the check that no point lies far from the mean of its neighbours."""
+    """Return a failed check if points lie far from the mean of their neighbours."""
     force = residuals.force
     if force.size < _QUIET:
         return []
@@ -159,7 +160,7 @@ def _check_contact(residuals: Residuals, before: NoiseEstimate) -> NoiseEstimate
         failed.append(
             _misfit(
                 "misfit",
-                f"the residuals are {scatter / noise:.2g} times the noise before it",
+                f"the residuals are {scatter / noise:.2g} times the noise before contact",
                 residuals,
             )
         )
@@ -210,7 +211,7 @@ def _misfit(code: str, finding: str, residuals: Residuals) -> FailedCheck:
 def _whole_shape(
     likelihood: Likelihood, parameters: Coordinates
 ) -> tuple[IsShallowLimit, HasForceCurve] | None:
-    """Return the indenter and the shape it approximates, if pressed in too deep for that.
+    """Return the indenter and the shape it approximates, if the depth is too large for it.
 
     None if the depth exceeds the limit of that shape, too.
     """
@@ -241,20 +242,22 @@ def _check_shape(likelihood: Likelihood, best: Minimum) -> tuple[list[str], list
     except ConvergenceError:
         return [], []
     share = float(likelihood.depth(best.parameters)[-1]) / limit.radius
-    name, whole = (getattr(it, "type", type(it).__name__) for it in (limit, shape))
+    name, whole = (getattr(form, "type", type(form).__name__) for form in shapes)
     words = (
         f"the depth is {share:.2g} of the radius, and beyond {SHALLOW:g} of it a {name} differs "
-        f"from the {whole} that it stands for: with indenter {whole!r} the reduced modulus is "
+        f"from the {whole} that it approximates: with indenter {whole!r} the reduced modulus is "
         f"{np.exp(minimum.parameters[MODULUS]):.4g} Pa and the tension "
         f"{minimum.parameters[TENSION]:.3g} N/m"
     )
     if not fails:
         return [words], []
-    return [], [FailedCheck("shape", f"{words}; it explains the curve as well without tension")]
+    return [], [
+        FailedCheck("shape", f"{words}; it describes the curve equally well without tension")
+    ]
 
 
 def check_pooled_shape(pool: Pool, best: Minimum) -> list[FailedCheck]:
-    """Return the check that the whole shapes do not replace the tension of several curves."""
+    """Return a failed check if the whole shapes replace the tension of several curves."""
     members, count = [], 0
     for member, part in zip(pool.members, pool.parts(best.parameters), strict=True):
         shapes = _whole_shape(member, part)
@@ -270,7 +273,7 @@ def check_pooled_shape(pool: Pool, best: Minimum) -> list[FailedCheck]:
         return []
     text = (
         f"{count} of {len(members)} curves go deeper than {SHALLOW:g} of the radius, and the "
-        "shapes that their indenters stand for explain the curves as well without tension"
+        "shapes that their indenters approximate describe the curves equally well without tension"
     )
     return [FailedCheck("shape", text)] if fails else []
 

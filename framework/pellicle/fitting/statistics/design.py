@@ -45,8 +45,8 @@ def advice(
 ) -> str:
     """Return the bounds of modulus and tension, and which experiment would tighten them.
 
-    Empty if one of the two is fixed.  A curve that shows no tension is judged by one that it could
-    just miss.
+    Empty if one of the two is fixed.  If the curve shows no tension, the bounds are those at a
+    tension that it could just miss.
     """
     if not {MODULUS, TENSION} <= set(likelihood.free):
         return ""
@@ -71,7 +71,7 @@ def undecided(
     which = "modulus" if modulus.low is None or modulus.high is None else "tension"
     text = (
         f"the curve cannot tell modulus and tension apart: the interval of the {which} is open, "
-        "its value is one of many"
+        "and its value is one of many"
     )
     now, others = _designs(likelihood, _with_tension(likelihood, parameters, tension))
     if min(design.worse for design in (now, *others)) < _USELESS:

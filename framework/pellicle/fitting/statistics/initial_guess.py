@@ -19,11 +19,11 @@ _BINS = 200
 _POINTS = 50
 BEFORE = 0.5
 """Largest distance of the contact point before the first position, over the range of positions."""
-KEPT = 3
+GUESSES = 3
 
 
 def initial_guesses(likelihood: Likelihood, fixed: Coordinates) -> list[Coordinates]:
-    """Return the `KEPT` best of a scan over contact points and values of the model, best first.
+    """Return the `GUESSES` best of a scan over contact points and values of the model, best first.
 
     ``fixed`` has the coordinates of all parameters that are not free; others are ignored.  At each
     node the force scale and the baseline, in which the model is linear, follow by least squares.
@@ -47,7 +47,7 @@ def initial_guesses(likelihood: Likelihood, fixed: Coordinates) -> list[Coordina
         if (guess := _linear_fit(likelihood, fixed, z, f, point, values)) is not None
     ]
     guesses.sort(key=lambda guess: guess[0])
-    return [parameters for _, parameters in guesses[:KEPT]]
+    return [parameters for _, parameters in guesses[:GUESSES]]
 
 
 def _binned(values: Array) -> Array:

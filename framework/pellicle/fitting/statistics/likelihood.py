@@ -142,16 +142,16 @@ class ChiSquared(ABC):
     def deviations(self, parameters: Coordinates) -> Coordinates:
         """Return the Cramér–Rao bound of each coordinate as a standard deviation; 0 if fixed.
 
-        It is infinite for a parameter at its minimum (no tension), and then those of the others
-        hold with that one fixed: their intervals may be narrower than the bound that would hold if
-        the parameter could also take values below its minimum.
+        It is infinite for a parameter at its minimum (no tension); the bounds of the others then
+        hold with that parameter fixed, because their intervals may be narrower than the bounds that
+        would hold if the parameter could also fall below its minimum.
         """
         edge = [p for p in self.free if parameters[p] == p.minimum]
         bounds = self.bounds(parameters, [p for p in self.free if p not in edge])
         return bounds | dict.fromkeys(edge, np.inf)
 
     def bounds(self, parameters: Coordinates, free: Sequence[Parameter]) -> Coordinates:
-        """Return the Cramér–Rao bound of the ``free`` coordinates as standard deviations; 0 else.
+        """Return the Cramér–Rao bound of the ``free`` coordinates as standard deviations, else 0.
 
         It is the root of the diagonal of the inverse Fisher information JᵀJ (Rao 1945).
         """
@@ -169,7 +169,7 @@ class ChiSquared(ABC):
         return bounds | dict(zip(free, (np.sqrt(variances) * scale).tolist(), strict=True))
 
     def minimise(self, start: Coordinates, fixed: Sequence[Parameter] = ()) -> Minimum:
-        """Return the minimum of χ² near ``start``, with some more parameters fixed there.
+        """Return the minimum of χ² near ``start``, where the parameters in ``fixed`` stay.
 
         Raises
         ------

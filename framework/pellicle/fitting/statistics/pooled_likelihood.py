@@ -1,4 +1,4 @@
-"""Likelihood of several curves that share some parameters, and where its minima are sought."""
+"""Likelihood of several curves that share some parameters, and the search for its minima."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.fitting.models.force_model import MODULUS, TENSION, Coordinates, Parameter
 
-from .initial_guess import KEPT
+from .initial_guess import GUESSES
 from .likelihood import ChiSquared, Likelihood, Minimum, Range, least
 
 _Value = TypeVar("_Value")
@@ -20,9 +20,9 @@ _Value = TypeVar("_Value")
 
 @dataclass(frozen=True)
 class Pool(ChiSquared):
-    """χ² of several curves that have the values of their shared parameters in common.
+    """χ² of several curves that share some parameters.
 
-    Each curve has the other parameters (contact point, offset, slope) for itself.
+    Each curve has its own values of the others: contact point, offset, slope.
     """
 
     members: tuple[Likelihood, ...]
@@ -37,7 +37,7 @@ class Pool(ChiSquared):
 
     @cached_property
     def _own(self) -> list[dict[Parameter, Parameter]]:
-        """For each curve the parameters of the pool by those of the curve."""
+        """For each curve, the parameters of the pool by those of the curve."""
         return [
             {p: p.of_curve(index) for p in member.parameters}
             for index, member in enumerate(self.members)
@@ -45,7 +45,7 @@ class Pool(ChiSquared):
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
-        """Those of the first curve, then what each other curve has for itself."""
+        """The parameters of the first curve, then those of the others that are not shared."""
         return tuple(dict.fromkeys(p for own in self._own for p in own.values()))
 
     @property
@@ -58,7 +58,7 @@ class Pool(ChiSquared):
         return [{p: parameters[q] for p, q in own.items()} for own in self._own]
 
     def joined(self, parts: Sequence[Mapping[Parameter, _Value]]) -> dict[Parameter, _Value]:
-        """Return what the curves have for the parameters of the pool, the first for shared ones."""
+        """Return the parts by parameters of the pool, with the first curve's shared ones."""
         pairs = zip(reversed(self._own), reversed(parts), strict=True)
         return {q: part[p] for own, part in pairs for p, q in own.items()}
 
@@ -100,13 +100,13 @@ class Pool(ChiSquared):
         return np.concatenate([triangle[:, -1] for triangle in triangles]), jacobian
 
     def initial_minimum(self, single: Sequence[Coordinates]) -> Minimum:
-        """Return the minimum of χ² near what the curves give on their own, one set for each.
+        """Return the minimum of χ² near the best coordinates of the single curves.
 
         Shared parameters start from the curves with the smallest bound of the modulus and from the
         median.
         """
         pairs = list(zip(self.members, single, strict=True))
-        informative = sorted(pairs, key=lambda pair: pair[0].deviations(pair[1])[MODULUS])[:KEPT]
+        informative = sorted(pairs, key=lambda pair: pair[0].deviations(pair[1])[MODULUS])[:GUESSES]
         tries = [part for _, part in informative]
         return least(
             self._minimise(single, {p: shared[p] for p in self.shared})
@@ -114,7 +114,7 @@ class Pool(ChiSquared):
         )
 
     def without_tension(self, best: Minimum) -> Minimum:
-        """Return the minimum of χ² without tension, near the pool's and the single curves'."""
+        """Return the minimum of χ² without tension, from ``best`` and from the single fits."""
         fixed = (TENSION,)
         parts = [part | {TENSION: 0.0} for part in self.parts(best.parameters)]
         single = [

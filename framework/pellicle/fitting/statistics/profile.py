@@ -108,11 +108,11 @@ def profile_likelihood(
     likelihood: ChiSquared,
     best: Minimum,
     threshold: float,
-    wanted: Sequence[Parameter],
+    parameters: Sequence[Parameter],
     without_tension: Callable[[Minimum], Minimum],
-    report: Callable[[str], None] = lambda words: None,
+    report: Callable[[str], None] = lambda stage: None,
 ) -> ProfileResult:
-    """Return the minimum near ``best``, the one without tension, and intervals of ``wanted``.
+    """Return the minimum near ``best``, the one without tension, and intervals of ``parameters``.
 
     ``without_tension`` finds a minimum without tension from one with it.  The intervals end where
     the profile of χ² exceeds its minimum by ``threshold``, and are widened by the change of the
@@ -123,12 +123,12 @@ def profile_likelihood(
         report("without tension")
         without = without_tension(best)
         if TENSION in likelihood.free and without.chi_squared <= best.chi_squared + 1e-6:
-            # An equally good minimum without tension has it at exactly 0.
+            # Of equally good minima, this one has a tension of exactly 0.
             best = without
         ends: dict[Parameter, Ends] = {}
         failures = []
         try:
-            for parameter in wanted:
+            for parameter in parameters:
                 report(f"interval of {parameter.name}")
                 try:
                     ends[parameter] = confidence_interval(likelihood, best, parameter, threshold)
@@ -143,8 +143,8 @@ def profile_likelihood(
             if failures:
                 messages += (
                     f"the search for the interval of {', '.join(failures)} did not converge, and "
-                    "it is left open: the curve does not tell the parameters apart; fix one of "
-                    "them, or fit less of the baseline",
+                    "the interval is left open: the curve does not tell the parameters apart; fix "
+                    "one of them, or fit less of the baseline",
                 )
             bounds = likelihood.deviations(best.parameters)
             return ProfileResult(likelihood, best, without, wider, bounds, messages)
@@ -164,8 +164,8 @@ def widen(
     if TENSION in ends and tension:
         changes.append(f"the tension by {100 * shift[TENSION] / tension:.2g} %")
     message = (
-        f"the force curve is simulated, to {100 * likelihood.accuracy:.2g} %; half as many cells "
-        f"change {' and '.join(changes)}, and the intervals are widened by that"
+        f"the force curve is simulated to {100 * likelihood.accuracy:.2g} %; half as many cells "
+        f"change {' and '.join(changes)}, and the intervals are widened by these changes"
     )
     wider: dict[Parameter, Ends] = {}
     for p, (low, high) in ends.items():
@@ -238,10 +238,10 @@ def _end(
         share = min(2 * share, 1.0)
     if above == 0:
         return value + share * span
-    # brentq evaluates both ends again, which are known.
-    known = {inside: below, share: above}
+    # brentq evaluates both ends again, whose values are known.
+    values = {inside: below, share: above}
     root = brentq(
-        lambda at: known[at] if at in known else excess(at),
+        lambda at: values[at] if at in values else excess(at),
         inside,
         share,
         xtol=_LEAST,
