@@ -18,8 +18,8 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.checks import (
-    blamed,
     component_name,
+    errors_attributed_to,
     read_only,
     real_array,
     real_number,
@@ -52,7 +52,7 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
     """
     x, y = (read_only(points) for points in grid.coordinates())
     try:
-        with blamed(indenter), np.errstate(over="raise"):
+        with errors_attributed_to(indenter), np.errstate(over="raise"):
             value = indenter.profile(x, y)
             footprint = indenter.footprint
     except ConfigError as error:
@@ -122,7 +122,7 @@ def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> Forc
     PluginError
         They are not three arrays of that shape, finite at every finite depth.
     """
-    with blamed(indenter):
+    with errors_attributed_to(indenter):
         value = indenter.force_curve(read_only(depth), length)
     if not isinstance(value, ForceCurve):
         raise PluginError(
@@ -157,13 +157,13 @@ def solution_of(
         It is not a `Solution` of the grid's shape, the solver changed the problem, or it takes
         ``start`` for an array, which it was in earlier versions.
     """
-    if not problem.touches:
+    if not problem.needs_solving:
         return Solution(np.zeros(problem.grid.shape), 0)
     name = component_name(solver)
     view = _read_only_problem(problem)
     fields, parts = dict(vars(view)), problem.operator.parts()
     try:
-        with blamed(solver):
+        with errors_attributed_to(solver):
             value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
     except (AttributeError, TypeError, ValueError) as error:
         outdated = "'State'|tuple|sequence|inhomogeneous" if start else "argument 'pressure'"
@@ -199,7 +199,7 @@ def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor
         It is not an array of the grid's shape, or not 0 off the contact.
     """
     view, parts = _read_only_problem(problem), problem.operator.parts()
-    with blamed(solver):
+    with errors_attributed_to(solver):
         value = solver.response(view, _read_only_state(state), monitor)
     _require_unchanged(solver, "response()", parts, problem.operator.parts(), "problem.operator")
     pressure = real_array(solver, "response()", value, problem.grid.shape)
@@ -241,7 +241,7 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
         The value is not allowed in this setting.
     """
     try:
-        with blamed(prescription):
+        with errors_attributed_to(prescription):
             prescription.check(setting, value)
     except ConfigError as error:
         named = any(problem.field for problem in error.problems)
@@ -256,7 +256,7 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
     PluginError
         It is none of these, or not of finite numbers.
     """
-    with blamed(prescription):
+    with errors_attributed_to(prescription):
         target = prescription.target(setting, value)
     call, name = f"target(setting, {value:g})", component_name(prescription)
     if not isinstance(target, (Depth, Force, Search)):
@@ -282,7 +282,7 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
         )
 
     def measure(step: Equilibrium) -> float:
-        with blamed(prescription):
+        with errors_attributed_to(prescription):
             return real_number(prescription, f"{call}.measure(step)", quantity(step))
 
     return replace(target, measure=measure)
@@ -296,7 +296,7 @@ def report_of(prescription: Prescription, setting: Setting, step: Equilibrium) -
     PluginError
         They are not numbers, or not those that it declares.
     """
-    with blamed(prescription):
+    with errors_attributed_to(prescription):
         report = prescription.report(setting, step)
     declared = {v.name for v in prescription.variables if v.kind != "residual"}
     if not isinstance(report, dict) or report.keys() != declared:
@@ -320,7 +320,7 @@ def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> flo
     """
     method = correction.periodic_area if grid.boundary == "periodic" else correction.area
     call = f"{method.__name__}(contact, spacing)"
-    with blamed(correction):
+    with errors_attributed_to(correction):
         value = method(read_only(contact), grid.spacing)
     area = real_number(correction, call, value)
     largest = grid.area if contact.any() else 0.0
@@ -340,7 +340,7 @@ def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
     PluginError
         As for `require_files`.
     """
-    with blamed(output):
+    with errors_attributed_to(output):
         files = output.write(runs, stem_of(output, stem))
     require_files(output, files, stem)
     return tuple(files)
@@ -384,7 +384,7 @@ def outcomes_of(
     name = component_name(executor)
     known = {id(task) for task in tasks}
     remaining = {id(task): task for task in tasks}
-    with blamed(executor):
+    with errors_attributed_to(executor):
         pairs: Any = executor.map(work, tasks, report)
     if not isinstance(pairs, Iterator) or not hasattr(pairs, "close"):
         raise PluginError(f"{name}: map() returned {shown(pairs)}; it has to be written with yield")
@@ -417,7 +417,7 @@ def outcomes_of(
 def _items(executor: Executor, pairs: Iterator[Any]) -> Iterator[Any]:
     """Yield what an executor yields; what it raises of its own is noted to be its fault."""
     while True:
-        with blamed(executor):
+        with errors_attributed_to(executor):
             try:
                 pair = next(pairs)
             except StopIteration:

@@ -72,7 +72,7 @@ class Solver(Component):
         from scipy.sparse.linalg import LinearOperator, cg
 
         # A spring that holds the indenter has no part in it.
-        operator = problem.operator.held(0.0)
+        operator = problem.operator.with_spring(0.0)
         cells = np.flatnonzero(state.contact)
         pressure = np.zeros(problem.grid.shape)
         iteration = 0

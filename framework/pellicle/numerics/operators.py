@@ -16,7 +16,7 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array
-from pellicle.checks import blamed, component_name, read_only, real_array, real_number
+from pellicle.checks import component_name, errors_attributed_to, read_only, real_array, real_number
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
 
@@ -75,7 +75,7 @@ def mean_compliance(kernel: HasCompliance) -> float:
     """Return G(0) [m/Pa] of a kernel; ∞ if it does not state it, as a half-space."""
     if not isinstance(kernel, HasMeanCompliance):
         return math.inf
-    with blamed(kernel):
+    with errors_attributed_to(kernel):
         value = kernel.mean_compliance()
     return real_number(kernel, "mean_compliance()", value)
 
@@ -90,7 +90,7 @@ def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
     text = f"{name}({'q' if name == 'compliance' else 'r'})"
 
     def call(argument: Array) -> Array:
-        with blamed(kernel):
+        with errors_attributed_to(kernel):
             values = method(read_only(argument))
         return real_array(kernel, text, values, argument.shape)
 
@@ -113,12 +113,12 @@ class Operator(ABC):
         self._count = [0]
         # Powers of two, so that no digit changes.
         self._factor = 1.0
-        self._holder = 0.0
+        self._spring_compliance = 0.0
 
     @property
     def has_mean_compliance(self) -> bool:
         """Whether a uniform pressure has a displacement; if not, the mean displacement is zero."""
-        return self._has_mean or self._holder > 0
+        return self._has_mean or self._spring_compliance > 0
 
     @property
     def applications(self) -> int:
@@ -135,21 +135,21 @@ class Operator(ABC):
         """The largest power of two up to `greatest` [m/Pa]; 1 if that is 0."""
         return self._symbol.unit * self._factor
 
-    def held(self, compliance: float) -> Self:
+    def with_spring(self, compliance: float) -> Self:
         """Return the operator for an indenter held by a spring; it shares all arrays.
 
         The deflection of the spring, ``compliance`` [m/N] times the force, is added to the
         displacement of every cell, in place of that of an earlier spring.
         """
-        if compliance == self._holder:
+        if compliance == self._spring_compliance:
             return self
         operator = copy.copy(self)
-        operator._holder = compliance
+        operator._spring_compliance = compliance
         return operator
 
     def deflection(self, total: float) -> float:
         """Return the deflection of the spring [m] under pressures whose sum is ``total`` [Pa]."""
-        return self._holder * self.grid.cell_area * total
+        return self._spring_compliance * self.grid.cell_area * total
 
     def scaled(self, factor: float) -> Self:
         """Return the operator times ``factor``, a power of two; it shares all arrays with this one.
@@ -159,7 +159,7 @@ class Operator(ABC):
         """
         scaled = copy.copy(self)
         scaled._factor = self._factor * factor
-        scaled._holder = self._holder * factor
+        scaled._spring_compliance = self._spring_compliance * factor
         return scaled
 
     def coarsened(self) -> Operator:
@@ -172,7 +172,7 @@ class Operator(ABC):
         """
         # The kernel itself has been checked on the finest grid.
         coarse = _operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
-        return coarse.held(self._holder)
+        return coarse.with_spring(self._spring_compliance)
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] of the kernel at q > 0, `scaled` as the operator is."""
@@ -191,7 +191,7 @@ class Operator(ABC):
         displacement = np.asarray(self._apply(pressure), dtype=pressure.dtype)
         if (unit := self.unit) != 1:
             displacement *= unit
-        if self._holder:
+        if self._spring_compliance:
             displacement += self.deflection(float(pressure.sum(dtype=np.float64)))
         return displacement
 

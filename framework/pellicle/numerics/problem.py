@@ -85,7 +85,7 @@ class Problem:
             kind = replace(kind, value=value)
         compliance = kind.compliance if isinstance(kind, Depth) else 0.0
         vars(self).update(
-            grid=grid, operator=operator.held(compliance), profile=profile, control=kind
+            grid=grid, operator=operator.with_spring(compliance), profile=profile, control=kind
         )
 
     @property
@@ -99,19 +99,19 @@ class Problem:
         return self.control.value
 
     @property
-    def touches(self) -> bool:
+    def needs_solving(self) -> bool:
         """Whether anything has to be solved: the undeformed surface is not already the answer."""
         lowest = float(self.profile.max())
         # A coarse grid may see nothing of an indenter of single cells.
         return isfinite(lowest) and self.value > (0 if self.prescribed == "force" else -lowest)
 
-    def depth(self, aloft: Array) -> float:
+    def depth(self, u_minus_f: Array) -> float:
         """Return z [m] given A p − f on the contact.
 
         It is the prescribed depth or, under force control, that for which the mean gap in contact
         vanishes (Polonsky & Keer 1999).
         """
-        return self.value if self.prescribed == "depth" else float(aloft.mean())
+        return self.value if self.prescribed == "depth" else float(u_minus_f.mean())
 
     def gap(self, displacement: Array, contact: Mask) -> tuple[Array, float]:
         """Return the gap A p − z − f and z [m] given A p, by `depth` on the contact."""
@@ -120,7 +120,7 @@ class Problem:
         gap -= depth
         return gap, depth
 
-    def is_rigid(self, contact: Mask) -> bool:
+    def has_infinite_stiffness(self, contact: Mask) -> bool:
         """Whether no force more on ``contact`` makes it sink: full contact that keeps its mean."""
         return bool(contact.all()) and not self.operator.has_mean_compliance
 
@@ -134,7 +134,7 @@ class Problem:
         displacement that the mean pressure would have as the most compliant wave.
         """
         wave = 0.0
-        if self.is_rigid(contact):
+        if self.has_infinite_stiffness(contact):
             wave = self.operator.greatest * total / contact.size
         return height_scale(self.profile, contact, depth - self.operator.deflection(total), wave)
 
@@ -204,7 +204,7 @@ class Equilibrium:
     @cached_property
     def displacement(self) -> Array:
         """Displacement u of the surface [m]."""
-        return self.problem.operator.held(0.0)(self.pressure)
+        return self.problem.operator.with_spring(0.0)(self.pressure)
 
     @property
     def depth(self) -> float:
@@ -291,8 +291,8 @@ def round_off(problem: Problem, pressure: Array) -> float:
     contact = pressure > 0
     displacement = problem.operator(pressure)
     rounded = float(np.abs(3 * problem.operator(pressure / 3) - displacement).max())
-    aloft = displacement - problem.profile
-    depth = problem.depth(aloft[contact] if contact.any() else np.zeros(1))
+    u_minus_f = displacement - problem.profile
+    depth = problem.depth(u_minus_f[contact] if contact.any() else np.zeros(1))
     return rounded / problem.height_scale(contact, depth, float(pressure.sum()))
 
 
@@ -315,7 +315,7 @@ def measure_stiffness(problem: Problem, contact: Mask, pressure: Array) -> Stiff
     """
     if not contact.any():
         return Stiffness(0.0, 0.0)
-    response = problem.operator.held(0.0)(pressure)
+    response = problem.operator.with_spring(0.0)(pressure)
     missed = 1.0 - response[contact]
     total = float(pressure.sum()) + float((pressure[contact] * missed).sum())
     return Stiffness(

@@ -77,8 +77,8 @@ def _statuses(data: xr.Dataset) -> list[tuple[int, str]]:
     return list(zip(data["step"].values.tolist(), map(str, data["status"].values), strict=True))
 
 
-def said_of_steps(steps: Sequence[tuple[int, str]]) -> str:
-    """Return the number of the first step and its message, and how many steps follow it."""
+def first_message(steps: Sequence[tuple[int, str]]) -> str:
+    """Return the number and message of the first step, and the number of further steps."""
     (number, message), *others = steps
     return f"step {number}{f' and {len(others)} more' if others else ''}: {message}"
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 def solve_steps(
     run: Run, setting: Setting, steps: Steps, bar: Bar
 ) -> Generator[xr.Dataset, None, None]:
-    """Add each load step that ``steps`` lack as soon as it is solved, and yield it."""
+    """Solve the load steps missing from ``steps``; add and yield each as soon as it is solved."""
     origin = provenance(run)
     for index in range(len(steps), len(run.loading.values)):
         # Only the copy in ``steps`` outlives a solve; the next one starts from its state.
@@ -85,13 +85,13 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Re
     return Reached(measure(problem, solution.pressure), solution.iterations, solution.stop)
 
 
-def _stiffness(run: Run, found: Equilibrium, monitor: Monitor) -> Stiffness:
+def _stiffness(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> Stiffness:
     """Return the contact stiffness dF/dδ, δ being the depth of the indenter."""
-    problem = replace(found.problem, control=Depth(found.depth))
-    contact = found.contact
-    if problem.is_rigid(contact):
+    problem = replace(equilibrium.problem, control=Depth(equilibrium.depth))
+    contact = equilibrium.contact
+    if problem.has_infinite_stiffness(contact):
         return Stiffness(np.inf, 0.0)
     if not contact.any():
         return Stiffness(0.0, 0.0)
-    state = State(found.pressure, found.pressure, found.depth)
+    state = State(equilibrium.pressure, equilibrium.pressure, equilibrium.depth)
     return measure_stiffness(problem, contact, response_of(run.solver, problem, state, monitor))

@@ -27,7 +27,7 @@ from pellicle.results.status import Status
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.lock import locked
-from pellicle.runs.progress import Saying, StudyProgress
+from pellicle.runs.progress import ProgressReporter, StudyProgress
 
 from . import table
 from .summary import coarse, failures
@@ -234,7 +234,7 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
 
     Warnings are among the attributes, so that they are shown once for all runs.
     """
-    bar = Saying(task.steps, say)
+    bar = ProgressReporter(task.steps, say)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)
         executed = runner.execute(

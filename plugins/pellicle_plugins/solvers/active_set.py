@@ -226,7 +226,7 @@ class ActiveSet(ScaledSolver):
         except ConfigError:
             # A thin incompressible layer is rigid under cells much wider than its thickness.
             return None
-        if not coarse.touches:
+        if not coarse.needs_solving:
             # The indenter touches with less than half of every coarse cell.
             coarse = replace(coarse, profile=highest(problem.profile, coarse.grid.shape))
         tolerance = max(self.tolerance, _COARSE_TOLERANCE)
