@@ -8,8 +8,8 @@ tension from a measured curve, `fit_many` and `fit_pooled` from many curves.
 
 import lazy_loader
 
-# The public names are listed in __init__.pyi, which type checkers and lazy_loader read. Numpy, scipy
-# and pydantic take a second to import, so a name imports its own module only.
+# The public names are in __init__.pyi, which type checkers and lazy_loader read. Numpy, scipy and
+# pydantic take a second to import, so a name imports its own module only.
 _public, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 

@@ -83,7 +83,7 @@ def read_only_dataset(dataset: xr.Dataset) -> xr.Dataset:
     """Return a dataset that shares the arrays of ``dataset`` and cannot be used to change them."""
     copy = dataset.copy()
     for name, variable in dataset.variables.items():
-        # xarray replaces a view of texts by a writable array; coordinates share theirs with an index.
+        # xarray replaces a view of texts by a writable array; coordinates share one with an index.
         if name in dataset.coords or variable.dtype.kind == "O":
             copy[name] = variable.copy(deep=True)
         else:

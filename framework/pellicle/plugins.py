@@ -293,7 +293,7 @@ def checked_type(component: Any, family: str) -> str:
             raise PluginError(f"{name}.{field_}: Quantity({quantity.unit!r}) has an unknown unit")
     if issubclass(component, Prescription):
         _check_prescription(component, str(names[0]))
-    # Raises if the type of a field is not representable in JSON, which would break the whole schema.
+    # Raises if JSON cannot represent the type of a field, which would break the whole schema.
     component.model_json_schema()
     return str(names[0])
 

@@ -132,7 +132,8 @@ class Progress(_Shown):
                 self._task,
                 completed=message.done,
                 description=f"step {message.step + 1}/{message.steps}",
-                message=f"iteration {message.iteration} residual {message.residual_ratio:.1e} × tolerance",
+                message=f"iteration {message.iteration} "
+                f"residual {message.residual_ratio:.1e} × tolerance",
             )
 
 

@@ -101,7 +101,7 @@ class _Trials:
     solution: Solution = field(init=False)
 
     def first(self) -> float:
-        """Return the first control, scaled as in `excess`: the guess, or that of the step before."""
+        """Return the first control, scaled as in `excess`: the guess or that of the last step."""
         profile, state = self.setting.profile, self.setting.state
         heights = profile[np.isfinite(profile)]
         reach = 0.5 * float(np.ptp(heights)) or 1e-3 * min(self.setting.grid.spacing)
