@@ -1,7 +1,7 @@
 """Calls of components: one function for each method that the framework calls.
 
-What a component is given is read-only; what it returns is checked against its contract, at a cost
-far below that of the call. A kernel is called by `pellicle.operators` in the same way.
+Arguments of components are read-only. Returned values are checked against the contract, at a cost
+far below that of the call. `pellicle.operators` calls kernels in the same way.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from .output import Output, Runs, stem_of
 from .prescription import Prescription, Search, Setting
 from .solver import Monitor, Solver
 
-# Rounding of heights over the size of the domain, and of areas over their own size.
+# Rounding error of heights over the size of the domain, and relative rounding error of areas.
 _ROUNDING = 1e-12
 
 
@@ -48,7 +48,7 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
     ConfigError
         The indenter cannot be put on this grid, or has heights that are positive or NaN.
     PluginError
-        The profile is not an array of the grid's shape, or nowhere near 0.
+        The profile is not an array of the grid's shape, or is not near 0 anywhere.
     """
     x, y = (read_only(points) for points in grid.coordinates())
     try:
@@ -94,11 +94,12 @@ def _beyond_numbers(what: str) -> ConfigError:
 
 
 def _hidden_height(profile: Array, footprint: Footprint) -> float:
-    """Return how far [m] the lowest point of an indenter may lie below its lowest cell.
+    """Return an upper bound [m] on the height of the lowest cell above the lowest point.
 
-    Where a body falls away from an apex between the cells, it falls further to the cells around its
-    lowest one. A rough surface may have its apex elsewhere: there the largest step between any two
-    neighbours counts. The apex of an unbounded body may also lie beyond the edge of the domain.
+    If the apex of a smooth body lies between the cells, the lowest cell is closer to it in height
+    than to the cells around it. The apex of a rough surface may be elsewhere, so the largest step
+    between any two neighbours is the bound. The apex of an unbounded body may also lie beyond the
+    edge of the domain.
     """
     if footprint == "domain":
         with np.errstate(invalid="ignore"):
@@ -115,12 +116,12 @@ def _hidden_height(profile: Array, footprint: Footprint) -> float:
 
 
 def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> ForceCurve:
-    """Return force over reduced modulus and its sensitivities at depths of shape (n,) [m].
+    """Return force over reduced modulus and its derivatives at depths of shape (n,) [m].
 
     Raises
     ------
     PluginError
-        They are not three arrays of that shape, finite at every finite depth.
+        The curve is not three arrays of that shape, finite at every finite depth.
     """
     with errors_attributed_to(indenter):
         value = indenter.force_curve(read_only(depth), length)
@@ -147,15 +148,15 @@ def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> Forc
 def solution_of(
     solver: Solver, problem: Problem, start: State | None, monitor: Monitor
 ) -> Solution:
-    """Return the solution of a load step, its pressure in an array of its own.
+    """Return the solution of a load step, with a copy of its pressure.
 
-    A pressure that is negative or not finite is kept: the status of the step says so.
+    A negative or non-finite pressure is accepted here; the status of the step reports it.
 
     Raises
     ------
     PluginError
-        It is not a `Solution` of the grid's shape, the solver changed the problem, or it takes
-        ``start`` for an array, which it was in earlier versions.
+        The solver does not return a `Solution` of the grid's shape, changes the problem, or treats
+        ``start`` as an array, which it was in earlier versions.
     """
     if not problem.needs_solving:
         return Solution(np.zeros(problem.grid.shape), 0)
@@ -186,7 +187,7 @@ def solution_of(
             f"{name}: solve() returned iterations {shown(value.iterations)} and stop "
             f"{shown(value.stop)}; they have to be a whole number and a pellicle.Stop"
         )
-    # The solver may use the memory of what it returned again.
+    # The solver may reuse the memory of the array that it returned.
     return Solution(pressure.copy(), int(value.iterations), value.stop)
 
 
@@ -196,7 +197,7 @@ def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor
     Raises
     ------
     PluginError
-        It is not an array of the grid's shape, or not 0 off the contact.
+        The result is not an array of the grid's shape, or not 0 off the contact.
     """
     view, parts = _read_only_problem(problem), problem.operator.parts()
     with errors_attributed_to(solver):
@@ -231,9 +232,9 @@ def _require_unchanged(
 
 
 def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
-    """Refuse a prescribed value that its prescription refuses, as an error of ``field``.
+    """Let a prescription check a prescribed value; its errors name ``field``.
 
-    An error of the prescription that names a field of its own keeps it.
+    If an error names a field already, it keeps that one.
 
     Raises
     ------
@@ -254,7 +255,7 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
     Raises
     ------
     PluginError
-        It is none of these, or not of finite numbers.
+        The target is of another type, or its numbers are not finite.
     """
     with errors_attributed_to(prescription):
         target = prescription.target(setting, value)
@@ -294,7 +295,7 @@ def report_of(prescription: Prescription, setting: Setting, step: Equilibrium) -
     Raises
     ------
     PluginError
-        They are not numbers, or not those that it declares.
+        The values are not numbers, or are not those that the prescription declares.
     """
     with errors_attributed_to(prescription):
         report = prescription.report(setting, step)
@@ -316,7 +317,7 @@ def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> flo
     Raises
     ------
     PluginError
-        It is not a number between 0 and the area of the domain, 0 without contact.
+        The area is not a number between 0 and the area of the domain, or not 0 without contact.
     """
     method = correction.periodic_area if grid.boundary == "periodic" else correction.area
     call = f"{method.__name__}(contact, spacing)"
@@ -333,7 +334,7 @@ def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> flo
 
 
 def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
-    """Return the files that an output writes of a run or study whose stem is ``stem``.
+    """Let an output write its files for a run or study with the given stem; return their paths.
 
     Raises
     ------
@@ -347,12 +348,12 @@ def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
 
 
 def require_files(output: Output, files: object, stem: Path) -> None:
-    """Refuse what write() of an output returned unless it is files of its own stem.
+    """Refuse the value that write() of an output returned unless it lists files of its own stem.
 
     Raises
     ------
     PluginError
-        It is not a tuple of paths that begin with the stem.
+        The value is not a tuple of paths that begin with the stem of the output.
     """
     own = stem_of(output, stem)
     call = f"{component_name(output)}: write(runs, stem) returned"
@@ -373,13 +374,13 @@ def outcomes_of(
     report: Report[AnyTask],
     kind: type[Outcome],
 ) -> Generator[tuple[AnyTask, Outcome | Exception], None, None]:
-    """Yield each task once with what its work returned, of the given ``kind``, or raised.
+    """Yield each task once with its outcome: a value of type ``kind``, or the exception raised.
 
     Raises
     ------
     PluginError
-        The executor yields a task twice, never, or one that it was not given; or an outcome that
-        the work of a task cannot have.
+        The executor yields a task twice or never, an object that is not one of the tasks, or an
+        outcome of another type.
     """
     name = component_name(executor)
     known = {id(task) for task in tasks}
@@ -415,7 +416,7 @@ def outcomes_of(
 
 
 def _items(executor: Executor, pairs: Iterator[Any]) -> Iterator[Any]:
-    """Yield what an executor yields; what it raises of its own is noted to be its fault."""
+    """Yield the items of an executor; exceptions that it raises itself are attributed to it."""
     while True:
         with errors_attributed_to(executor):
             try:
