@@ -97,9 +97,9 @@ def _hidden_height(profile: Array, footprint: Footprint) -> float:
     """Return an upper bound [m] on the height of the lowest cell above the lowest point.
 
     If the apex of a smooth body lies between the cells, the lowest cell is closer to it in height
-    than to the cells around it. The apex of a rough surface may be elsewhere, so the largest step
-    between any two neighbours is the bound. The apex of an unbounded body may also lie beyond the
-    edge of the domain.
+    than to the highest of its neighbours. The apex of a rough surface may be elsewhere, so the
+    largest step between any two neighbours is the bound. The apex of an unbounded body may also lie
+    beyond the edge of the domain.
     """
     if footprint == "domain":
         with np.errstate(invalid="ignore"):
