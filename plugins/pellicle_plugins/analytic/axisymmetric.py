@@ -1,7 +1,7 @@
 """Contact of a rigid axisymmetric indenter with a half-space under surface tension.
 
-``axisymmetric_equation`` has the equation and its solution. This module compares two mesh levels and
-determines the contact radius for a depth or a force.
+``axisymmetric_equation`` has the equation and its solution. This module compares two mesh levels
+and determines the contact radius for a depth or a force.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Solve the axisymmetric equation at the nodes of the master curves and write the results to a file.
+"""Solve the axisymmetric equation at the nodes of the master curves and write them to a file.
 
 ``python -m pellicle_plugins.analytic.master_curve_nodes`` replaces ``master_curves.json``, which
 ``master_curves`` describes and interpolates.

@@ -1,6 +1,6 @@
 """Validation cases with known results: closed forms and the axisymmetric integral equation.
 
-Cases import the solutions themselves: plugins are loaded at every start, scipy.optimize need not be.
+Cases import the solutions themselves, so that loading this plugin does not import scipy.optimize.
 """
 
 from __future__ import annotations

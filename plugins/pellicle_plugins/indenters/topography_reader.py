@@ -273,8 +273,8 @@ def _size(
     if stated is None or not all(0 < edge < inf for edge in stated):
         if size is None:
             raise ConfigError(
-                f"is missing, and {path} does not state it; give the edge lengths of the scan, such "
-                "as ['80 um', '60 um']",
+                f"is missing, and {path} does not state it; give the edge lengths of the scan, "
+                "such as ['80 um', '60 um']",
                 "size",
             )
         return size
