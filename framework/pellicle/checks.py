@@ -1,7 +1,7 @@
-"""Checks of what components return, where the framework calls them.
+"""Checks of the values that components return.
 
-For a component that breaks its contract they raise a `PluginError` that names the component, what
-it returned and what is required. Arguments of components are read-only.
+If a component breaks its contract they raise a `PluginError` that names the component, the returned
+value and the required one. Arguments passed to components are read-only.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ _REFUSALS = "read-only", "cannot assign to field", "Instance is frozen"
 
 
 def component_name(component: object) -> str:
-    """Return the name of a component in messages, such as ``kernel 'half_space'``."""
+    """Return the name of a component for messages, such as ``kernel 'half_space'``."""
     family = getattr(component, "family", "component")
     return f"{family} {getattr(component, 'type_name', type(component).__name__)!r}"
 
 
 @contextmanager
-def blamed(component: object) -> Iterator[None]:
-    """Attribute errors to a component: note it and the line in its code on the exception.
+def errors_attributed_to(component: object) -> Iterator[None]:
+    """Add to exceptions a note with the component and the line of its code that raised them.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def read_only_dataset(dataset: xr.Dataset) -> xr.Dataset:
     """Return a dataset that shares the arrays of ``dataset`` and cannot be used to change them."""
     copy = dataset.copy()
     for name, variable in dataset.variables.items():
-        # xarray replaces a view of texts, and coordinates are shared with an index.
+        # xarray replaces a view of texts by a writable array; coordinates share one with an index.
         if name in dataset.coords or variable.dtype.kind == "O":
             copy[name] = variable.copy(deep=True)
         else:
@@ -94,7 +94,7 @@ def read_only_dataset(dataset: xr.Dataset) -> xr.Dataset:
 def real_array(component: object, call: str, value: object, shape: tuple[int, ...]) -> Array:
     """Return the ``value`` that ``call`` of a component returned, as an array of float64.
 
-    Whole numbers are refused: in SI units they are values that lost their digits.
+    Integers are refused: in SI units they are values whose digits were cut off.
 
     Raises
     ------
@@ -139,7 +139,7 @@ def _description(value: object) -> str:
 
 
 def whole_number(value: object, unit: str) -> int:
-    """Return a number of cells, threads and the like; ``unit`` is their name.
+    """Return a positive whole number, such as of cells; messages call its unit ``unit``.
 
     Raises
     ------

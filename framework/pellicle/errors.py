@@ -1,4 +1,4 @@
-"""Errors: every message names the field, the value and what to do."""
+"""Errors; every message names the field, the value and the remedy."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 def shown(value: object) -> str:
-    """Return ``value`` as a message shows it, on one line of at most 60 characters."""
+    """Return ``value`` as text for a message, at most 60 characters long."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}…"
 
@@ -22,7 +22,7 @@ class Problem(NamedTuple):
     field: str
     """Dotted path of the field, e.g. ``kernel.tension``; empty for the whole configuration."""
     message: str
-    """The value, what is allowed, and what to do."""
+    """The value, the allowed values and the remedy."""
 
     def __str__(self) -> str:
         return f"{self.field}: {self.message}" if self.field else self.message
@@ -57,7 +57,7 @@ class ConfigError(PellicleError, ValueError):
 
 
 class PluginError(PellicleError):
-    """A plugin is broken, two claim one name, or a component breaks its contract when called."""
+    """A plugin is broken, two plugins claim one type, or a component breaks its contract."""
 
 
 class ConvergenceError(PellicleError):

@@ -1,4 +1,4 @@
-"""Write files whole or not at all, and read texts in any encoding."""
+"""Write files atomically, and read texts in the usual encodings."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 
 from .errors import StorageError
 
-# UTF-32 comes before UTF-16, whose byte order mark is the beginning of its own.
+# UTF-32 comes first: its byte order mark begins with that of UTF-16.
 _MARKS = {
     codecs.BOM_UTF8: "utf-8-sig",
     codecs.BOM_UTF32_LE: "utf-32",
@@ -26,7 +26,7 @@ _NOT_IN_DOCUMENTS = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\
 
 
 def for_document(text: str) -> str:
-    """Return a text with a replacement character for each one that documents may not contain."""
+    """Return a text with U+FFFD in place of characters that documents may not contain."""
     return _NOT_IN_DOCUMENTS.sub("\ufffd", text)
 
 
@@ -57,7 +57,7 @@ def read_text(path: Path) -> str:
 def check_writable(path: Path) -> None:
     """Check before computing that a file can be written at ``path``.
 
-    Partial files that dead processes left in its folder are removed.
+    Partial files of dead processes in its folder are removed.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def check_writable(path: Path) -> None:
 
 @contextmanager
 def storage_errors(path: Path) -> Iterator[None]:
-    """Turn a failure to write ``path`` into a StorageError that says what to do."""
+    """Turn an OSError on writing ``path`` into a StorageError that names the remedy."""
     try:
         yield
     except OSError as error:
@@ -87,7 +87,7 @@ def storage_errors(path: Path) -> Iterator[None]:
 
 @contextmanager
 def atomic_write(path: Path) -> Iterator[Path]:
-    """Yield a path to write to, which becomes ``path`` on success and is removed on failure."""
+    """Yield a temporary path, which is renamed to ``path`` on success and removed on failure."""
     part = path.with_name(f".{path.name}.{_host()}.{os.getpid()}.part")
     with storage_errors(path):
         try:
@@ -105,7 +105,7 @@ def _host() -> str:
 
 
 def _alive(pid: int) -> bool:
-    """Whether a process of this machine lives; on Windows, where os.kill would end it, true."""
+    """Whether a process of this machine is alive; always true on Windows, where os.kill ends it."""
     if os.name == "nt":
         return True
     try:

@@ -24,7 +24,7 @@ _of_run: ContextVar[Grid | None] = ContextVar("grid of the run", default=None)
 
 @contextmanager
 def grid_of_run(grid: Grid | None) -> Iterator[None]:
-    """Tell components that are made within this context the grid of their run, if it is known."""
+    """Let components created within this context know the grid of their run, if there is one."""
     token = _of_run.set(grid)
     try:
         yield
@@ -33,9 +33,9 @@ def grid_of_run(grid: Grid | None) -> Iterator[None]:
 
 
 def shape_of_run() -> tuple[int, int] | None:
-    """Return the shape of the grid of the run that is being made; None outside of one.
+    """Return the shape of the grid of the run being created; None outside of one.
 
-    A file is compared with it before its content takes memory.
+    The shape of a file is compared with it before the file is read into memory.
     """
     grid = _of_run.get()
     return None if grid is None else grid.shape

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from pydantic.json_schema import JsonSchemaValue
 
 OPTIONS: Final = {"stiffness"}
-"""Keys of ``[loading]`` that neither are a prescription nor a field of one."""
+"""Keys of ``[loading]`` other than a prescription and its fields."""
 
 
 @dataclass(frozen=True)
 class LoadSteps:
-    """Annotation of load steps: one value, a list, or a ramp, which may go back again."""
+    """Annotation of load steps: one value, a list, or a ramp, which may return to its start."""
 
     quantity: Quantity
 
@@ -32,11 +32,11 @@ class LoadSteps:
         Raises
         ------
         ConfigError
-            One of them is not allowed; names all such.
+            Values are not allowed; the message names all of them.
         """
         if isinstance(given, Mapping):
             return self._ramp(given)
-        # Anything with a length but text: lists, tuples, arrays.
+        # Lists, tuples and arrays have a length; text has one too.
         several = isinstance(given, Sized) and not isinstance(given, str)
         values = list(cast("Iterable[object]", given)) if several else [given]
         if not values:
@@ -50,11 +50,11 @@ class LoadSteps:
         once = {key: value for key, value in given.items() if key != "back"}
         ends = self._all({end: once[end] for end in ("start", "stop") if end in once})
         once |= zip([end for end in ("start", "stop") if end in once], ends, strict=True)
-        there = ranged(once, "ramp", 'back = true or spacing = "log"')
-        return there + there[-2::-1] if back else there
+        values = ranged(once, "ramp", 'back = true or spacing = "log"')
+        return values + values[-2::-1] if back else values
 
     def _all(self, given: Mapping[str, object]) -> tuple[float, ...]:
-        """Return every value in SI, or raise with all that are not allowed."""
+        """Return all values in SI, or raise an error that names all values not allowed."""
         values, problems = [], []
         for where, value in given.items():
             try:

@@ -1,4 +1,4 @@
-"""Memory that a run needs and memory that is available, compared before the run starts."""
+"""Compare the memory that a run needs with the available memory before the run starts."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from .components.solver import HasMemory
 from .errors import ConfigError, shown
 from .grid import Grid
 
-# In arrays of the grid's shape, eight bytes a cell. The peaks were measured on Linux with glibc.
-# Indenter, and operator with its transforms, which are padded on a free boundary.
+# Peak memory in arrays of the grid's shape, eight bytes per cell, measured on Linux with glibc.
+# The indenter, and the operator with its transforms, which are padded on a free boundary.
 _OPERATOR = {"free": 9.0, "periodic": 4.75}
-# The same for a line of cells along x, whose transforms are twice as long and need tables.
+# The same on a line of cells along x, whose transforms are twice as long and need tables.
 _LINE = 14.0
 # The solver active_set in full contact, and any solver without `HasMemory`.
 _SOLVER = {"free": 17.4, "periodic": 11.5}
-# A load step in the result: pressure, displacement, gap, and a byte for the contact.
+# A load step in the result: pressure, displacement and gap, and a byte per cell for the contact.
 _STEP = 3 + 1 / 8
-# The same in the compressed file in memory to which steps are joined. Blocks that the solver has
-# freed and malloc keeps are too small for it.
+# The same step in the compressed file that is assembled in memory. Blocks that the solver has freed
+# and that malloc keeps are too small for it.
 _SERIALISED = 2.3
 # Buffers and Python's own objects [bytes].
 _FIXED = 1e6
@@ -34,9 +34,9 @@ _VERSION_1 = "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_f
 def estimate(grid: Grid, steps: int, solver: object = None) -> float:
     """Return the peak memory [bytes] of a run on ``grid``, without that of the libraries.
 
-    It occurs in the last solve, when earlier steps and their file are in memory too. The size of
-    the contact is unknown, so full contact is assumed, which takes up to a quarter more than a
-    small one. A ``solver`` that is not a `HasMemory` counts as active_set.
+    The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
+    of the contact is unknown, so full contact is assumed, which takes up to a quarter more memory
+    than a small contact. A ``solver`` that is not a `HasMemory` counts as active_set.
     """
     try:
         cells = float(grid.points[0] * grid.points[1])
@@ -51,8 +51,8 @@ def estimate(grid: Grid, steps: int, solver: object = None) -> float:
 def available(root: Path = Path("/")) -> float | None:
     """Return the available memory [bytes], or None if the system does not state it.
 
-    It is that of the machine, or of the control groups of this process (containers, batch systems)
-    if they leave less. ``root`` is the root of the file system.
+    This is the memory available on the machine or, if less, in the control groups of this process
+    (containers, batch systems). ``root`` is the root of the file system.
     """
     limits = _of_machine(root), *_of_groups(root)
     return min((limit for limit in limits if limit is not None), default=None)
@@ -78,14 +78,14 @@ def _of_groups(root: Path) -> Iterator[float | None]:
             mount, names = root / "sys/fs/cgroup/memory", _VERSION_1
         else:
             continue
-        # A container may see its own group as the root, but under its name outside.
+        # A container may see its own group as the root, although the file gives its outer name.
         inner = PurePosixPath(group.strip("/"))
         for folder in (inner, *inner.parents):
             yield _left(mount / folder, *names)
 
 
 def _left(folder: Path, limit: str, usage: str, cache: str) -> float | None:
-    """Return the limit of a group minus its usage [bytes]; reclaimable file cache is not usage."""
+    """Return the limit of a group minus its usage, which excludes reclaimable cache [bytes]."""
     try:
         most, used = (float((folder / name).read_text()) for name in (limit, usage))
     except (OSError, ValueError):  # missing, not readable, or "max"
@@ -120,5 +120,5 @@ def require(grid: Grid, steps: int, solver: object = None) -> None:
 
 
 def shortage(needed: float, limit: float) -> str:
-    """Return needed and available memory [bytes] as words of a message."""
+    """Return a phrase with needed and available memory, both in bytes, for a message."""
     return f"{needed / 1e9:.3g} GB, and {limit / 1e9:.3g} GB are available"

@@ -1,7 +1,7 @@
 """The registry of installed components.
 
 pluggy's own loader stops at the first broken plugin, silently drops the second of two equal names
-and leaves half of a failing plugin registered. Here each entry point is loaded on its own, and an
+and leaves a failing plugin half registered. So each entry point is loaded separately here, and its
 error is recorded instead of raised.
 """
 
@@ -28,15 +28,7 @@ from .units import quantity_of
 
 GROUP = "pellicle"
 DISABLE = "PELLICLE_DISABLE_PLUGINS"
-_HOOK_OF_FAMILY = {
-    "kernel": "register_kernels",
-    "indenter": "register_indenters",
-    "solver": "register_solvers",
-    "correction": "register_corrections",
-    "output": "register_outputs",
-    "executor": "register_executors",
-    "prescription": "register_prescriptions",
-}
+_HOOK_OF_FAMILY = {family: f"register_{family}s" for family in FAMILIES}
 AnyComponent = TypeVar("AnyComponent", bound=Component)
 
 
@@ -98,9 +90,9 @@ class Registry:
         Raises
         ------
         ConfigError
-            No such type.
+            The type is unknown.
         PluginError
-            Its plugin is broken or disabled, or two plugins claim it.
+            The plugin of the type is broken or disabled, or two plugins claim the type.
         """
         known = self.components[family]
         if isinstance(type_, str) and type_ in known:
@@ -155,7 +147,7 @@ def registry() -> Registry:
 
 
 def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
-    """Load each plugin on its own.
+    """Load each plugin separately, and return the registry.
 
     Parameters
     ----------
@@ -202,7 +194,7 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
 def _load_one(entry: EntryPoint, origin: Origin) -> tuple[list[Registered], list[Suite]] | Broken:
     """Return the components and suites that one plugin registers, or its error.
 
-    A plugin may fail in any way, even by sys.exit() or KeyboardInterrupt; only Ctrl-C of the user
+    A plugin may fail in any way, even by sys.exit() or KeyboardInterrupt; only a Ctrl-C of the user
     ends the command.
     """
     registration: tuple[list[Registered], list[Suite]] | Broken
@@ -227,7 +219,7 @@ def _is_disabled(origin: Origin, disable: str) -> bool:
 
 
 def _same(name: str) -> str:
-    """Return the normalised name: package indexes treat my_plugin and My-Plugin as the same."""
+    """Return the normalised name: package indexes treat my_plugin and My-Plugin as equal."""
     return re.sub(r"[-_.]+", "-", name.strip()).lower()
 
 
@@ -298,22 +290,24 @@ def checked_type(component: Any, family: str) -> str:
         if field_ != "type" and not its.description:
             raise PluginError(f"{name}.{field_} lacks Field(description=…) with its unit")
         if (quantity := quantity_of(its)) and not quantity.has_known_unit:
-            raise PluginError(f"{name}.{field_}: Quantity({quantity.unit!r}) is of no known unit")
+            raise PluginError(f"{name}.{field_}: Quantity({quantity.unit!r}) has an unknown unit")
     if issubclass(component, Prescription):
         _check_prescription(component, str(names[0]))
-    # Raises on a field whose type is unknown or has no JSON: it would spoil the schema of all.
+    # Raises if JSON cannot represent the type of a field, which would break the whole schema.
     component.model_json_schema()
     return str(names[0])
 
 
 def _check_prescription(component: type[Prescription], type_: str) -> None:
-    """Raise PluginError on a prescription that ``[loading]`` cannot hold."""
+    """Raise PluginError if ``[loading]`` cannot hold a prescription."""
     name = component.__name__
     if not isinstance(getattr(component, "unit", None), str):
         raise PluginError(f"{name} lacks the class variable unit: the SI unit of its values")
     if not component.quantity().has_known_unit:
         raise PluginError(f"{name}.unit is {component.unit!r}, which is not a known unit")
-    if taken := {type_, *component.model_fields} & OPTIONS:
-        raise PluginError(f"{name}: {min(taken)!r} is an option of [loading]; choose another name")
+    if reserved := {type_, *component.model_fields} & OPTIONS:
+        raise PluginError(
+            f"{name}: {min(reserved)!r} is an option of [loading]; choose another name"
+        )
     if type_ in component.model_fields:
-        raise PluginError(f"{name} has a field of the name of its type; choose another name")
+        raise PluginError(f"{name} has a field with the name of its type; choose another name")

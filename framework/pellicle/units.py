@@ -1,6 +1,6 @@
 """Field types that accept ``0.01``, ``"10 kPa"`` or a pint quantity and store SI floats.
 
-Units exist only here and where numbers are shown: inside pellicle every number is SI.
+Inside pellicle every number is in SI; units exist only here and where numbers are shown.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ _EXAMPLES = {
 _NUMBER_AND_UNIT = re.compile(
     r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)", re.DOTALL | re.IGNORECASE
 )
-# pint evaluates every number and power in a text, and "Pa*9**9**9**9" never ends. It only gets
-# products and quotients of names with one small power.
+# pint evaluates every number and power in a text, and "Pa*9**9**9**9" never ends. So only products
+# and quotients of names, each with one small power, are passed to it.
 _LETTER = r"[^\W\d⁰¹²³⁴-⁹]"
 _NAME = rf"(?:{_LETTER}|[°%‰])(?:{_LETTER}|[0-9])*"
 _EXPONENT = r"[-+]?\d{1,2}(?:\.\d{1,20})?"
@@ -53,7 +53,7 @@ _LONGEST_UNIT = 100
 _PREFIXABLE = re.compile(r"[^\W\d_]+(?:/.*|\*(?!\*).*)?")
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f"}
 _MOST = 8
-"""Values that are written side by side."""
+"""Largest number of values written out; of more, some are left out."""
 
 
 def _root(one: Any) -> str:
@@ -63,7 +63,7 @@ def _root(one: Any) -> str:
 
 @cache
 def _registry() -> pint.UnitRegistry[Any]:
-    # pint takes a fifth of a second to import: only a text with a unit pays for it.
+    # pint takes a fifth of a second to import, so it is imported only for a text with a unit.
     import pint
 
     registry: pint.UnitRegistry[Any] = pint.application_registry.get()  # type: ignore[no-untyped-call]
@@ -78,7 +78,7 @@ def ramp(start: float, stop: float, num: int, *, log: bool = False) -> list[floa
         if log
         else [(start * (num - 1 - i) + stop * i) / (num - 1) for i in range(num)]
     )
-    # Rounded to fifteen digits: 3e-05, not 3.0000000000000004e-05.
+    # Rounding to fifteen digits gives 3e-05 instead of 3.0000000000000004e-05.
     return [float(f"{value:.15g}") for value in values]
 
 
@@ -133,10 +133,10 @@ def _dimension(unit: str) -> str:
 
 
 def axis_unit(values: ArrayLike, unit: str) -> tuple[float, str]:
-    """Return the factor and the unit that bring ``values``, in the SI unit ``unit``, near 1 … 1000.
+    """Return a factor and a prefixed unit that bring ``values``, in SI, to between 1 and 1000.
 
-    A unit that begins with a power, such as m⁴, takes no prefix, to which the power would apply as
-    well; areas do, and their prefix is chosen accordingly. That of pure numbers and texts is empty.
+    A unit that begins with a power, such as m⁴, takes no prefix, since the power would apply to the
+    prefix too; areas do take one, chosen accordingly. Pure numbers and texts have an empty unit.
     """
     import numpy as np
 
@@ -157,7 +157,7 @@ def axis_unit(values: ArrayLike, unit: str) -> tuple[float, str]:
 
 
 def readable(value: Any, unit: str = "1", digits: int = 6) -> str:
-    """Return a value in SI, or several values, with a unit that brings them near 1 … 1000."""
+    """Return one or several values, in SI, as text with a unit that brings them near 1 … 1000."""
     values = list(value) if isinstance(value, (list, tuple)) else [value]
     numeric = all(isinstance(v, (int, float)) and v is not True for v in values)
     factor, name = axis_unit(values, unit) if values and numeric else (1.0, "")
@@ -200,7 +200,8 @@ class Quantity:
         Raises
         ------
         ValueError
-            Not a number, of another dimension, without a unit, not finite or out of bounds.
+            The value is not a number, lacks a unit, has another dimension, is not finite or is out
+            of bounds.
         """
         number = self._magnitude(value)
         if not math.isfinite(number):

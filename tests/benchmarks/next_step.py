@@ -47,18 +47,18 @@ def with_known_contact(problem: Problem, tolerance: float, start: Array, answer:
     before = problem.operator.applications
     pressure = with_force(problem, start * contact)
     displacement = problem.operator(pressure)
-    aloft = displacement - problem.profile
-    depth = problem.depth(aloft[contact])
+    u_minus_f = displacement - problem.profile
+    depth = problem.depth(u_minus_f[contact])
     scale = height_scale(problem.profile, contact, depth)
     on_contact = Preconditioner(problem.operator).on(contact)
-    error = float(np.abs(aloft[contact] - depth).max())
+    error = float(np.abs(u_minus_f[contact] - depth).max())
     while error > tolerance * scale:
         inner = inner_solve(
             problem, on_contact, pressure, displacement, tolerance / 2 * scale, certainty=np.inf
         )
         pressure, displacement = inner.pressure, problem.operator(inner.pressure)
-        aloft = (displacement - problem.profile)[contact]
-        error = float(np.abs(aloft - problem.depth(aloft)).max())
+        u_minus_f = (displacement - problem.profile)[contact]
+        error = float(np.abs(u_minus_f - problem.depth(u_minus_f)).max())
     return problem.operator.applications - before
 
 

@@ -67,7 +67,11 @@ BROKEN = {
     "no method": ("compliance", "stiffness", "Soft lacks the method compliance"),
     "no docstring": (DOCSTRING, "", "Soft lacks a docstring"),
     "bare field": (FIELD, "float = 1.0", "Soft.scale lacks Field(description=…)"),
-    "unknown unit": ("float,", "float, Quantity('cubit'),", "Soft.scale: Quantity('cubit') is of"),
+    "unknown unit": (
+        "float,",
+        "float, Quantity('cubit'),",
+        "Soft.scale: Quantity('cubit') has an unknown unit",
+    ),
     "other family": (TYPE, TYPE + '\n    family: ClassVar[str] = "x"', "Soft.family is 'x'"),
     "field of no known type": ("Annotated[float,", "Annotated['Unknown',", "Unknown"),
     "field without JSON": ("Annotated[float,", "Annotated[Callable[[], int],", "JsonSchema"),

@@ -81,7 +81,7 @@ class OwnName(Twice):
         (OddUnit, "'bananas', which is not a known unit"),
         (Option, "'stiffness' is an option of"),
         (OptionField, "'stiffness' is an option of"),
-        (OwnName, "field of the name of its type"),
+        (OwnName, "field with the name of its type"),
     ],
 )
 def test_not_registered(lie: Any, words: str) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import pytest
 from rich.console import Console
 
-from pellicle.runs.progress import Said, StudyProgress
+from pellicle.runs.progress import ProgressMessage, StudyProgress
 
 
 @dataclass(frozen=True)
@@ -72,15 +72,15 @@ def test_runs_done_failed_and_left(screen: Screen) -> None:
 def test_one_line_for_each_run_at_work(screen: Screen) -> None:
     """A run has a line from its first word to its end: its name, step and iteration."""
     with StudyProgress(3, 0, enabled=True) as progress:
-        progress.report(ONE, Said(0, 4, 3, 2e5, 0.25))
-        progress.report(TWO, Said(1, 2, 7, 3.0, 1.5))
+        progress.report(ONE, ProgressMessage(0, 4, 3, 2e5, 0.25))
+        progress.report(TWO, ProgressMessage(1, 2, 7, 3.0, 1.5))
         study, one, two = screen.lines(progress)
         assert "0 done, 0 failed, 3 left" in study
         assert one.strip().startswith("kernel.tension = 1 N/m ")
         assert "step 1/4 iteration 3" in one
         assert two.strip().startswith("kernel.tension = 2 N/m ")
         assert "step 2/2 iteration 7" in two
-        progress.report(ONE, Said(3, 4, 9, 1.0, 4.0))
+        progress.report(ONE, ProgressMessage(3, 4, 9, 1.0, 4.0))
         _, one, _ = screen.lines(progress)
         assert "step 4/4" in one
         progress.finished(ONE, "converged", failed=False)
@@ -93,7 +93,7 @@ def test_narrow_terminal(screen: Screen) -> None:
     """Where there is no room for all it is the names that are cut, and nothing in them is lost."""
     job = Job("loading.depth = [1e-6, 2e-6], kernel.tension = 1 N/m, indenter.radius = 1 mm")
     with StudyProgress(1000, 100, enabled=True) as progress:
-        progress.report(job, Said(0, 4, 3, 2e5, 0.25))
+        progress.report(job, ProgressMessage(0, 4, 3, 2e5, 0.25))
         study, run = screen.lines(progress, width=80)
     assert "100 done, 0 failed, 900 left time left -:--:--" in " ".join(study.split())
     assert run.startswith("  loading.depth = [")
@@ -105,12 +105,12 @@ def test_narrow_terminal(screen: Screen) -> None:
 def test_time_left(screen: Screen) -> None:
     """It is that of the runs left at the pace so far; runs at work count by their share."""
     with StudyProgress(5, 1, enabled=True) as progress:
-        progress.report(ONE, Said(0, 2, 1, 1e3, 0.0))
+        progress.report(ONE, ProgressMessage(0, 2, 1, 1e3, 0.0))
         (line, _) = screen.lines(progress)
         assert "left -:--:--" in line
         for at, done in ((0.0, 0.02), (100.0, 1.02)):
             screen.now = at
-            progress.report(ONE, Said(0, 2, 1, 1e3, done))
+            progress.report(ONE, ProgressMessage(0, 2, 1, 1e3, done))
         # Half a run in 100 s, so 200 s for each: of four, 0.51 are done.
         line, own = screen.lines(progress)
         assert f"left {_clock(200 * (4 - 0.51))}" in line
@@ -129,7 +129,7 @@ def _clock(seconds: float) -> str:
 def test_nothing_stays_on_the_terminal(screen: Screen) -> None:
     """The bar goes when the study ends, so that what is printed next stands in its place."""
     with StudyProgress(2, 0, enabled=True) as progress:
-        progress.report(ONE, Said(0, 1, 1, 1e3, 0.5))
+        progress.report(ONE, ProgressMessage(0, 1, 1, 1e3, 0.5))
     *_, last = screen.written().splitlines()
     assert last.endswith("\x1b[2K")
 
@@ -138,7 +138,7 @@ def test_a_log_has_a_line_for_each_run(capfd: pytest.CaptureFixture[str]) -> Non
     """Without a terminal there are no control codes, and nothing before a run is done."""
     long = Job(f"kernel.tension = {'1' * 200} [N/m]")
     with StudyProgress(7, 4, enabled=True) as progress:
-        progress.report(ONE, Said(0, 1, 1, 1e3, 0.5))
+        progress.report(ONE, ProgressMessage(0, 1, 1, 1e3, 0.5))
         assert capfd.readouterr() == ("", "")
         progress.finished(ONE, "converged", failed=False)
         progress.finished(long, "failed: [bold]no[/bold]", failed=True)
@@ -153,6 +153,6 @@ def test_a_log_has_a_line_for_each_run(capfd: pytest.CaptureFixture[str]) -> Non
 def test_silent_when_not_enabled(screen: Screen) -> None:
     """A bar that is not asked for writes nothing even on a terminal."""
     with StudyProgress(2, 0, enabled=False) as progress:
-        progress.report(ONE, Said(0, 1, 1, 1e3, 0.5))
+        progress.report(ONE, ProgressMessage(0, 1, 1, 1e3, 0.5))
         progress.finished(ONE, "converged", failed=False)
     assert screen.written() == ""

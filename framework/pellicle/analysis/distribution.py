@@ -12,12 +12,12 @@ from pellicle.arrays import Array
 
 @dataclass(frozen=True)
 class Distribution:
-    """Probability density over bins: Σ density · width = 1, Σ density · width · mean = the mean."""
+    """Probability density over bins, with Σ density · width = 1."""
 
     edges: Array
     """Ends of the bins, shape (bins + 1,)."""
     density: Array
-    """Fraction of the samples in each bin over its width."""
+    """Fraction of the samples in each bin, divided by the width of the bin."""
     mean: Array
     """Mean of the samples in each bin; the middle of an empty one."""
 

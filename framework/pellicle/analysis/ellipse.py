@@ -1,4 +1,4 @@
-"""The ellipse with the moments of a contact."""
+"""The ellipse with the second moments of a contact."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ class Ellipse:
     y: float
     """Centre along y [m]."""
     semi_major_axis: float
-    """[m]."""
+    """Major semi-axis [m]."""
     semi_minor_axis: float
-    """[m]."""
+    """Minor semi-axis [m]."""
     angle: float
-    """From the x axis to the major axis [rad], from −π/2 to π/2; arbitrary for a circle."""
+    """Angle from the x axis to the major axis [rad], −π/2 to π/2; arbitrary for a circle."""
 
 
 def ellipse(contact: ArrayLike, grid: Grid) -> Ellipse:
     """Return the ellipse with the centroid and the second moments of a contact.
 
     A full ellipse with semi-axes a₁ ≥ a₂ has the principal second moments a₁²/4 and a₂²/4 per
-    area. Cells are rectangles here, so that a single one has an extent.
+    area. Cells count as rectangles, so that a single cell has an extent.
 
     Parameters
     ----------
@@ -47,8 +47,8 @@ def ellipse(contact: ArrayLike, grid: Grid) -> Ellipse:
     -------
     Ellipse
         Without contact the semi-axes are 0, centre and angle NaN. On a periodic grid positions are
-        relative to the circular mean of the contact along each axis. A contact that has none, such
-        as full contact or a line contact, has no ellipse, and all is NaN.
+        relative to the circular mean of the contact along each axis. If that is undefined, as in
+        full contact or a line contact, all values are NaN.
     """
     inside = np.asarray(contact, dtype=bool)
     if not inside.any():

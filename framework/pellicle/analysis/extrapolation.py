@@ -1,4 +1,4 @@
-"""Extrapolation of a number to vanishing cell size."""
+"""Extrapolation of a quantity to vanishing cell size."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ class Extrapolation:
     coefficient: float
     exponent: float
     lowest: float
-    """Lowest of the limits without one of the grids."""
+    """Lowest of the limits obtained by leaving out one cell size."""
     highest: float
     """Highest of these limits."""
 
     def __call__(self, spacing: ArrayLike) -> Array:
-        """Return the value on cells of a given size."""
+        """Return the fitted value for a cell size."""
         return self.limit + self.coefficient * np.asarray(spacing, dtype=float) ** self.exponent
 
 
 def extrapolate(spacing: ArrayLike, values: ArrayLike) -> Extrapolation:
     """Return the power law fitted to values on grids of different cell size.
 
-    The discretisation error is taken to be a power of the cell size, as in the extrapolation of
+    The discretisation error is assumed to be a power of the cell size, as in the extrapolation of
     rough contact area by Prodanov, Dapp & Müser (2014). The exponent is fitted, too, by least
     squares: it depends on the quantity, the surface and the kernel.
 
@@ -43,7 +43,7 @@ def extrapolate(spacing: ArrayLike, values: ArrayLike) -> Extrapolation:
     spacing
         Cell size of each grid, in any unit; at least three different ones.
     values
-        The number on each grid, of the same shape.
+        The quantity on each grid, of the same shape.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def _fit(h: Array, v: Array) -> tuple[float, float, float]:
 
 
 def _best(h: Array, v: Array) -> float | None:
-    """Return the exponent of least squares, None if it is at an end of the range."""
+    """Return the exponent that fits best, or None if it is at an end of the range."""
     from scipy.optimize import minimize_scalar
 
     def squares(log_exponent: float) -> float:

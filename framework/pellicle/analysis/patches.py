@@ -16,7 +16,7 @@ Labels = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Patches:
-    """The connected parts of a contact, the largest first."""
+    """The connected parts of a contact, in descending order of area."""
 
     labels: Labels
     """The patch of each cell, counted from 1, of the grid's shape; 0 where there is no contact."""
@@ -85,7 +85,7 @@ def coordination(labels: Labels, grid: Grid) -> NDArray[np.int64]:
     j -= my
     j %= ny
     regions = labels[i, j]
-    # On a periodic grid these are as large as four of its fields.
+    # On a periodic grid these arrays take the memory of four fields.
     del empty, i, j
     pairs = np.concatenate([_pairs(regions, axis, periodic) for axis in (0, 1)], axis=1)
     pairs = np.unique(np.sort(pairs, axis=0), axis=1)

@@ -16,10 +16,10 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
 
     It is computed from the number of switches between contact and no contact along the two axes and
     the two diagonals of the cells (Cauchy–Crofton; Legland, Kiêu & Devaux 2007). For an isotropic
-    border, such as that of a disc, it is right on average; for a straight one it is at most 5.2 %
-    too short (along an axis) or 2.6 % too long, on square cells. The length of the cell edges
-    between contact and no contact would be 27 % too long for a disc. On a grid one cell across,
-    where borders run along the axes only, that length is returned.
+    border, such as that of a disc, it is right on average; for a straight border on square cells it
+    is at most 5.2 % too short (along an axis) or 2.6 % too long. The total length of cell edges
+    between contact and no contact would be 27 % too long for a disc; it is returned on a grid one
+    cell across, where borders are parallel to an axis.
 
     On a free boundary the edge of the domain counts as border where there is contact; on a periodic
     one it does not.
@@ -54,6 +54,6 @@ def perimeter(contact: ArrayLike, grid: Grid) -> float:
 
 
 def _switches(inside: Mask, step: tuple[int, int]) -> int:
-    """Return how often contact begins or ends between a cell and the one that is a step away."""
-    # A free contact was padded, so that it may be treated as periodic.
+    """Return the number of switches of contact between cells and those one step away."""
+    # A contact on a free boundary has been padded, so it can be treated as periodic.
     return int(np.count_nonzero(inside != np.roll(inside, step, (0, 1))))

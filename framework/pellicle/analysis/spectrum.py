@@ -66,8 +66,8 @@ def spectrum(heights: ArrayLike, grid: Grid) -> Spectrum:
         h /= np.sqrt(np.mean(window**2))
     density = np.abs(scipy.fft.rfft2(h) * grid.cell_area) ** 2 / grid.area
     q = np.hypot(*grid.wavenumbers())
-    # rfft2 returns one of each pair ±q, but both where q_y = 0 and, for an even number of cells,
-    # in the last column.
+    # rfft2 returns one of each pair ±q, but both at q_y = 0 and, for an even number of cells, in
+    # the last column.
     times = np.full(q.shape, 2)
     times[:, 0] = 1
     if grid.shape[1] % 2 == 0:

@@ -82,12 +82,12 @@ def print_runs(table: xr.Dataset) -> None:
 
 def exit_by_convergence(result: Result) -> None:
     """Print which steps did not converge or are too coarse; exit unless all converged."""
-    from pellicle.results.result import said_of_steps
+    from pellicle.results.result import first_message
 
     for step, message in result.failures():
         typer.echo(f"step {step} did not converge: {for_document(message)}", err=True)
     if coarse := result.coarse():
-        print_warning(said_of_steps(coarse))
+        print_warning(first_message(coarse))
     if not result.converged:
         raise typer.Exit(NOT_CONVERGED)
 

@@ -1,8 +1,9 @@
 """The contracts of the families of components.
 
-A component is a frozen model: its fields are its parameters in SI, each with a description, its
-methods are pure. The same object is configuration, code, JSON schema and provenance, and it
-pickles to workers. A concrete component declares ``type: Literal["name"] = "name"``.
+A component is a frozen model: its fields are its parameters in SI, each with a description; its
+methods are pure. The same class defines configuration, computation, JSON schema and provenance, and
+its objects can be pickled to workers. A concrete component declares
+``type: Literal["name"] = "name"``.
 """
 
 from typing import TYPE_CHECKING

@@ -14,9 +14,9 @@ class Component(Model):
 
     family: ClassVar[str]
     libraries: ClassVar[tuple[str, ...]] = ()
-    """Distributions that it computes with, beside numpy and scipy; results state their versions."""
+    """Distributions that it uses besides numpy and scipy; results record their versions."""
     replaced_methods: ClassVar[Mapping[str, str]] = {}
-    """Methods of an earlier contract, and what replaces each; a class that has one is refused."""
+    """Replacements for methods of an earlier contract; a class with such a method is refused."""
 
     @property
     def type_name(self) -> str:
@@ -26,7 +26,7 @@ class Component(Model):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        """Refuse a class that was written for the contract of an earlier version."""
+        """Refuse a class written for the contract of an earlier version."""
         super().__pydantic_init_subclass__(**options)
         for name, replacement in cls.replaced_methods.items():
             if name in vars(cls):

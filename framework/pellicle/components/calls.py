@@ -1,7 +1,7 @@
 """Calls of components: one function for each method that the framework calls.
 
-What a component is given is read-only; what it returns is checked against its contract, at a cost
-far below that of the call. A kernel is called by `pellicle.operators` in the same way.
+Arguments of components are read-only. Returned values are checked against the contract, at a cost
+far below that of the call. `pellicle.operators` calls kernels in the same way.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.checks import (
-    blamed,
     component_name,
+    errors_attributed_to,
     read_only,
     real_array,
     real_number,
@@ -36,7 +36,7 @@ from .output import Output, Runs, stem_of
 from .prescription import Prescription, Search, Setting
 from .solver import Monitor, Solver
 
-# Rounding of heights over the size of the domain, and of areas over their own size.
+# Rounding error of heights over the size of the domain, and relative rounding error of areas.
 _ROUNDING = 1e-12
 
 
@@ -48,11 +48,11 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
     ConfigError
         The indenter cannot be put on this grid, or has heights that are positive or NaN.
     PluginError
-        The profile is not an array of the grid's shape, or nowhere near 0.
+        The profile is not an array of the grid's shape, or is not near 0 anywhere.
     """
     x, y = (read_only(points) for points in grid.coordinates())
     try:
-        with blamed(indenter), np.errstate(over="raise"):
+        with errors_attributed_to(indenter), np.errstate(over="raise"):
             value = indenter.profile(x, y)
             footprint = indenter.footprint
     except ConfigError as error:
@@ -94,11 +94,12 @@ def _beyond_numbers(what: str) -> ConfigError:
 
 
 def _hidden_height(profile: Array, footprint: Footprint) -> float:
-    """Return how far [m] the lowest point of an indenter may lie below its lowest cell.
+    """Return an upper bound [m] on the height of the lowest cell above the lowest point.
 
-    Where a body falls away from an apex between the cells, it falls further to the cells around its
-    lowest one. A rough surface may have its apex elsewhere: there the largest step between any two
-    neighbours counts. The apex of an unbounded body may also lie beyond the edge of the domain.
+    If the apex of a smooth body lies between the cells, the lowest cell is closer to it in height
+    than to the highest of its neighbours. The apex of a rough surface may be elsewhere, so the
+    largest step between any two neighbours is the bound. The apex of an unbounded body may also lie
+    beyond the edge of the domain.
     """
     if footprint == "domain":
         with np.errstate(invalid="ignore"):
@@ -115,14 +116,14 @@ def _hidden_height(profile: Array, footprint: Footprint) -> float:
 
 
 def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> ForceCurve:
-    """Return force over reduced modulus and its sensitivities at depths of shape (n,) [m].
+    """Return force over reduced modulus and its derivatives at depths of shape (n,) [m].
 
     Raises
     ------
     PluginError
-        They are not three arrays of that shape, finite at every finite depth.
+        The curve is not three arrays of that shape, finite at every finite depth.
     """
-    with blamed(indenter):
+    with errors_attributed_to(indenter):
         value = indenter.force_curve(read_only(depth), length)
     if not isinstance(value, ForceCurve):
         raise PluginError(
@@ -147,23 +148,23 @@ def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> Forc
 def solution_of(
     solver: Solver, problem: Problem, start: State | None, monitor: Monitor
 ) -> Solution:
-    """Return the solution of a load step, its pressure in an array of its own.
+    """Return the solution of a load step, with a copy of its pressure.
 
-    A pressure that is negative or not finite is kept: the status of the step says so.
+    A negative or non-finite pressure is accepted here; the status of the step reports it.
 
     Raises
     ------
     PluginError
-        It is not a `Solution` of the grid's shape, the solver changed the problem, or it takes
-        ``start`` for an array, which it was in earlier versions.
+        The solver does not return a `Solution` of the grid's shape, changes the problem, or treats
+        ``start`` as an array, which it was in earlier versions.
     """
-    if not problem.touches:
+    if not problem.needs_solving:
         return Solution(np.zeros(problem.grid.shape), 0)
     name = component_name(solver)
     view = _read_only_problem(problem)
     fields, parts = dict(vars(view)), problem.operator.parts()
     try:
-        with blamed(solver):
+        with errors_attributed_to(solver):
             value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
     except (AttributeError, TypeError, ValueError) as error:
         outdated = "'State'|tuple|sequence|inhomogeneous" if start else "argument 'pressure'"
@@ -186,7 +187,7 @@ def solution_of(
             f"{name}: solve() returned iterations {shown(value.iterations)} and stop "
             f"{shown(value.stop)}; they have to be a whole number and a pellicle.Stop"
         )
-    # The solver may use the memory of what it returned again.
+    # The solver may reuse the memory of the array that it returned.
     return Solution(pressure.copy(), int(value.iterations), value.stop)
 
 
@@ -196,10 +197,10 @@ def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor
     Raises
     ------
     PluginError
-        It is not an array of the grid's shape, or not 0 off the contact.
+        The result is not an array of the grid's shape, or not 0 off the contact.
     """
     view, parts = _read_only_problem(problem), problem.operator.parts()
-    with blamed(solver):
+    with errors_attributed_to(solver):
         value = solver.response(view, _read_only_state(state), monitor)
     _require_unchanged(solver, "response()", parts, problem.operator.parts(), "problem.operator")
     pressure = real_array(solver, "response()", value, problem.grid.shape)
@@ -231,9 +232,9 @@ def _require_unchanged(
 
 
 def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
-    """Refuse a prescribed value that its prescription refuses, as an error of ``field``.
+    """Let a prescription check a prescribed value; its errors name ``field``.
 
-    An error of the prescription that names a field of its own keeps it.
+    If an error names a field already, it keeps that one.
 
     Raises
     ------
@@ -241,7 +242,7 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
         The value is not allowed in this setting.
     """
     try:
-        with blamed(prescription):
+        with errors_attributed_to(prescription):
             prescription.check(setting, value)
     except ConfigError as error:
         named = any(problem.field for problem in error.problems)
@@ -254,9 +255,9 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
     Raises
     ------
     PluginError
-        It is none of these, or not of finite numbers.
+        The target is of another type, or its numbers are not finite.
     """
-    with blamed(prescription):
+    with errors_attributed_to(prescription):
         target = prescription.target(setting, value)
     call, name = f"target(setting, {value:g})", component_name(prescription)
     if not isinstance(target, (Depth, Force, Search)):
@@ -282,7 +283,7 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
         )
 
     def measure(step: Equilibrium) -> float:
-        with blamed(prescription):
+        with errors_attributed_to(prescription):
             return real_number(prescription, f"{call}.measure(step)", quantity(step))
 
     return replace(target, measure=measure)
@@ -294,9 +295,9 @@ def report_of(prescription: Prescription, setting: Setting, step: Equilibrium) -
     Raises
     ------
     PluginError
-        They are not numbers, or not those that it declares.
+        The values are not numbers, or are not those that the prescription declares.
     """
-    with blamed(prescription):
+    with errors_attributed_to(prescription):
         report = prescription.report(setting, step)
     declared = {v.name for v in prescription.variables if v.kind != "residual"}
     if not isinstance(report, dict) or report.keys() != declared:
@@ -316,11 +317,11 @@ def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> flo
     Raises
     ------
     PluginError
-        It is not a number between 0 and the area of the domain, 0 without contact.
+        The area is not a number between 0 and the area of the domain, or not 0 without contact.
     """
     method = correction.periodic_area if grid.boundary == "periodic" else correction.area
     call = f"{method.__name__}(contact, spacing)"
-    with blamed(correction):
+    with errors_attributed_to(correction):
         value = method(read_only(contact), grid.spacing)
     area = real_number(correction, call, value)
     largest = grid.area if contact.any() else 0.0
@@ -333,26 +334,26 @@ def corrected_area(correction: AreaCorrection, contact: Mask, grid: Grid) -> flo
 
 
 def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
-    """Return the files that an output writes of a run or study whose stem is ``stem``.
+    """Let an output write its files for a run or study with the given stem; return their paths.
 
     Raises
     ------
     PluginError
         As for `require_files`.
     """
-    with blamed(output):
+    with errors_attributed_to(output):
         files = output.write(runs, stem_of(output, stem))
     require_files(output, files, stem)
     return tuple(files)
 
 
 def require_files(output: Output, files: object, stem: Path) -> None:
-    """Refuse what write() of an output returned unless it is files of its own stem.
+    """Refuse the value that write() of an output returned unless it lists files of its own stem.
 
     Raises
     ------
     PluginError
-        It is not a tuple of paths that begin with the stem.
+        The value is not a tuple of paths that begin with the stem of the output.
     """
     own = stem_of(output, stem)
     call = f"{component_name(output)}: write(runs, stem) returned"
@@ -373,18 +374,18 @@ def outcomes_of(
     report: Report[AnyTask],
     kind: type[Outcome],
 ) -> Generator[tuple[AnyTask, Outcome | Exception], None, None]:
-    """Yield each task once with what its work returned, of the given ``kind``, or raised.
+    """Yield each task once with its outcome: a value of type ``kind``, or the exception raised.
 
     Raises
     ------
     PluginError
-        The executor yields a task twice, never, or one that it was not given; or an outcome that
-        the work of a task cannot have.
+        The executor yields a task twice or never, an object that is not one of the tasks, or an
+        outcome of another type.
     """
     name = component_name(executor)
     known = {id(task) for task in tasks}
     remaining = {id(task): task for task in tasks}
-    with blamed(executor):
+    with errors_attributed_to(executor):
         pairs: Any = executor.map(work, tasks, report)
     if not isinstance(pairs, Iterator) or not hasattr(pairs, "close"):
         raise PluginError(f"{name}: map() returned {shown(pairs)}; it has to be written with yield")
@@ -415,9 +416,9 @@ def outcomes_of(
 
 
 def _items(executor: Executor, pairs: Iterator[Any]) -> Iterator[Any]:
-    """Yield what an executor yields; what it raises of its own is noted to be its fault."""
+    """Yield the items of an executor; exceptions that it raises itself are attributed to it."""
     while True:
-        with blamed(executor):
+        with errors_attributed_to(executor):
             try:
                 pair = next(pairs)
             except StopIteration:

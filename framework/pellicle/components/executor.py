@@ -28,33 +28,33 @@ Outcome = TypeVar("Outcome")
 
 
 class Task(Protocol):
-    """A run of a study, as an executor sees it; it pickles."""
+    """A run of a study, as an executor sees it; it can be pickled."""
 
     @property
     def name(self) -> str:
-        """One line for people."""
+        """The name of the task in messages, on one line."""
         ...
 
     @property
     def memory(self) -> int:
-        """Estimated memory of the running task [bytes]."""
+        """Estimated peak memory of the task [bytes]."""
         ...
 
 
 AnyTask = TypeVar("AnyTask", bound=Task)
 
 Report = Callable[[AnyTask, Any], None]
-"""Called in the calling process with a task and a message of its work."""
+"""Function that the executor calls in the calling process with a task and a progress message."""
 Say = Callable[[Any], None]
-"""Called by work, wherever it runs, with a small message that pickles, for `Report`."""
+"""Function that work calls, in any process, with a small picklable message for `Report`."""
 Work = Callable[[AnyTask, Say], Outcome]
 """A picklable function that executes a task."""
 Outcomes = Iterator[tuple[AnyTask, Outcome | Exception]]
-"""Tasks with what their work returned or raised."""
+"""Tasks with the value that their work returned, or the exception that it raised."""
 
 
 class Executor(Component):
-    """Carries out the runs of a study."""
+    """Executes the runs of a study."""
 
     family: ClassVar[str] = "executor"
 
@@ -69,7 +69,7 @@ class Executor(Component):
     ) -> Outcomes[AnyTask, Outcome]:
         """Yield each task once, as they finish, with what ``work(task, say)`` returned or raised.
 
-        A task whose worker died comes with an exception that says so; it does not stop the others.
-        Messages that ``work`` passes to ``say`` are passed to ``report`` in this process, soon or
-        not at all. If the iterator is closed early, no task goes on.
+        If a worker dies, its task is yielded with an exception that states this, and the other
+        tasks continue. Messages that ``work`` passes to ``say`` are passed to ``report`` in this
+        process, soon or not at all. If the iterator is closed early, no task continues.
         """

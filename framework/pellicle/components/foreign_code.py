@@ -1,6 +1,6 @@
-"""Guards around the import of plugins against output to standard output and false Ctrl-C.
+"""Guards for importing plugins: against writing to standard output and raising KeyboardInterrupt.
 
-Commands print JSON to standard output, which a single line of a plugin would spoil.
+Commands print JSON to standard output, which a single line from a plugin would make invalid.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def diverted_output() -> Iterator[None]:
     Raises
     ------
     PluginError
-        The code closed standard output, which is open again.
+        The code closed standard output; it has been reopened.
     """
     stream = sys.stdout
     was_closed = _is_closed(stream)
@@ -58,7 +58,7 @@ def diverted_output() -> Iterator[None]:
 def noted_interrupts() -> Iterator[threading.Event]:
     """Yield an event that is set when the user presses Ctrl-C, even if the exception is caught.
 
-    The previous handler is restored. Threads other than the main one get no Ctrl-C.
+    The previous handler is restored. Only the main thread receives Ctrl-C.
     """
     interrupt = threading.Event()
     before = signal.getsignal(signal.SIGINT)
@@ -78,7 +78,7 @@ def noted_interrupts() -> Iterator[threading.Event]:
 
 
 def _stand_in() -> TextIO:
-    """Return a stream to standard error; closing it closes nothing else."""
+    """Return a stream to standard error that may be closed without closing standard error."""
     encoding = getattr(sys.stderr, "encoding", None) or "utf-8"
     try:
         return open(

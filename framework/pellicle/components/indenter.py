@@ -15,8 +15,8 @@ Footprint = Literal["unbounded", "domain"]
 class Indenter(Component):
     """The rigid body that is pressed into the surface.
 
-    An indenter with the force curve of `HasForceCurve` is fitted to measured curves directly; for
-    any other the force curve is simulated first.
+    An indenter with a force curve (`HasForceCurve`) is fitted to measured curves directly; for any
+    other the force curve is simulated first.
     """
 
     family: ClassVar[str] = "indenter"
@@ -33,9 +33,9 @@ class Indenter(Component):
     def profile(self, x: Array, y: Array) -> Array:
         """Return f(x, y) [m]: 0 at the lowest point, negative elsewhere, −inf without an indenter.
 
-        ``x`` of shape (nx, 1) and ``y`` of shape (1, ny) are cell centres [m], seen from the centre
-        of the domain; the result is of shape (nx, ny). An unbounded indenter that is rotated gets
-        ``x`` and ``y`` that are both of shape (nx, ny).
+        ``x`` of shape (nx, 1) and ``y`` of shape (1, ny) are coordinates of the cell centres [m]
+        from the centre of the domain; the result has shape (nx, ny). For an unbounded indenter that
+        is rotated, ``x`` and ``y`` both have shape (nx, ny).
 
         Raises
         ------
@@ -61,13 +61,13 @@ class HasForceCurve(Protocol):
 
     @property
     def depth_limit(self) -> float:
-        """Depth [m] up to which the curve holds; infinite if there is none."""
+        """Largest depth [m] at which the curve is valid; infinite if unlimited."""
         ...
 
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
-        """Return force and partial derivatives; 0 without contact, at ``depth`` ≤ 0.
+        """Return force and partial derivatives, all 0 at ``depth`` ≤ 0, where there is no contact.
 
-        The force is smooth and grows with depth and length. ``depth`` [m] is of shape (n,),
+        The force has to be smooth and grow with depth and length. ``depth`` [m] has shape (n,);
         ``length`` ≥ 0 is the elastocapillary length s = 2τ₀/E* [m].
         """
         ...

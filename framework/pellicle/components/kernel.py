@@ -13,9 +13,9 @@ from .base import Component
 class Kernel(Component):
     """The displacement of the surface under pressure: û(q) = G(q) p̂(q).
 
-    Only G(q) is required. On free boundaries the closed form of `pellicle.operators.HasClosedForm`,
-    ``greens_function(r)`` [m/N] and ``radial_primitive(r)`` [m³/N], is used if the kernel has one,
-    and is otherwise tabulated from G(q). On periodic boundaries a uniform pressure causes no
+    Only G(q) is required. On free boundaries the closed form (`pellicle.operators.HasClosedForm`),
+    ``greens_function(r)`` [m/N] and ``radial_primitive(r)`` [m³/N], is used if the kernel has one;
+    otherwise it is tabulated from G(q). On periodic boundaries a uniform pressure causes no
     displacement unless the kernel also has `pellicle.operators.HasMeanCompliance`.
     """
 

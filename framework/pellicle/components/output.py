@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 class Output(Component):
     """Files that show a run or a study.
 
-    `write` is called once the load steps are solved, with those that are finished also after an
-    interruption. The files of an output begin with its stem, which the framework makes unique:
-    ``NAME-type``, or ``NAME-name`` where the output has a field ``name`` that is not empty.
+    `write` is called when all load steps are solved; after an interruption it gets the finished
+    steps. The file names of an output begin with its stem, which the framework makes unique:
+    ``NAME-type``, or ``NAME-name`` if the output has a field ``name`` that is not empty.
     """
 
     family: ClassVar[str] = "output"
@@ -32,35 +32,35 @@ class Output(Component):
         ("open", "close", "study", "endings", "resume"), "write(runs, stem)"
     )
     scope: ClassVar[Literal["run", "study", "both"]] = "both"
-    """What it can show: a run, a study, or either.
+    """Whether the output can show a run, a study or both.
 
-    Of a study, an output of scope ``"run"`` shows each run on its own, any other the study as a
-    whole. An output of scope ``"study"`` is skipped in a run that stands alone.
+    In a study, an output of scope ``"run"`` shows each run separately; any other shows the study as
+    a whole. In a single run an output of scope ``"study"`` is skipped.
     """
     shares_stem: ClassVar[bool] = False
-    """Whether its stem is ``NAME`` alone; then its `suffixes` have to be given."""
+    """Whether the stem is ``NAME`` alone; the class then has to define `suffixes`."""
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """What follows its stem in the names of its files; ``*`` stands for anything."""
+        """Ends of its file names, which follow the stem; ``*`` stands for any text."""
         return ("*",)
 
     @abstractmethod
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write files whose paths begin with ``stem``, such as ``f"{stem}.txt"``; return them.
+        """Write files whose paths begin with ``stem``, such as ``f"{stem}.txt"``; return the paths.
 
-        Whatever is there of an earlier call is replaced.
+        Existing files of an earlier call are replaced.
         """
 
     def step(self, record: xr.Dataset, stem: Path) -> None:
-        """Take a load step, a dataset with dimension ``step`` of length 1, as soon as it is solved.
+        """Receive a load step, with dimension ``step`` of length 1, as soon as it is solved.
 
-        Each step comes once, in order; those that an earlier process solved come first.
+        Each step is passed once, in order, including those that an earlier process solved.
         """
 
 
 def stem_of(output: Output, stem: Path) -> Path:
-    """Return the stem of an output in a run or study whose own stem is ``stem``."""
+    """Return the stem of an output in a run or study with the given stem."""
     return stem.with_name(f"{stem.name}{_own_suffix(output)}")
 
 
@@ -70,7 +70,7 @@ def refuse_shared_files(outputs: Sequence[Output], *, of_study: bool = False) ->
     Raises
     ------
     ConfigError
-        Names the output, the file, what else writes it, and the field to change.
+        Two would write one file; the message names both and the field to change.
     PluginError
         The suffixes of an output are not a tuple of texts.
     """
@@ -90,7 +90,7 @@ def refuse_shared_files(outputs: Sequence[Output], *, of_study: bool = False) ->
 
 
 def _refusal(shared: str, *both: tuple[int, Output]) -> ConfigError:
-    """Return the error on two outputs of one file; one that can have another name should get it."""
+    """Return the error for two outputs of one file, in the field of one that can be renamed."""
     (index, output), (other_index, other) = sorted(
         both, key=lambda one: "name" not in type(one[1]).model_fields
     )
@@ -107,7 +107,7 @@ def _own_suffix(output: Output) -> str:
 
 
 def _suffixes(output: Output) -> list[str]:
-    """Return what follows the stem of the run in the names of an output's files."""
+    """Return the ends of an output's file names, which follow the stem of the run."""
     suffixes: object = output.suffixes
     if not isinstance(suffixes, tuple) or not all(isinstance(text, str) for text in suffixes):
         raise PluginError(
@@ -118,9 +118,9 @@ def _suffixes(output: Output) -> list[str]:
 
 
 def _shared(some: Iterable[str], others: Sequence[str]) -> str:
-    """Return a suffix that is among both, or an empty text.
+    """Return a suffix that both contain, or an empty text.
 
-    Case does not count: some file systems do not distinguish it.
+    Case is ignored, since some file systems do not distinguish it.
     """
     for one, other in product(some, others):
         if fnmatchcase(one.casefold(), other.casefold()):

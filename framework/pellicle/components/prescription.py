@@ -24,11 +24,11 @@ from .indenter import Footprint
 
 @dataclass(frozen=True)
 class Setting:
-    """What a prescription may know of a run and of the step before."""
+    """The data that a prescription may use: the run and the last step."""
 
     grid: Grid
     operator: Operator
-    """From pressure [Pa] to displacement [m]."""
+    """The map from pressure [Pa] to displacement [m]."""
     profile: Array
     """Indenter profile f ≤ 0 [m] of the grid's shape; −inf where there is no indenter."""
     footprint: Footprint
@@ -66,29 +66,29 @@ class Search:
     """The quantity; it must not fall as the control grows."""
     control: type[Depth] | type[Force] = Force
     resolution: float = 0.0
-    """The difference from the goal that counts as none."""
+    """Difference from the goal up to which the goal counts as met."""
     width: float = 1e-9
-    """Relative width of controls within which the quantity counts as jumping."""
+    """Relative width of the interval of controls to which a jump is located."""
     guess: float | None = None
-    """Control of the first trial [m or N]; None for that of the step before."""
+    """Control of the first trial [m or N]; None to start from that of the last step."""
     quantity: str = "quantity"
-    """What messages call it."""
+    """Name of the quantity in messages."""
     unit: str = ""
-    """Its SI unit in messages."""
+    """SI unit of the quantity in messages."""
 
 
 class Prescription(Component):
-    """Says what depth or force a prescribed value means."""
+    """Converts a prescribed value to a depth, a force or a search for one of them."""
 
     family: ClassVar[str] = "prescription"
     unit: ClassVar[str]
     """SI unit of its values."""
     at_least: ClassVar[float | None] = None
-    """The least value that makes sense."""
+    """Least allowed value; None if there is no bound."""
     needs_period: ClassVar[bool] = False
     """Whether it is defined on periodic grids only."""
     variables: ClassVar[tuple[Variable, ...]] = ()
-    """What it adds to a result. One of kind ``residual`` is the relative error of its search."""
+    """Variables that it adds to a result; kind ``residual`` is the relative error of its search."""
 
     @classmethod
     def quantity(cls) -> Quantity:
@@ -97,7 +97,7 @@ class Prescription(Component):
 
     @abstractmethod
     def target(self, setting: Setting, value: float) -> Depth | Force | Search:
-        """Return what is solved for at a prescribed ``value``."""
+        """Return the depth, the force or the search that a prescribed ``value`` stands for."""
 
     def check(self, setting: Setting, value: float) -> None:
         """Refuse a value that cannot be reached, before any step is solved.
@@ -114,5 +114,5 @@ class Prescription(Component):
 
 
 def in_unit(value: float, unit: str) -> str:
-    """Return a number and its unit, as messages have them."""
+    """Return a number with its unit for a message."""
     return f"{value:g} {unit.replace('**', '')}".rstrip()

@@ -18,15 +18,15 @@ from pellicle.units import Quantity
 from .base import Component
 
 Monitor = Callable[[int, float], None]
-"""Called by a solver with its iteration and its residual over the tolerance, to show progress."""
+"""Function that a solver calls with its iteration and its residual over the tolerance."""
 
-# A residual up to this multiple of the rounding of one operator application is put down to it.
+# A stagnating residual up to this multiple of the rounding of one application counts as rounding.
 _ROUNDINGS = 30.0
 
 
 @runtime_checkable
 class HasMemory(Protocol):
-    """A solver that states its memory; the estimate before a run uses it."""
+    """A solver that states its memory, for the estimate before a run."""
 
     def arrays(self, grid: Grid) -> float:
         """Return the number of arrays of the grid's shape that a solve needs at its peak.
@@ -56,23 +56,23 @@ class Solver(Component):
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
         """Return the solution of one load step.
 
-        ``start`` is the state at the end of the step before, or None. The framework measures the
-        result afresh; the solver's own estimate of its accuracy is not used.
+        ``start`` is the state at the end of the last step, or None. The framework computes the
+        residuals of the solution itself; the solver's own estimates are not used.
         """
 
     def response(self, problem: Problem, state: State, monitor: Monitor) -> Array:
         """Return dp/dδ [Pa/m] of the grid's shape, with the contact of ``state`` fixed.
 
-        It is the pressure under a flat punch whose footprint is the contact, per depth: it
-        displaces the contact by 1, to `tolerance`, is of either sign there and 0 elsewhere. The
-        profile and the load of ``problem`` do not matter. The contact stiffness is its sum times
-        the area of a cell. By default by conjugate gradients (`scipy.sparse.linalg.cg`); a solver
-        that has a preconditioner overrides this.
+        This is the pressure per depth under a flat punch with the contact as its footprint: it
+        displaces the contact by 1, to `tolerance`, may have either sign there and is 0 elsewhere.
+        It does not depend on the profile and the load of ``problem``. Its sum times the area of a
+        cell is the contact stiffness. The default uses conjugate gradients
+        (`scipy.sparse.linalg.cg`); a solver with a preconditioner overrides it.
         """
         from scipy.sparse.linalg import LinearOperator, cg
 
-        # A spring that holds the indenter has no part in it.
-        operator = problem.operator.held(0.0)
+        # The stiffness of the contact does not include that of a spring that holds the indenter.
+        operator = problem.operator.with_spring(0.0)
         cells = np.flatnonzero(state.contact)
         pressure = np.zeros(problem.grid.shape)
         iteration = 0
@@ -93,11 +93,11 @@ class Solver(Component):
 
 
 class IterativeSolver(Solver):
-    """A solver given by a start, a step and a residual; one loop does the rest."""
+    """A solver defined by a first iterate, a step and a residual; the loop is common to all."""
 
     max_iterations: Annotated[
         int,
-        Field(gt=0, description="iterations after which a step is given up, and says so"),
+        Field(gt=0, description="iterations after which a step is abandoned and marked"),
     ] = 20_000
 
     @abstractmethod
@@ -106,7 +106,7 @@ class IterativeSolver(Solver):
 
     @abstractmethod
     def step(self, problem: Problem, state: Any) -> Any:
-        """Return the next iterate; it may reuse the memory of ``state``."""
+        """Return the next iterate, which may reuse the memory of ``state``."""
 
     @abstractmethod
     def residual(self, problem: Problem, state: Any) -> float:
@@ -117,17 +117,17 @@ class IterativeSolver(Solver):
         """Return the pressure [Pa] of an iterate."""
 
     def terminate(self, problem: Problem, state: Any) -> Stop | None:
-        """Return why the iteration ends above the tolerance, or None to go on, as by default.
+        """Return the reason to end the iteration above the tolerance; None, the default, continues.
 
-        `Stop.STALLED` becomes `Stop.ROUND_OFF` where the residual is no more than rounding. In any
-        case the loop ends where the residual has had no new least value for N + 200 iterations, N
-        being the sum of the grid's edges in cells: gradient methods need O(N) iterations, and
-        their residual does not fall in each.
+        `Stop.STALLED` becomes `Stop.ROUND_OFF` if the residual is not more than rounding. The loop
+        also ends when the residual has not reached a new minimum for N + 200 iterations, N being
+        the sum of the grid's edges in cells: gradient methods need O(N) iterations, and their
+        residual does not fall monotonically.
         """
         return None
 
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
-        """Iterate until the tolerance is met, or it is plain that it will not be."""
+        """Iterate until the tolerance is met or `terminate` or another limit ends the iteration."""
         state = self.begin(problem, start)
         iteration, progress = 0, Progress()
         while True:

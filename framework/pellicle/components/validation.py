@@ -16,9 +16,9 @@ class Case:
     name: str
     """Name of the case, e.g. ``"Hertz sphere: force"``."""
     configuration: dict[str, Any]
-    """The run as a TOML file would have it."""
+    """The run, in the form of a TOML file."""
     computed: Callable[[Result], float]
-    """Returns the computed quantity of the result, SI."""
+    """Function that returns the computed quantity from the result, SI."""
     expected: float
     """Its true value, SI."""
     unit: str
@@ -30,4 +30,4 @@ class Case:
 
 
 Suite = Callable[[], Iterable[Case]]
-"""Returns the cases of a plugin; called only when they are to be solved."""
+"""Function that returns the cases of a plugin, called only when they are to be solved."""

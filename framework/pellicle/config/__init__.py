@@ -1,1 +1,1 @@
-"""The configuration of runs and studies: their models, schema, description and origin."""
+"""The configuration of runs and studies: models, JSON schema, description and provenance."""

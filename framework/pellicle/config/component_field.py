@@ -37,8 +37,8 @@ class FromRegistry:
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        # `json_schema` fills it in: not all components are known while plugins load, and a
-        # component may hold one of its own family.
+        # `json_schema` replaces this keyword later: not all components are known while plugins
+        # load, and a component may hold another one of its own family.
         inner: Any = schema
         # Validators of the model wrap the schema of the field.
         while "family" not in inner.get("metadata", {}):

@@ -1,4 +1,4 @@
-"""The values of a study's axes: as coordinates of its table, and as JSON."""
+"""The values of the axes of a study, as coordinates of its table and as JSON."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class Coordinate(NamedTuple):
     """The values that a parameter takes along a dimension."""
 
     values: np.ndarray[tuple[int], np.dtype[Any]]
-    """SI numbers, or texts."""
+    """Numbers in SI, or texts."""
     attributes: dict[str, str]
-    """Unit and meaning."""
+    """Attributes of the coordinate: its unit and meaning."""
 
 
 def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
-    """Return the values ``given`` to the parameter ``key`` as each run has them."""
+    """Return the values that ``runs`` hold of the parameter ``key``, ``given`` by the user."""
     values = [_single(get(run, key), value) for run, value in zip(runs, given, strict=True)]
     attributes = {"long_name": key}
     if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
@@ -47,9 +47,10 @@ def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
 
 
 def as_json(given: Any, value: Any, *, as_given: bool = False) -> Any:
-    """Return a value as JSON has it, as it was given, but for its paths.
+    """Return a ``given`` value in a form that JSON can hold.
 
-    ``value`` is what the run made of it. Paths are absolute or, ``as_given``, as they were given.
+    ``value`` is the validated value of the run, whose paths replace the given ones: absolute or, if
+    ``as_given``, as the user wrote them.
     """
     if isinstance(given, Model):
         context = AS_GIVEN if as_given else None
@@ -72,7 +73,7 @@ def as_json(given: Any, value: Any, *, as_given: bool = False) -> Any:
 
 
 def _single(value: Any, given: Any) -> Any:
-    """Return one of several equal values where one was given, as for a size or a depth."""
+    """Return one of several equal values if the user gave one, as for a size or a depth."""
     several = isinstance(value, tuple) and value and len(set(map(str, value))) == 1
     if several and not isinstance(given, (list, tuple, Mapping)):
         return value[0]
@@ -83,5 +84,5 @@ def _unit(run: Run, key: str) -> str | None:
     """Return the SI unit of the field at a dotted key."""
     field = next((field for path, _, field in walk(run) if path == key), None)
     quantity = quantity_of(field) if field else None
-    # Datasets write m2, pint m**2.
+    # Attributes of datasets write m2 for m**2 of pint.
     return quantity.unit.replace("m**2", "m2") if quantity else None

@@ -1,4 +1,4 @@
-"""The configuration of a run as rows: value with unit, meaning, and origin of components."""
+"""The configuration of a run as rows of value with unit, meaning, and origin of components."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Input(NamedTuple):
     """One value of a configuration."""
 
     name: str
-    """Dotted path, as after ``--set``."""
+    """Dotted path, as in ``--set``."""
     value: str
-    """With a unit that brings it near 1 … 1000."""
+    """The value as text, with a unit that brings it near 1 … 1000."""
     meaning: str
     origin: Origin | None = None
     """Distribution and entry point of a component."""
@@ -49,8 +49,8 @@ def _table(table: Mapping[str, Any], model: type[BaseModel] | None, path: str) -
                 yield from _one(entry, info.annotation if info else None, f"{name}.{index}")
         elif value not in ([], ""):
             quantity = quantity_of(info) if info else None
-            words = readable(value, quantity.unit if quantity else "1")
-            yield Input(name, words, (info.description if info else None) or "")
+            text = readable(value, quantity.unit if quantity else "1")
+            yield Input(name, text, (info.description if info else None) or "")
 
 
 def _one(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[Input]:

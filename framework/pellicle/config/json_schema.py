@@ -19,19 +19,19 @@ _IN_PART = "InPart"
 
 
 def json_schema(model: type[BaseModel]) -> dict[str, Any]:
-    """Return the JSON schema of a model whose fields take any component that is installed.
+    """Return the JSON schema of a model whose fields take any installed component.
 
-    Where such a field is the model's own the components are written out; within components, which
-    may hold others of their own family without end, they are referred to. The loading is one table
-    for each prescription.
+    In fields of the model itself the schemas of the components are written out. Components may hold
+    others of their own family without end, so their fields refer to schemas. The loading is a
+    choice of one table per prescription.
     """
     families = registry().components
-    installed = [each for found in families.values() for each in found.values()]
+    installed = [entry for entries in families.values() for entry in entries.values()]
     loadings = [loading_model(type_) for type_ in families["prescription"]]
     models = [model, *(registered.component for registered in installed), *loadings]
-    refs, made = models_json_schema([(each, "validation") for each in models])
-    names = {each: refs[each, "validation"]["$ref"].rpartition("/")[2] for each in models}
-    definitions: dict[str, Any] = made["$defs"]
+    refs, generated = models_json_schema([(entry, "validation") for entry in models])
+    names = {entry: refs[entry, "validation"]["$ref"].rpartition("/")[2] for entry in models}
+    definitions: dict[str, Any] = generated["$defs"]
     if Loading.__name__ in definitions:
         choices = [definitions.pop(names[loading]) for loading in loadings]
         definitions[Loading.__name__] = {"description": inspect.getdoc(Loading), "oneOf": choices}
@@ -47,7 +47,7 @@ def json_schema(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
-    """Return ``schema`` with the choices of a family where a field holds one of them."""
+    """Return ``schema`` with the choices of a family in place of its keyword."""
     if isinstance(schema, list):
         return [_filled(inner, choices) for inner in schema]
     if not isinstance(schema, dict):
@@ -61,9 +61,9 @@ def _required(model: type[BaseModel]) -> list[str]:
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON schema of a run or study file, with every component that is installed.
+    """Return the JSON schema of a run or study file with all installed components.
 
-    In a study file varied fields may be left out, so only the type of a component is required.
+    A study file may leave out varied fields, so only the type of a component is required there.
     """
     run, study = json_schema(Run), json_schema(Study)
     definitions = run.pop("$defs") | study.pop("$defs")
@@ -82,7 +82,7 @@ def schema() -> dict[str, Any]:
 
 
 def _in_part(schema: Any) -> Any:
-    """Return a schema that accepts objects with missing fields too."""
+    """Return a schema that also accepts objects with missing fields."""
     if isinstance(schema, list):
         return [_in_part(inner) for inner in schema]
     if not isinstance(schema, dict):
@@ -96,7 +96,7 @@ def _in_part(schema: Any) -> Any:
 
 
 def _requires_any(choices: Any) -> bool:
-    """Whether these are choices of which fields are required, as for elastic moduli."""
+    """Whether these are alternative lists of required fields, as for elastic moduli."""
     return (
         isinstance(choices, list)
         and bool(choices)

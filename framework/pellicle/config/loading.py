@@ -26,8 +26,8 @@ class Loading(Model):
     """The load steps: exactly one quantity is prescribed, in the order of its path.
 
     The key is the type of a prescription; its value is one value, a list, or a ramp
-    ``{start, stop, num}``, with ``spacing = "log"`` if need be; with ``back = true`` the ramp goes
-    back to its start by the same values. The fields of the prescription are further keys.
+    ``{start, stop, num}``, optionally with ``spacing = "log"``; with ``back = true`` the ramp
+    returns to its start through the same values. The fields of the prescription are further keys.
     """
 
     model_config = ConfigDict(extra="allow")
@@ -35,8 +35,8 @@ class Loading(Model):
     stiffness: Annotated[
         bool,
         Field(
-            description="whether each step has its contact stiffness dF/dδ; costs one more linear "
-            "solve a step"
+            description="whether to compute the contact stiffness dF/dδ of each step, by one more "
+            "linear solve per step"
         ),
     ] = False
 
@@ -50,7 +50,7 @@ class Loading(Model):
 
     @cached_property
     def prescription(self) -> Prescription:
-        """What is prescribed."""
+        """The prescription with its fields."""
         fields = self.__pydantic_extra__ or {}
         type_ = self.prescribed
         others = {name: value for name, value in fields.items() if name != type_}
@@ -58,12 +58,12 @@ class Loading(Model):
 
     @property
     def prescribed(self) -> str:
-        """The type of what is prescribed."""
+        """The type of the prescription."""
         return prescribed_in(self.__pydantic_extra__ or {})
 
     @property
     def described_fields(self) -> Mapping[str, FieldInfo]:
-        """The options, what is prescribed and the fields of that."""
+        """The options, the prescribed values and the fields of the prescription."""
         return loading_model(self.prescribed).model_fields
 
     @property
@@ -74,25 +74,25 @@ class Loading(Model):
 
     @property
     def variables(self) -> set[str]:
-        """The names of the result variables that only this loading has."""
+        """The names of the result variables that this loading adds."""
         names = {variable.name for variable in self.prescription.variables}
         return names | ({"stiffness"} if self.stiffness else set())
 
 
 def model_of(loading: Mapping[str, Any]) -> type[Model]:
-    """Return the model of the keys of a table ``[loading]``.
+    """Return the model that validates a table ``[loading]``.
 
     Raises
     ------
     ConfigError, PluginError
-        It does not name exactly one prescription that is installed.
+        The table does not name exactly one installed prescription.
     """
     return loading_model(prescribed_in(loading))
 
 
 @cache
 def loading_model(type_: str) -> type[Model]:
-    """Return the model of the keys of ``[loading]`` where ``type_`` is prescribed."""
+    """Return the model that validates ``[loading]`` with the prescription ``type_``."""
     component = registry().find("prescription", type_)
     assert issubclass(component, Prescription)
     options = {name: Loading.model_fields[name] for name in OPTIONS}
@@ -107,14 +107,20 @@ def loading_model(type_: str) -> type[Model]:
 
 
 def prescribed_in(data: Mapping[str, Any]) -> str:
-    """Return which key of a table names its prescription, or refuse the table."""
+    """Return the key of a table that names its prescription.
+
+    Raises
+    ------
+    ConfigError
+        The table has no such key, or several.
+    """
     families = registry().components["prescription"]
     known = [*_USUAL, *sorted(families.keys() - {*_USUAL})]
     given = [name for name in known if name in data]
     if len(given) == 1:
         return given[0]
     if given:
-        what = f"prescribes {' and '.join(given)}"
+        reason = f"prescribes {' and '.join(given)}"
     else:
         problems = []
         for key in filterfalse(OPTIONS.__contains__, data):
@@ -125,5 +131,5 @@ def prescribed_in(data: Mapping[str, Any]) -> str:
                 problems.append(Problem(key, message))
         if problems:
             raise ConfigError(problems)
-        what = "prescribes nothing"
-    raise ConfigError(f"{what}; give exactly one of {', '.join(known)}")
+        reason = "prescribes nothing"
+    raise ConfigError(f"{reason}; give exactly one of {', '.join(known)}")

@@ -30,12 +30,12 @@ class Point(NamedTuple):
 def points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Iterator[Point]:
     """Yield the runs of a study, the last dimension varying fastest.
 
-    ``table`` is what all runs share; ``dimensions`` are those of `Study.dimensions`.
+    ``table`` holds the fields that all runs share; ``dimensions`` is `Study.dimensions`.
 
     Raises
     ------
     ConfigError
-        All problems of the runs, each once, under the axis that causes it.
+        Runs are not valid; each problem is named once, under the axis that causes it.
     """
     problems: dict[Problem, list[str]] = {}
     names: dict[str, str] = {}
@@ -55,7 +55,7 @@ def points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Itera
                 problems.setdefault(_located(problem, table, values), []).append(name)
             continue
         if not names:
-            # Fields that no axis changes are made once: an indenter may hold a whole surface.
+            # Fields that do not vary are created once: an indenter may hold a large surface.
             varied = {key.partition(".")[0] for key in values}
             shared |= {field: getattr(run, field) for field in run.model_fields_set - varied}
         if (identity := run.identity) in names:
@@ -83,7 +83,7 @@ def _run(shared: Mapping[str, Any], values: Mapping[str, Any]) -> Run:
 
 
 def _located(problem: Problem, table: Mapping[str, Any], values: Mapping[str, Any]) -> Problem:
-    """Return a problem of a run under the name of the axis that caused it, if one did."""
+    """Return a problem under the name of the axis that caused it, or of the run if none did."""
     for key, value in values.items():
         is_new_table = key.startswith(f"{problem.field}.") and get(table, problem.field) is None
         if f"{problem.field}.".startswith(f"{key}.") or is_new_table:
@@ -93,7 +93,7 @@ def _located(problem: Problem, table: Mapping[str, Any], values: Mapping[str, An
 
 
 def _with_runs(message: str, runs: list[str], total: int) -> str:
-    """Return a message with the runs that it concerns, unless that is all of them."""
+    """Return a message with the runs that it concerns, unless it concerns all."""
     if len(runs) == total:
         return message
     others = f" and {len(runs) - 1} more" if len(runs) > 1 else ""
@@ -101,7 +101,7 @@ def _with_runs(message: str, runs: list[str], total: int) -> str:
 
 
 def short(value: object) -> str:
-    """Return a value as names of runs have it."""
+    """Return a value as short text for the name of a run."""
     if isinstance(value, Model):
         value = {"type": getattr(value, "type_name", "?")}
     if isinstance(value, Mapping):

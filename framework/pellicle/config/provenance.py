@@ -42,7 +42,7 @@ def now_with(runs: Iterable[Run]) -> dict[str, str]:
     libraries = sorted({name for component in used for name in component.libraries})
     versions = {name: version(name) for name in ("pellicle", "numpy", "scipy")} | owners
     for name in libraries:
-        # A worker that gets data which a library has read need not have the library.
+        # A worker may receive data that a library has read without having the library itself.
         with suppress(PackageNotFoundError):
             versions[name] = version(name)
     return {

@@ -1,7 +1,7 @@
 """The configuration of a run: a frozen model whose components come from the registry.
 
-The configuration *is* the objects that compute; TOML, JSON and keyword arguments all make the same
-`Run`.
+The components of the configuration also do the computation. TOML, JSON and keyword arguments all
+give the same `Run`.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from .component_field import FromRegistry
 from .loading import Loading
 
 DEFAULT_SOLVER = "active_set"
-# To be raised when an equal configuration gives other numbers, not with the layout of files.
+# Increment if an equal configuration gives different numbers, not if the file layout changes.
 _NUMBERS_VERSION = 1
 
 
@@ -81,8 +81,8 @@ class Run(FromFile):
         for index, type_ in enumerate(types):
             if type_ in types[:index]:
                 raise ConfigError(
-                    f"{type_!r} is given already, and both would be contact_area_{type_}; leave "
-                    "one out",
+                    f"{type_!r} is given twice, and both would be contact_area_{type_}; leave one "
+                    "out",
                     f"corrections.{index}.type",
                 )
         return self
@@ -111,10 +111,10 @@ class Run(FromFile):
 
     @property
     def identity(self) -> str:
-        """Hash of everything that decides the numbers of the result.
+        """Hash of everything on which the numbers of the result depend.
 
-        It is that of the configuration with its defaults, but without `title` and `outputs`; an
-        input file counts by its content.
+        It covers the configuration with its defaults, without `title` and `outputs`; input files
+        enter by their content.
         """
         identifying = self.model_dump(
             mode="json", exclude_none=True, exclude={"title", "outputs"}
@@ -126,7 +126,7 @@ class Run(FromFile):
 
 
 def _digest_of(path: Path) -> str:
-    """Return the hash of a file, or the path itself where there is no file."""
+    """Return the hash of a file, or the path itself if it is not a file."""
     if not path.is_file():
         return str(path)
     stat = path.stat()
@@ -135,5 +135,5 @@ def _digest_of(path: Path) -> str:
 
 @cache
 def _digest(path: Path, changed: int, size: int) -> str:
-    """Return the hash of a file; cached, since the runs of a study may share a large file."""
+    """Return the hash of a file, cached because the runs of a study may share a large file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -40,7 +40,7 @@ def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
     Raises
     ------
     ConfigError, PluginError
-        As for both of them.
+        As for `Run.from_toml` and `Study.from_toml`.
     """
     kind = Study if "study" in read(path, overrides) else Run
     return kind.from_toml(path, overrides)
@@ -75,7 +75,7 @@ def _same_length(table: Axes) -> None:
 class Study(FromFile):
     """A run whose parameters vary: one run for each combination of values.
 
-    All runs are made, and so checked, with the study; they are in `points`.
+    All runs are created, and so validated, with the study; they are in `points`.
     """
 
     run: Annotated[
@@ -126,7 +126,7 @@ class Study(FromFile):
 
     @property
     def dimensions(self) -> dict[str, Axes]:
-        """The axes along each dimension of the table, by the dimension's name.
+        """The axes along each dimension of the table, by the name of the dimension.
 
         Each varied parameter is a dimension; zipped parameters share one, named after the first.
         """
@@ -140,7 +140,7 @@ class Study(FromFile):
         return tuple(len(next(iter(axes.values()))) for axes in self.dimensions.values())
 
     def coordinates(self) -> dict[str, tuple[str, Coordinate]]:
-        """Return dimension and values [SI] of each varied parameter."""
+        """Return dimension and values, in SI, of each varied parameter."""
         return {
             key: (dimension, coordinate(key, values, self._runs_along(number)))
             for number, (dimension, axes) in enumerate(self.dimensions.items())
@@ -148,7 +148,7 @@ class Study(FromFile):
         }
 
     def _runs_along(self, number: int) -> list[Run]:
-        """Return a run for each value along a dimension: the first along all others."""
+        """Return a run for each value along a dimension, at the first value of all others."""
         return [
             point.run
             for point in self.points
@@ -183,9 +183,10 @@ class Study(FromFile):
             ) from None
 
     def to_json(self, *, as_given: bool = False) -> str:
-        """Return the study as JSON of the form of a study file; ranges are lists.
+        """Return the study as JSON in the form of a study file, with ranges written out as lists.
 
-        Values are as they were given; paths of input files are absolute unless ``as_given``.
+        Values are kept as the user gave them; paths of input files are absolute unless
+        ``as_given``.
         """
         tables = []
         for number, axes in enumerate(self.dimensions.values()):
@@ -232,7 +233,7 @@ class Study(FromFile):
             )
 
     def _check_derived(self) -> None:
-        """Refuse expressions with names that the table will not have, before anything runs."""
+        """Refuse expressions with names that the table will not have, before any run is solved."""
         run = self.points[0].run
         texts = {name for name, variable in VARIABLES.items() if variable.type == "text"}
         known = {*VARIABLES, *constants(json.loads(run.to_json()))}

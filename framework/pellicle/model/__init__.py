@@ -1,4 +1,4 @@
-"""Frozen models of a configuration: errors in our words, dotted paths, ranges, TOML."""
+"""Frozen models of a configuration: error messages, dotted paths, ranges, TOML."""
 
 from .base import Model as Model
 from .input_path import AS_GIVEN as AS_GIVEN

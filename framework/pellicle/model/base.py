@@ -1,4 +1,4 @@
-"""The base class of all configuration: a frozen pydantic model with errors in our words."""
+"""The base class of all configuration: a frozen pydantic model that raises `ConfigError`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .messages import problems
 
 
 class Model(BaseModel):
-    """A frozen model without unknown fields; raises `ConfigError`, which names field and remedy."""
+    """A frozen model that refuses unknown fields with a `ConfigError` naming field and remedy."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, validate_default=False)
 
@@ -27,5 +27,5 @@ class Model(BaseModel):
 
     @property
     def described_fields(self) -> Mapping[str, FieldInfo]:
-        """The fields by name, with those that only this object has."""
+        """The fields by name, including those that only this object has."""
         return type(self).model_fields

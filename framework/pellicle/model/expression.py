@@ -1,7 +1,7 @@
 """Arithmetic over dotted names, as in study files and figures.
 
 The value of ``kernel.tension / kernel.reduced_modulus`` is a number, a numpy array or an xarray
-variable, as those of its names are. Python's parser reads it; only arithmetic is evaluated.
+variable, like the values of its names. Python's parser reads the text; only arithmetic is allowed.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ def evaluate(
     text
         Numbers, dotted names, ``+ - * / **``, parentheses and `FUNCTIONS`.
     names
-        Value of each dotted name: a number or anything that does arithmetic like one.
+        Value of each dotted name: a number or any object that supports arithmetic.
     functions
-        More functions of one argument.
+        Further functions of one argument.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def evaluate(
     """
     values = {**CONSTANTS, **names}
     callables = {**FUNCTIONS, **(functions or {})}
-    # A dotted name may have parts that Python does not allow, such as the 0 of grid.size.0.
+    # A dotted name may have parts that Python does not allow, such as the 0 in grid.size.0.
     dotted: list[str] = _NAME.findall(text)
     count = iter(range(len(dotted)))
     try:

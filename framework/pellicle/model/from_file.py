@@ -1,4 +1,4 @@
-"""Models that a file describes: a run, a study, a fit."""
+"""Models that can be read from a file: a run, a study, a fit."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class FromFile(Model):
 
     @classmethod
     def of(cls, configuration: Self | Mapping[str, Any] | str | Path) -> Self:
-        """Return the object itself, or what a mapping or the path of a TOML file describes.
+        """Return the object itself, or the one that a mapping or the path of a TOML file describes.
 
         Raises
         ------
@@ -37,7 +37,7 @@ class FromFile(Model):
 
     @classmethod
     def from_mapping(cls, data: Mapping[str, Any]) -> Self:
-        """Return the object that a mapping of the form of its file describes.
+        """Return the object that a mapping in the form of its file describes.
 
         Raises
         ------
@@ -53,16 +53,16 @@ class FromFile(Model):
         Parameters
         ----------
         path
-            The file; relative paths in it start from its folder.
+            The file; relative paths in it are relative to its folder.
         overrides
             Texts such as ``'kernel.tension="5 mN/m"'`` that replace values of the file.
 
         Raises
         ------
         ConfigError
-            The file cannot be read or used; all its problems are named at once.
+            The file cannot be read or used; the message names all its problems.
         PluginError
-            A component that it asks for is broken.
+            A component named in the file is broken.
         """
         data = read(path, overrides)
         with paths_relative_to(Path(path).parent):
@@ -75,7 +75,7 @@ class FromFile(Model):
         Raises
         ------
         ConfigError
-            The text is not JSON, or describes something else.
+            The text is not JSON, or does not describe such an object.
         """
         try:
             data = json.loads(text)
@@ -88,18 +88,18 @@ class FromFile(Model):
     def to_json(self, *, as_given: bool = False) -> str:
         """Return the whole configuration as JSON, defaults included, in SI floats.
 
-        Paths of files to read are absolute or, ``as_given``, as the configuration's own file has
-        them: such a text can be passed on with the files, and does not tell where they lay.
+        Paths of input files are absolute or, if ``as_given``, as the configuration file gives them:
+        such a text can be passed on with the files and does not reveal their folder.
         """
         return self.model_dump_json(exclude_none=True, context=AS_GIVEN if as_given else None)
 
     def to_toml(self) -> str:
-        """Return what `to_json` returns as TOML."""
+        """Return the whole configuration as TOML; see `to_json`."""
         return tomli_w.dumps(json.loads(self.to_json()))
 
 
 def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
-    """Return the content of a TOML file, with the values that ``--set`` replaces.
+    """Return the content of a TOML file after applying the overrides of ``--set``.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def read(path: str | Path, overrides: Iterable[str] = ()) -> dict[str, Any]:
 
 
 def overridden(data: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
-    """Return a configuration with the values that texts such as ``"a.b=1"`` replace.
+    """Return a configuration after applying overrides such as ``"a.b=1"``.
 
     Raises
     ------

@@ -15,9 +15,9 @@ _folder: ContextVar[Path | None] = ContextVar("folder", default=None)
 
 @contextmanager
 def paths_relative_to(folder: Path | None) -> Iterator[None]:
-    """Let relative paths in a configuration start from ``folder``, that of its file.
+    """Resolve relative paths in a configuration against ``folder``, the folder of its file.
 
-    With None they start from the current folder unless a file is being read, and become absolute.
+    None stands for the folder of the file being read or, without one, the current folder.
     """
     token = _folder.set(folder or _folder.get() or Path.cwd())
     try:
@@ -27,12 +27,12 @@ def paths_relative_to(folder: Path | None) -> Iterator[None]:
 
 
 AS_GIVEN: Final = "as_given"
-"""Context of ``model_dump`` that writes paths as their file has them instead of absolute."""
+"""Context of ``model_dump`` that writes paths as the user gave them instead of absolute."""
 
 
 # Before Python 3.12, pathlib.Path itself cannot be subclassed.
 class _GivenPath(type(Path())):  # type: ignore[misc]
-    """A path that keeps the text that the user wrote."""
+    """A path that remembers the text that the user wrote."""
 
     given = ""
 
@@ -47,7 +47,7 @@ def _given_path(path: str | Path, given: str) -> Path:
 
 
 def as_given(path: Path) -> str:
-    """Return a path as the user wrote it; its folder may have moved since."""
+    """Return a path as the user wrote it."""
     return getattr(path, "given", "") or str(path)
 
 

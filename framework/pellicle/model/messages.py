@@ -1,4 +1,4 @@
-"""Problems of a configuration in the words of pellicle instead of pydantic's."""
+"""Translate pydantic's errors into messages that name field, value and remedy."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pellicle.errors import ConfigError, Problem, shown
 
 
 def nearest(word: object, known: Iterable[str]) -> str:
-    """Return the known words, after ``"did you mean 'x'? "`` if one of them is similar."""
+    """Return the known words as text, after ``did you mean 'x'?`` if one of them is similar."""
     names = sorted(known)
     close = difflib.get_close_matches(str(word), names, n=1)
     hint = f"did you mean {close[0]!r}? " if close else ""
@@ -26,7 +26,7 @@ def problems(
 ) -> Iterable[Problem]:
     """Return the problems of ``data``, each once."""
     details = list(details)
-    # pydantic also calls a list with a bad entry too short.
+    # pydantic also reports a list with an invalid entry as too short.
     outer = {detail["loc"][:-1] for detail in details}
     every = (
         problem
@@ -38,7 +38,7 @@ def problems(
 
 
 def _path(location: Iterable[int | str], data: object) -> str:
-    """Return a dotted path as far as it exists in ``data``: one value may stand for a pair."""
+    """Return a dotted path as far as it exists in ``data``; one value may stand for a pair."""
     names = []
     for name in location:
         if isinstance(data, Mapping):
@@ -52,7 +52,7 @@ def _path(location: Iterable[int | str], data: object) -> str:
 
 
 def _translated(model: type[BaseModel], detail: ErrorDetails, field: str) -> Iterator[Problem]:
-    """Yield the problems that one pydantic error stands for."""
+    """Yield the problems that one pydantic error represents."""
     cause = detail.get("ctx", {}).get("error")
     if isinstance(cause, ConfigError):
         yield from (cause.within(field) if field else cause).problems

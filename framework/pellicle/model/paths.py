@@ -1,6 +1,6 @@
 """Values in nested models, tables and lists by their dotted path.
 
-Entries of lists count from 0, as in ``grid.size.0``; a key of a table may itself have dots.
+Entries of lists count from 0, as in ``grid.size.0``; a key of a table may itself contain dots.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .base import Model
 
 
 def get(at: Any, path: str) -> Any:
-    """Return the value at a path, None where there is none."""
+    """Return the value at a path, or None if the path does not exist."""
     names = path.split(".")
     while names and at is not None:
         name, names = _head(at, names)
@@ -51,9 +51,9 @@ def walk(
 
 
 def replaced(data: Any, path: str, value: object) -> Any:
-    """Return a copy of a configuration with ``value`` at a path; missing tables are made.
+    """Return a copy of a configuration with ``value`` at a path; missing tables are created.
 
-    Of a model, the copy is a table of the fields that were set.
+    The copy of a model is a table of the fields that were set.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def _replaced(at: Any, names: list[str], value: object, path: str) -> Any:
 
 
 def _head(at: Any, names: list[str]) -> tuple[str, list[str]]:
-    """Return the first name of a path in ``at``, as long as a key of a table is, and the rest."""
+    """Return the first name of a path in ``at``, the longest that is a key of it, and the rest."""
     lengths = range(len(names), 1, -1) if isinstance(at, Mapping) else ()
     count = next((n for n in lengths if ".".join(names[:n]) in at), 1)
     return ".".join(names[:count]), names[count:]

@@ -23,7 +23,7 @@ def expand(given: object) -> dict[str, Values]:
     Raises
     ------
     ConfigError
-        Values are missing or not allowed; all such axes are named.
+        Values are missing or not allowed; the message names all such axes.
     """
     if not isinstance(given, Mapping):
         raise ConfigError(f'{shown(given)} is not a table; give one: "kernel.tension" = […]')
@@ -42,7 +42,7 @@ def expand(given: object) -> dict[str, Values]:
 
 
 def _flat(given: Mapping[str, Any], path: str) -> Iterator[tuple[str, object]]:
-    """Yield each axis with its dotted key: in TOML a key without quotes makes nested tables."""
+    """Yield each axis with its dotted key; TOML turns an unquoted one into nested tables."""
     for name, value in given.items():
         if isinstance(value, Mapping) and value and not RANGE & value.keys():
             yield from _flat(value, f"{path}{name}.")
@@ -69,8 +69,8 @@ def ranged(
 ) -> Values:
     """Return the values of ``{start, stop, num}``, which may also have a ``spacing``.
 
-    Texts with units remain such. ``what`` and ``options`` are words for messages: the name of the
-    range and its optional keys.
+    If the ends have a unit, the values are texts with that unit. ``what`` and ``options`` are the
+    name of the range and its optional keys in messages.
 
     Raises
     ------

@@ -38,7 +38,7 @@ def read_toml(path: Path) -> dict[str, Any]:
 
 
 def parse_override(text: str) -> tuple[str, Any]:
-    """Return key and value of ``a.b=value``; a value that is not TOML is a text.
+    """Return key and value of ``a.b=value``; a value that is not valid TOML counts as text.
 
     Raises
     ------

@@ -32,11 +32,11 @@ _SHARE = 0.25  # width of the wide Gaussian over the domain
 def disagreement(
     compliance: Radial, greens_function: Radial, radial_primitive: Radial, cell: float, size: float
 ) -> str:
-    """Return a message on how the formulas of a kernel contradict each other; empty if they agree.
+    """Return a message if the formulas of a kernel contradict each other; empty if they agree.
 
-    The displacements [m] under two Gaussian pressures are compared, one about as wide as a ``cell``
-    [m] and one as the domain of ``size`` [m], and so is the growth of the primitive between these
-    lengths.
+    This compares the displacements under two Gaussian pressures, one about as wide as a ``cell``
+    [m], the other as the domain of ``size`` [m], and the growth of the primitive between these
+    radii.
     """
     for width in (_CELLS * cell, _SHARE * size):
         by_compliance = _by_compliance(compliance, width)

@@ -1,12 +1,12 @@
-"""Warnings about a grid before anything is solved: cells too wide, a surface that is not periodic.
+"""Warnings about a grid: cells too wide for the kernel, a surface that is not periodic.
 
 On a free boundary the pressure is uniform in each cell and the displacement is taken at its centre.
-A wave p = cos qx represented so contains its aliases q + 2πm/Δ, which are the same at the centres.
+A wave p = cos qx on such cells contains its aliases q + 2πm/Δ, which are equal at the centres.
 The cells replace the kernel G(q) by
 
     Σ_m (−1)^m sin(qΔ/2) / (qΔ/2 + πm) G(|q + 2πm/Δ|),
 
-which is G(q) to some per mille where G falls with q. The compliance of an incompressible bonded
+which is G(q) to a few per mille if G falls with q. The compliance of an incompressible bonded
 layer vanishes for long waves; on cells wider than the layer, aliases of short waves dominate it.
 """
 
@@ -43,12 +43,12 @@ def error_of_cells(compliance: Callable[[Array], Array], spacing: float) -> floa
 
 
 def warn_of_cells(compliance: Callable[[Array], Array], grid: Grid) -> None:
-    """Warn where the cells of a free boundary are too wide for results to some per cent.
+    """Warn if cells on a free boundary are too wide for an accuracy of a few per cent.
 
     Warns
     -----
     UserWarning
-        The message estimates the error of results, and the number of points that is enough.
+        The message estimates the error of results and the number of points required.
     """
     if grid.boundary != "free":
         return
@@ -66,7 +66,7 @@ def warn_of_cells(compliance: Callable[[Array], Array], grid: Grid) -> None:
 
 
 def _enough(compliance: Callable[[Array], Array], grid: Grid) -> str:
-    """Return the number of points that is enough, in words."""
+    """Return a phrase with the number of points required."""
     factor = 1.0
     while (factor := factor * _FINER) < _FINEST:
         if all(abs(error_of_cells(compliance, d / factor)) <= _ALLOWED for d in grid.spacing):
@@ -75,15 +75,15 @@ def _enough(compliance: Callable[[Array], Array], grid: Grid) -> str:
     return "more points"
 
 
-# A step between opposite edges above this multiple of those inside is not part of the surface.
+# A step between opposite edges above this multiple of steps inside means a non-periodic surface.
 _STEEPER = 3.0
 
 
 def warn_of_period(heights: Array, grid: Grid) -> None:
-    """Warn where opposite edges of a periodic surface meet in a step.
+    """Warn if opposite edges of a periodic surface meet in a step.
 
-    Its rms is then more than three times that of the step between any two neighbouring lines of
-    cells. ``heights`` [m] are of the grid's shape.
+    The rms of this step is then more than three times that between any two neighbouring lines of
+    cells. ``heights`` [m] have the grid's shape.
 
     Warns
     -----

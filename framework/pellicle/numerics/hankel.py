@@ -44,7 +44,7 @@ _SMALLEST_FALL = 0.5  # least difference of the powers of 1/q at large and small
 _SAME_POWER = 0.25
 _HIGHEST_POWER = 1.9  # of a power law subtracted; the transform of q⁻² is not finite
 _FALL_OF_WEIGHTED = 30.0  # natural logarithm
-_MARGIN = 12  # nodes beyond the tabulated radii, which keep the ends of the splines away
+_MARGIN = 12  # nodes of the splines beyond each end of the tabulated radii
 _STEEPEST = 1.5  # power of 1/q towards q = 0; from 2 on displacements are not finite
 
 
@@ -82,7 +82,7 @@ class Tabulated:
             )
 
     def covers(self, shortest: float, longest: float) -> bool:
-        """Return whether all radii between these two [m] are tabulated."""
+        """Whether all radii between these two [m] are tabulated."""
         return self.shortest <= shortest and longest <= self.longest
 
     def greens_function(self, r: Array) -> Array:
@@ -94,7 +94,7 @@ class Tabulated:
         return self._power_law.radial_primitive(r) + _real(self._p_over_r(np.log(r))) * r
 
     def _apart(self, reach: Array, rg: CubicSpline, p_over_r: CubicSpline) -> float:
-        """Return the largest relative difference from a coarser table, at nodes and between."""
+        """Return the largest relative difference from a coarser table, also between nodes."""
         log_r = np.linspace(reach[0], reach[1], math.ceil((reach[1] - reach[0]) / _STEP))
         r = np.exp(log_r)
         largest = np.maximum.accumulate(np.abs(self.radial_primitive(r)))
@@ -122,16 +122,16 @@ class _PowerLaw(NamedTuple):
 
 
 def _samples(compliance: Symbol, shortest: float, longest: float) -> tuple[Array, Array]:
-    """Return log q, ascending by `_STEP`, and G(q), from where it begins to matter."""
+    """Return log q, ascending by `_STEP`, and G(q), from the lowest q that contributes."""
 
     def values(x: Array) -> Array:
         q = np.exp(x)
         # The values are checked below.
         with np.errstate(all="ignore"):
             sampled = np.broadcast_to(np.asarray(compliance(q), dtype=np.float64), q.shape)
-        wrong = np.flatnonzero(~(np.isfinite(sampled) & (sampled > 0)))
-        if wrong.size:
-            nearest = wrong[np.argmin(np.abs(x[wrong] + np.log(shortest * longest) / 2))]
+        invalid = np.flatnonzero(~(np.isfinite(sampled) & (sampled > 0)))
+        if invalid.size:
+            nearest = invalid[np.argmin(np.abs(x[invalid] + np.log(shortest * longest) / 2))]
             raise ConfigError(
                 f"compliance(q) is {sampled[nearest]:.3g} m/Pa at q = {q[nearest]:.3g} rad/m; it "
                 f"has to be positive and finite for {_wavenumbers(shortest, longest)}; check the "
@@ -179,7 +179,7 @@ def _without_power_law(x: Array, g: Array) -> tuple[_PowerLaw, Array]:
 
 
 def _transform(x: Array, g: Array, f: Array, reach: Array) -> tuple[CubicSpline, CubicSpline]:
-    """Return r G(r) and P(r)/r of the part f of the samples g, as splines of log r."""
+    """Return splines in log r of r G(r) and P(r)/r, for the part f of the samples g."""
     # This import takes as long as all others of a worker, and most kernels have a closed form.
     from scipy.interpolate import CubicSpline
 
@@ -217,7 +217,7 @@ def _transform(x: Array, g: Array, f: Array, reach: Array) -> tuple[CubicSpline,
 
 
 def _weight(x: Array, g: Array, f: Array, power: float, reach: Array) -> float:
-    """Return the b, between the power at small q and 2, for which rounding matters least.
+    """Return the exponent b, between the power at small q and 2, with the least rounding error.
 
     The absolute error of the transform of q^b f is everywhere the rounding of its peak, while its
     value at r scales with the largest g at q > 1/r.
@@ -233,7 +233,7 @@ def _weight(x: Array, g: Array, f: Array, power: float, reach: Array) -> float:
 
 
 def _every_other(size: int) -> slice:
-    """Return every other sample, the last one included, without the first decade."""
+    """Return the slice of every other sample, including the last, without the first decade."""
     later = round(np.log(10) / _STEP)
     return slice(later + (size - 1 - later) % 2, None, 2)
 

@@ -6,12 +6,12 @@ cell:
 - up to 8 D in x and in y: exact, as a signed sum of corner integrals of the radial primitive;
 - up to a radius of about 32 D: 4 × 4 Gauss–Legendre points of the Green's function per cell;
 - beyond: the mean over a cell by central differences, from the Green's function at the centres of
-  the cell and of its neighbours, so that a cell costs one evaluation.
+  the cell and of its neighbours, at the cost of one evaluation per cell.
 
-Each keeps the relative error of a coefficient below 1e-10 (typically 3e-12) for kernels that vary
-on the scale of r itself, between log(1/r) and 1/r, such as the half-space (Love 1929, Phil. Trans.
-R. Soc. A 228) and the tensed membrane (Hajji 1978, J. Appl. Mech. 45).  Rounding in the corner sums
-grows with the aspect ratio a of the cells, about as 64 a times the machine precision.
+All three keep the relative error of a coefficient below 1e-10 (typically 3e-12) for kernels that
+vary on the scale of r itself, between log(1/r) and 1/r, such as the half-space (Love 1929, Phil.
+Trans. R. Soc. A 228) and the tensed membrane (Hajji 1978, J. Appl. Mech. 45). Rounding in the
+corner sums grows with the aspect ratio a of the cells, about as 64 a times the machine precision.
 """
 
 from collections.abc import Callable
@@ -25,7 +25,7 @@ Spacing = tuple[float, float]
 Shape = tuple[int, int]
 
 _EXACT_REACH = 8
-_GAUSS_REACH = 32.1  # not a whole number, so that rounding never decides which rule a cell gets
+_GAUSS_REACH = 32.1  # not an integer, so that rounding never decides which rule applies
 _GAUSS_POINTS = 4
 _BLOCK_ELEMENTS = 32768  # keeps the temporaries of a block of rows in the cache
 
@@ -158,7 +158,7 @@ def _triangle(radial_primitive: Radial, x: Array, y: Array) -> Array:
     ∫ P(x cosh u) / cosh u du over 0 < u < asinh(y/x), smooth even for slender triangles.
     """
     length = np.arcsinh(y / x)
-    # The strip of analyticity |Im u| < π/2 is fixed, so the order has to grow with the length.
+    # The strip of analyticity |Im u| < π/2 is fixed, so the order must grow with the length.
     nodes, weights = np.polynomial.legendre.leggauss(16 + int(6 * length.max()))
     cosh = np.cosh(length[..., None] * (nodes + 1) / 2)
     values = radial_primitive(x[..., None] * cosh) / cosh

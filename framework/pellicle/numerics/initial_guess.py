@@ -1,4 +1,4 @@
-"""Pressures to start an iteration from, where there is no earlier step."""
+"""Initial pressures for a solver without an earlier step."""
 
 from __future__ import annotations
 
@@ -14,14 +14,18 @@ from .problem import Problem
 
 
 def first_guess(problem: Problem) -> Array:
-    """Return a pressure [Pa] wherever there can be contact, with the force if one is prescribed."""
+    """Return an initial pressure [Pa], with the prescribed force under force control.
+
+    It is uniform on the indenter under force control, else `overlap_pressure` of indenter and
+    undeformed surface.
+    """
     if problem.prescribed == "force":
         return with_force(problem, np.isfinite(problem.profile).astype(np.float64))
     return overlap_pressure(problem.operator, np.maximum(problem.profile + problem.value, 0.0))
 
 
 def overlap_pressure(operator: Operator, overlap: Array) -> Array:
-    """Return the multiple of an overlap [m] whose displacement is nearest to it in energy [Pa].
+    """Return the pressure ∝ overlap [m] whose displacement is nearest to it in energy [Pa].
 
     The factor c minimises ½⟨c o, A c o⟩ − ⟨c o, o⟩: c = ⟨o, o⟩/⟨o, A o⟩.
     """
@@ -29,7 +33,7 @@ def overlap_pressure(operator: Operator, overlap: Array) -> Array:
 
 
 def with_force(problem: Problem, pressure: Array) -> Array:
-    """Return the multiple of a pressure that has the prescribed force, if one is prescribed."""
+    """Return a pressure scaled to the prescribed force; unchanged under depth control."""
     if problem.prescribed == "depth":
         return pressure
     return pressure * (problem.value / (float(pressure.sum()) * problem.grid.cell_area))
@@ -38,6 +42,6 @@ def with_force(problem: Problem, pressure: Array) -> Array:
 def dot(one: NDArray[Any], other: NDArray[Any]) -> float:
     """Return Σ one · other over two fields.
 
-    BLAS is avoided: its threads spin while they wait, and take a core from the transforms.
+    BLAS is avoided because its threads spin while waiting, which takes cores from the transforms.
     """
     return float(np.einsum("i,i->", one.reshape(-1), other.reshape(-1)))

@@ -16,7 +16,7 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array
-from pellicle.checks import blamed, component_name, read_only, real_array, real_number
+from pellicle.checks import component_name, errors_attributed_to, read_only, real_array, real_number
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
 
@@ -27,12 +27,12 @@ from .influence import cell_coefficients
 
 Float = TypeVar("Float", np.float32, np.float64)
 
-# Padded cells in a block of rows that is transformed at a time: a block stays in the cache.
+# Padded cells in a block of rows that is transformed at once, few enough for the cache.
 _BLOCK = 2**17
 
-# Least ratio of a cell's displacement under its own pressure to that of the finest wave.
+# Least displacement of a cell under its own pressure, over that of the finest wave.
 _LEAST_OWN = 0.25
-# Waves shorter than the grid's shortest by these factors show whether G(q) keeps growing.
+# Factors on the grid's largest q at which G(q) is checked for growth.
 _SHORTER = np.geomspace(1.0, 1e12, 13)
 _GROWTH = 1e-6  # relative; less is rounding
 
@@ -47,7 +47,7 @@ class HasCompliance(Protocol):
 
 @runtime_checkable
 class HasClosedForm(HasCompliance, Protocol):
-    """A kernel known in real space too; of others an operator on a free boundary makes a table."""
+    """A kernel with formulas in real space; other kernels are tabulated on a free boundary."""
 
     def greens_function(self, r: Array) -> Array:
         """Return the displacement at distances r > 0 [m] from a unit force [m/N]."""
@@ -65,32 +65,32 @@ class HasMeanCompliance(HasCompliance, Protocol):
     def mean_compliance(self) -> float:
         """Return G(0) [m/Pa], the displacement per uniform pressure on a periodic domain.
 
-        If it is infinite, the mean displacement is set to 0, and depths are measured from the mean
+        If it is infinite, the mean displacement is set to 0 and depths are measured from the mean
         plane.
         """
         ...
 
 
 def mean_compliance(kernel: HasCompliance) -> float:
-    """Return G(0) [m/Pa] of a kernel; ∞ if it does not state it, as a half-space."""
+    """Return G(0) [m/Pa] of a kernel; ∞ if it does not state G(0), as for a half-space."""
     if not isinstance(kernel, HasMeanCompliance):
         return math.inf
-    with blamed(kernel):
+    with errors_attributed_to(kernel):
         value = kernel.mean_compliance()
     return real_number(kernel, "mean_compliance()", value)
 
 
 def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
-    """Return a method of a kernel that cannot change its argument and whose values are checked.
+    """Return a method of a kernel, wrapped to protect its argument and check its values.
 
-    The returned function raises PluginError if the kernel returns anything but an array of real
+    The function raises PluginError if the kernel returns anything but an array of real
     numbers of the shape of its argument.
     """
     method = getattr(kernel, name)
     text = f"{name}({'q' if name == 'compliance' else 'r'})"
 
     def call(argument: Array) -> Array:
-        with blamed(kernel):
+        with errors_attributed_to(kernel):
             values = method(read_only(argument))
         return real_array(kernel, text, values, argument.shape)
 
@@ -111,14 +111,14 @@ class Operator(ABC):
         self.grid = grid
         # Shared with `scaled` copies.
         self._count = [0]
-        # Powers of two, so that no digit changes.
+        # A power of two, so that no digit changes.
         self._factor = 1.0
-        self._holder = 0.0
+        self._spring_compliance = 0.0
 
     @property
     def has_mean_compliance(self) -> bool:
-        """Whether a uniform pressure has a displacement; if not, the mean displacement is zero."""
-        return self._has_mean or self._holder > 0
+        """Whether a uniform pressure causes a displacement; if not, the mean displacement is 0."""
+        return self._has_mean or self._spring_compliance > 0
 
     @property
     def applications(self) -> int:
@@ -135,31 +135,31 @@ class Operator(ABC):
         """The largest power of two up to `greatest` [m/Pa]; 1 if that is 0."""
         return self._symbol.unit * self._factor
 
-    def held(self, compliance: float) -> Self:
-        """Return the operator for an indenter held by a spring; it shares all arrays.
+    def with_spring(self, compliance: float) -> Self:
+        """Return the operator for an indenter on a spring; it shares all arrays with this one.
 
         The deflection of the spring, ``compliance`` [m/N] times the force, is added to the
-        displacement of every cell, in place of that of an earlier spring.
+        displacement of every cell. It replaces the deflection of any earlier spring.
         """
-        if compliance == self._holder:
+        if compliance == self._spring_compliance:
             return self
         operator = copy.copy(self)
-        operator._holder = compliance
+        operator._spring_compliance = compliance
         return operator
 
     def deflection(self, total: float) -> float:
         """Return the deflection of the spring [m] under pressures whose sum is ``total`` [Pa]."""
-        return self._holder * self.grid.cell_area * total
+        return self._spring_compliance * self.grid.cell_area * total
 
     def scaled(self, factor: float) -> Self:
         """Return the operator times ``factor``, a power of two; it shares all arrays with this one.
 
-        The factor 1/`unit` brings its values near 1. Single precision needs that: a compliance in
+        The factor 1/`unit` brings its values near 1, as single precision requires: a compliance in
         m/Pa may be below its smallest number.
         """
         scaled = copy.copy(self)
         scaled._factor = self._factor * factor
-        scaled._holder = self._holder * factor
+        scaled._spring_compliance = self._spring_compliance * factor
         return scaled
 
     def coarsened(self) -> Operator:
@@ -168,30 +168,30 @@ class Operator(ABC):
         Raises
         ------
         ConfigError
-            The kernel cannot work on the coarser grid.
+            The kernel cannot be used on the coarser grid.
         """
         # The kernel itself has been checked on the finest grid.
         coarse = _operator(self.kernel, self.grid.coarsened()).scaled(self._factor)
-        return coarse.held(self._holder)
+        return coarse.with_spring(self._spring_compliance)
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] of the kernel at q > 0, `scaled` as the operator is."""
         return np.asarray(self.kernel.compliance(q) * self._factor, dtype=np.float64)
 
     def parts(self) -> dict[str, object]:
-        """Return the attributes by name; comparing them reveals a change."""
+        """Return the attributes by name, to detect changes by comparison."""
         return {**vars(self), "class": type(self), "symbol": self._symbol["D"]}
 
     def __call__(self, pressure: NDArray[Float]) -> NDArray[Float]:
-        """Return the displacement [m], a new array, for a pressure [Pa].
+        """Return the displacement [m] under a pressure [Pa], as a new array.
 
-        A pressure in single precision is transformed in single precision, in half of the time.
+        A pressure in single precision is transformed in single precision, in half the time.
         """
         self._count[0] += 1
         displacement = np.asarray(self._apply(pressure), dtype=pressure.dtype)
         if (unit := self.unit) != 1:
             displacement *= unit
-        if self._holder:
+        if self._spring_compliance:
             displacement += self.deflection(float(pressure.sum(dtype=np.float64)))
         return displacement
 
@@ -222,7 +222,7 @@ class _Symbol:
 class PeriodicOperator(Operator):
     """G(q) sampled on the wavenumbers of the FFT.
 
-    The mean displacement is zero if that under a uniform pressure is not finite.
+    The mean displacement is 0 if the kernel's mean compliance is infinite.
     """
 
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
@@ -230,7 +230,7 @@ class PeriodicOperator(Operator):
         qx, qy = grid.wavenumbers()
         q = np.hypot(qx, qy)
         mean = mean_compliance(kernel)
-        # That of an incompressible layer is 0.
+        # The mean compliance of an incompressible layer is 0.
         self._has_mean = 0 < mean < math.inf
         symbol = np.empty(q.shape)
         # The first wavenumber is 0.
@@ -253,9 +253,10 @@ class PeriodicOperator(Operator):
 
 
 class FreeOperator(Operator):
-    """Discrete convolution with influence coefficients, zero-padded: no periodic image.
+    """Discrete convolution with influence coefficients, zero-padded against periodic images.
 
-    Exact for a pressure that is uniform in each cell, at the cell centres (Liu, Wang & Liu 2000).
+    It is exact at the cell centres for a pressure that is uniform in each cell (Liu, Wang & Liu
+    2000).
     """
 
     _has_mean = True
@@ -286,7 +287,7 @@ class FreeOperator(Operator):
         self._padded = tuple(scipy.fft.next_fast_len(2 * n - 1, real=True) for n in grid.shape)
         # Even in both directions, so the transform of the wrapped coefficients is real.
         self._symbol = _Symbol(scipy.fft.rfft2(_wrap(cells, self._padded)).real.copy())
-        # Fresh memory of this size costs more than the transforms themselves.
+        # Allocating this array for each application would take longer than the transforms.
         self._work = np.empty((self._padded[0], self._padded[1] // 2 + 1), dtype=np.complex128)
 
     def _apply(self, pressure: NDArray[Any]) -> object:
@@ -307,7 +308,7 @@ class FreeOperator(Operator):
         return displacement
 
     def _room(self, kind: np.dtype[Any]) -> NDArray[Any]:
-        """Return the work space, or half of it for single precision."""
+        """Return the work array, or half of it for single precision."""
         number = self._work.size
         return self._work.reshape(-1).view(kind)[:number].reshape(self._work.shape)
 
@@ -318,13 +319,13 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
     Raises
     ------
     ConfigError
-        The kernel cannot work on this boundary, or its values are not finite and positive.
+        The kernel cannot be used on this boundary, or its values are not finite and positive.
     PluginError
         The kernel breaks its contract: it changes its argument, returns anything but an array of
-        real numbers of the argument's shape, keeps growing towards short waves, or has a closed
-        form that contradicts its compliance.
+        real numbers of the argument's shape, has a compliance that grows towards short waves, or a
+        closed form that contradicts its compliance.
     """
-    # A table is computed from the compliance, and cannot contradict it.
+    # A table is computed from the compliance, so it cannot contradict it.
     is_table = isinstance(kernel, Tabulated)
     if grid.boundary == "free" and isinstance(kernel, HasClosedForm) and not is_table:
         with np.errstate(all="ignore"):
@@ -333,7 +334,7 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
 
 
 def _operator(kernel: HasCompliance, grid: Grid) -> Operator:
-    # Overflow of a formula shows in its values, which are checked.
+    # Overflow gives infinite or NaN values, which are detected later.
     with np.errstate(all="ignore"):
         if grid.boundary == "periodic":
             return PeriodicOperator(kernel, grid)
@@ -341,7 +342,7 @@ def _operator(kernel: HasCompliance, grid: Grid) -> Operator:
 
 
 def _in_real_space(kernel: HasCompliance, grid: Grid) -> HasClosedForm:
-    # Wide enough for all coarser grids of the same domain, which reuse the table.
+    # These radii cover all coarser grids of the same domain, which reuse the table.
     radii = 0.2 * min(grid.spacing), 3 * math.hypot(*grid.size)
     if isinstance(kernel, Tabulated):
         return kernel if kernel.covers(*radii) else Tabulated(kernel.compliance, *radii)
@@ -376,8 +377,8 @@ def _refuse_contradiction(kernel: HasClosedForm, grid: Grid) -> None:
 def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array:
     """Return the surface displacement [m] of shape (nx, ny) under a pressure [Pa] of that shape.
 
-    This is one application of the operator. On a periodic grid the mean displacement is zero,
-    unless the kernel states that under a uniform pressure (`HasMeanCompliance`).
+    This is one application of the operator. On a periodic grid the mean displacement is 0, unless
+    the kernel states its mean compliance (`HasMeanCompliance`).
 
     Raises
     ------
@@ -422,11 +423,11 @@ def _wrap(cells: Array, padded: tuple[int, ...]) -> Array:
 
 def _positive(kernel: HasCompliance, q: Array, values: Array) -> Array:
     """Return G(q) [m/Pa]; refuse the kernel unless all values are positive and finite."""
-    wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
-    if wrong.size:
+    invalid = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
+    if invalid.size:
         raise ConfigError(
-            f"compliance(q) of {component_name(kernel)} is {values[wrong[0]]:.3g} m/Pa at q = "
-            f"{q[wrong[0]]:.3g} rad/m; it has to be positive and finite, and may be beyond the "
+            f"compliance(q) of {component_name(kernel)} is {values[invalid[0]]:.3g} m/Pa at q = "
+            f"{q[invalid[0]]:.3g} rad/m; it has to be positive and finite, and may be beyond the "
             "numbers that a computer has; check the parameters, or the formula if the kernel is "
             "yours",
             "kernel",
@@ -437,11 +438,11 @@ def _positive(kernel: HasCompliance, q: Array, values: Array) -> Array:
 def _refuse_growth(
     kernel: HasCompliance, compliance: Callable[[Array], Array], shortest: float
 ) -> None:
-    """Refuse a kernel whose G(q) grows with q at the grid's shortest waves and beyond them.
+    """Refuse a kernel whose G(q) grows with q at the grid's shortest waves and beyond.
 
-    For short waves a solid is a half-space, whose G(q) falls as 1/q; that of a bed of springs is
-    constant. G(q) of an incompressible layer grows with q down to waves about as long as the layer
-    is thick. These may be shorter than the grid's, so still shorter waves decide.
+    For short waves a solid is a half-space, with G(q) ∝ 1/q; for a bed of springs G(q) is constant.
+    G(q) of an incompressible layer grows with q down to waves about as long as the layer is thick.
+    These may be shorter than the grid's waves, so still shorter waves are checked.
     """
     if not shortest > 0:
         return

@@ -1,4 +1,4 @@
-"""The problem of one load step: all that a solver may see, and how well it is solved."""
+"""The contact problem of one load step, and the residuals of a solution."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from pellicle.grid import Grid
 from .grid_transfer import restrict
 from .operators import Operator
 
-# An indenter that is flat over the contact has no height range there to measure by.
+# Height range in contact over the depth below which an indenter counts as flat there.
 _FLAT = 1e-3
-# Heights below this share of a displacement are lost in its rounding.
+# Relative rounding error of displacements; smaller heights are not resolved.
 _ROUNDING = 1e-13
 
 
@@ -26,12 +26,12 @@ class Depth:
     """Depth control: δ = value − compliance · F."""
 
     value: float
-    """Depth [m] of the indenter, or of the base that holds it by a spring."""
+    """Depth [m] of the indenter, or of the base if a spring holds the indenter."""
     compliance: float = 0.0
-    """Of the spring between base and indenter [m/N]; 0 without a spring."""
+    """Compliance of the spring between base and indenter [m/N]; 0 without a spring."""
 
     def scaled(self, height: float, pressure: float) -> Depth:
-        """Return it in units of ``height`` [m] and ``pressure`` [Pa]."""
+        """Return the control in units of ``height`` [m] and ``pressure`` [Pa]."""
         return Depth(self.value / height, self.compliance * pressure / height)
 
 
@@ -43,7 +43,7 @@ class Force:
     """Force on the domain [N]."""
 
     def scaled(self, height: float, pressure: float) -> Force:
-        """Return it in units of ``pressure`` [Pa]."""
+        """Return the control in units of ``pressure`` [Pa]."""
         return Force(self.value / pressure)
 
 
@@ -54,18 +54,18 @@ _CONTROLS: Final = {"depth": Depth, "force": Force}
 class Problem:
     """Find p ≥ 0 with gap = A p − z − f ≥ 0 and p·gap = 0, for a given depth z or force.
 
-    Under a `Depth` with a compliance z is the depth of the base. The `operator` A then includes
-    the deflection of the spring, so that no solver has to know of it.
+    Under a `Depth` with a compliance, z is the depth of the base. The `operator` A then includes
+    the deflection of the spring, so that a solver need not know of the spring.
     """
 
     grid: Grid
-    """The cells that pressure, displacement and profile live on."""
+    """The cells on which pressure, displacement and profile are given."""
     operator: Operator
-    """From pressure [Pa] to displacement [m]; counts its applications."""
+    """The map from pressure [Pa] to displacement [m], which counts its applications."""
     profile: Array
     """Indenter profile f ≤ 0 [m] of the grid's shape; −inf where there is no indenter."""
     control: Depth | Force
-    """What is given: a depth or a force. A mean pressure is the force that it makes."""
+    """The prescribed depth or force; a mean pressure is given as a force."""
 
     def __init__(
         self,
@@ -76,7 +76,7 @@ class Problem:
         value: float | None = None,
         prescribed: Literal["depth", "force"] | None = None,
     ) -> None:
-        # Packages written for version 1 name the control and its value apart.
+        # Packages written for version 1 pass the kind of control and its value separately.
         kind = prescribed or control
         if isinstance(kind, str):
             assert value is not None
@@ -85,7 +85,7 @@ class Problem:
             kind = replace(kind, value=value)
         compliance = kind.compliance if isinstance(kind, Depth) else 0.0
         vars(self).update(
-            grid=grid, operator=operator.held(compliance), profile=profile, control=kind
+            grid=grid, operator=operator.with_spring(compliance), profile=profile, control=kind
         )
 
     @property
@@ -99,19 +99,19 @@ class Problem:
         return self.control.value
 
     @property
-    def touches(self) -> bool:
-        """Whether anything has to be solved: the undeformed surface is not already the answer."""
+    def needs_solving(self) -> bool:
+        """Whether there is contact, so that the undeformed surface is not the solution."""
         lowest = float(self.profile.max())
-        # A coarse grid may see nothing of an indenter of single cells.
+        # A coarse grid may not resolve any part of an indenter of single cells.
         return isfinite(lowest) and self.value > (0 if self.prescribed == "force" else -lowest)
 
-    def depth(self, aloft: Array) -> float:
+    def depth(self, u_minus_f: Array) -> float:
         """Return z [m] given A p − f on the contact.
 
-        It is the prescribed depth or, under force control, that for which the mean gap in contact
-        vanishes (Polonsky & Keer 1999).
+        Under force control it is the depth for which the mean gap in contact vanishes (Polonsky &
+        Keer 1999).
         """
-        return self.value if self.prescribed == "depth" else float(aloft.mean())
+        return self.value if self.prescribed == "depth" else float(u_minus_f.mean())
 
     def gap(self, displacement: Array, contact: Mask) -> tuple[Array, float]:
         """Return the gap A p − z − f and z [m] given A p, by `depth` on the contact."""
@@ -120,21 +120,23 @@ class Problem:
         gap -= depth
         return gap, depth
 
-    def is_rigid(self, contact: Mask) -> bool:
-        """Whether no force more on ``contact`` makes it sink: full contact that keeps its mean."""
+    def has_infinite_stiffness(self, contact: Mask) -> bool:
+        """Whether the contact stiffness is infinite.
+
+        This is so in full contact on a periodic domain whose mean displacement is 0.
+        """
         return bool(contact.all()) and not self.operator.has_mean_compliance
 
     def height_scale(self, contact: Mask, depth: float, total: float) -> float:
-        """Return the length [m] by which gaps are judged.
+        """Return the length [m] to which gaps are compared.
 
+        This is the height range of the indenter in contact or, if it is flat there, its depth. If a
+        flat indenter fills a periodic domain whose mean displacement is 0, both are mere rounding;
+        the length is then the displacement of the most compliant wave under the mean pressure.
         ``depth`` [m] is that of the base, ``total`` the sum of all pressures [Pa].
-
-        The indenter's height range in contact, or the depth where it is flat there. Neither is more
-        than rounding where a flat indenter fills a periodic domain whose mean stays: then it is the
-        displacement that the mean pressure would have as the most compliant wave.
         """
         wave = 0.0
-        if self.is_rigid(contact):
+        if self.has_infinite_stiffness(contact):
             wave = self.operator.greatest * total / contact.size
         return height_scale(self.profile, contact, depth - self.operator.deflection(total), wave)
 
@@ -144,7 +146,7 @@ class Problem:
         Raises
         ------
         ConfigError
-            The kernel cannot work on the coarser grid.
+            The kernel cannot be used on the coarser grid.
         """
         operator = self.operator.coarsened()
         grid = operator.grid
@@ -153,9 +155,9 @@ class Problem:
         )
 
     def scaled(self, height: float, pressure: float) -> Problem:
-        """Return the same problem with heights in units of ``height`` [m], both powers of two.
+        """Return the problem in units of ``height`` [m] and ``pressure`` [Pa], both powers of two.
 
-        Its pressures are in units of ``pressure`` [Pa]; the lengths of the grid stay in m.
+        The lengths of the grid remain in m.
         """
         return replace(
             self,
@@ -167,18 +169,18 @@ class Problem:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A pressure measured against its problem.
+    """A pressure with its displacement, gap and residuals.
 
-    The first use of the displacement, or of what follows from it, applies the operator once.
+    The first access to any of these applies the operator once.
     """
 
     problem: Problem
     pressure: Array
-    """[Pa]"""
+    """Contact pressure [Pa]."""
 
     @cached_property
     def contact(self) -> Mask:
-        """Where pressure acts, bool of the grid's shape."""
+        """The cells with pressure > 0, bool of the grid's shape."""
         return self.pressure > 0
 
     @property
@@ -198,13 +200,13 @@ class Equilibrium:
 
     @property
     def force(self) -> float:
-        """[N]."""
+        """Force [N]."""
         return self.total * self.problem.grid.cell_area
 
     @cached_property
     def displacement(self) -> Array:
         """Displacement u of the surface [m]."""
-        return self.problem.operator.held(0.0)(self.pressure)
+        return self.problem.operator.with_spring(0.0)(self.pressure)
 
     @property
     def depth(self) -> float:
@@ -213,12 +215,12 @@ class Equilibrium:
 
     @cached_property
     def gap(self) -> Array:
-        """U − δ − f [m]; +inf where there is no indenter."""
+        """Gap u − δ − f [m]; +inf where there is no indenter."""
         return self.displacement - self.problem.profile - self.depth
 
     @property
     def residual_contact(self) -> float:
-        """Max |gap| in contact, over the height range of the indenter in contact."""
+        """Largest gap in contact by magnitude, over the height range of the indenter there."""
         return float(self._inside.max(initial=0.0)) / self._scale
 
     @property
@@ -241,7 +243,7 @@ class Equilibrium:
 
     @cached_property
     def _base(self) -> float:
-        # Without pressure the lowest point just touches, wherever between the cells it is.
+        # Without pressure the lowest point just touches, even if it lies between the cells.
         contact = self.contact
         if not contact.any():
             return self.problem.depth(np.zeros(1))
@@ -257,7 +259,7 @@ class Equilibrium:
 
 
 def measure(problem: Problem, pressure: Array) -> Equilibrium:
-    """Return what ``pressure`` [Pa] really achieves, by one application of the operator."""
+    """Return the equilibrium of ``pressure`` [Pa], by one application of the operator."""
     equilibrium = Equilibrium(problem, pressure)
     _ = equilibrium.gap
     return equilibrium
@@ -269,10 +271,10 @@ def height_scale(
     depth: float,
     wave: float = 0.0,
 ) -> float:
-    """Return the length [m] by which gaps are judged: the indenter's height range in contact.
+    """Return the length [m] to which gaps are compared: the indenter's height range in contact.
 
-    Where the indenter is flat over the contact (a punch, a single cell) it is the depth, or
-    ``wave`` [m] if that is greater, of which the range and the depth may be the rounding.
+    If the indenter is flat over the contact (a punch, a single cell), the length is the depth or,
+    if greater, ``wave`` [m], of which both range and depth may be rounding errors.
     """
     heights = profile[contact]
     in_contact = float(np.ptp(heights)) if heights.size else 0.0
@@ -283,39 +285,39 @@ def height_scale(
 
 
 def round_off(problem: Problem, pressure: Array) -> float:
-    """Return the rounding of a displacement over the height scale, by two applications.
+    """Return the rounding error of a displacement over the height scale, by two applications.
 
-    It is what displacements differ by under one third of the pressure, times three: without
-    rounding they would be the same.
+    It is the difference of the displacement from three times that under a third of the pressure,
+    which would be 0 without rounding.
     """
     contact = pressure > 0
     displacement = problem.operator(pressure)
     rounded = float(np.abs(3 * problem.operator(pressure / 3) - displacement).max())
-    aloft = displacement - problem.profile
-    depth = problem.depth(aloft[contact] if contact.any() else np.zeros(1))
+    u_minus_f = displacement - problem.profile
+    depth = problem.depth(u_minus_f[contact] if contact.any() else np.zeros(1))
     return rounded / problem.height_scale(contact, depth, float(pressure.sum()))
 
 
 class Stiffness(NamedTuple):
-    """The stiffness of a contact and how well it is known."""
+    """The stiffness of a contact and its residual."""
 
     value: float
-    """dF/dδ [N/m] at the contact as it is."""
+    """dF/dδ [N/m] with the contact fixed."""
     residual: float
-    """Root mean square of the displacement missed in contact, over that prescribed."""
+    """Rms error of the displacement in contact, over the prescribed displacement."""
 
 
 def measure_stiffness(problem: Problem, contact: Mask, pressure: Array) -> Stiffness:
     """Return the contact stiffness from the pressure per depth [Pa/m] of a flat punch.
 
-    Its footprint is ``contact``: where the contact grows with the depth it does so without
-    pressure, so dF/dδ is that of a flat punch of the same contact (Pharr, Oliver & Brotzen 1992 for
-    axisymmetric indenters). By one fresh application of the operator. The value
-    is 2 Σq − Σq·Aq, which is stationary at the solution: its error is quadratic in that of q.
+    The footprint of the punch is ``contact``: cells that join as the depth grows carry no pressure
+    at first, so dF/dδ is that of a flat punch (Pharr, Oliver & Brotzen 1992 for axisymmetric
+    indenters). The operator is applied once. The value is 2 Σq − Σq·Aq times the area of a cell,
+    stationary at the solution, so its error is quadratic in that of q.
     """
     if not contact.any():
         return Stiffness(0.0, 0.0)
-    response = problem.operator.held(0.0)(pressure)
+    response = problem.operator.with_spring(0.0)(pressure)
     missed = 1.0 - response[contact]
     total = float(pressure.sum()) + float((pressure[contact] * missed).sum())
     return Stiffness(

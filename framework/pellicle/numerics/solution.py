@@ -1,4 +1,4 @@
-"""What a solver starts from and returns."""
+"""The initial state and the solution of a solver."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class State(NamedTuple):
     pressure: Array
     """Traction p = w + σ(g) on the surface [Pa], of the grid's shape."""
     wall: Array
-    """Wall pressure w ≥ 0 [Pa]: `pressure` itself where nothing acts across the gap."""
+    """Wall pressure w ≥ 0 [Pa]; equals `pressure` if no traction acts across the gap."""
     depth: float
     """Depth δ of the indenter [m]."""
 
@@ -26,7 +26,7 @@ class State(NamedTuple):
 
 
 class Stop(Enum):
-    """Why a solver stopped; the value is the remedy if the result is not good enough."""
+    """The reason why a solver stopped; the value is the remedy if the tolerance is not met."""
 
     DONE = "tighten the solver's own criterion"
     ITERATION_LIMIT = "the limit of iterations was reached: raise solver.max_iterations"
@@ -40,10 +40,10 @@ class Stop(Enum):
 
 @dataclass(frozen=True)
 class Solution:
-    """What a solver returns for one load step."""
+    """The solution of one load step."""
 
     state: State | Array
-    """The state; the pressure ≥ 0 [Pa] alone says as much where nothing acts across the gap."""
+    """The state; the pressure ≥ 0 [Pa] suffices if no traction acts across the gap."""
     iterations: int
     """Steps of the solver's outermost loop."""
     stop: Stop = Stop.DONE
@@ -56,7 +56,7 @@ class Solution:
 
 
 class Progress(NamedTuple):
-    """How long an iteration has made no progress, judged by measures that fall while it does."""
+    """Number of iterations without progress, judged by measures that fall during progress."""
 
     least: tuple[float, ...] = ()
     """The least value of each measure so far."""

@@ -1,1 +1,1 @@
-"""Results: their variables, and the one HDF5 layout that they are kept in."""
+"""Results: their variables and their HDF5 files."""

@@ -1,8 +1,8 @@
 """A checksum after the content of an HDF5 file, verified before HDF5 parses the file.
 
-HDF5 reads a changed byte as another number or as a size that no memory has, or ends the process.
-Other readers ignore bytes after the end of the HDF5 content. The checksum is that of all bytes but
-the compressed chunks, which zlib checks as they are read (Adler-32), so that the numbers of a large
+A changed byte makes HDF5 read another number, allocate an impossible size or end the process. Other
+readers ignore bytes after the end of the HDF5 content. The checksum covers all bytes except the
+compressed chunks, which zlib checks when it reads them (Adler-32), so that the numbers of a large
 file are verified without reading its fields.
 """
 
@@ -25,7 +25,7 @@ _LENGTH = 16
 _BLOCK = 1 << 20
 
 Ranges = Sequence[tuple[int, int]]
-"""Offset and size [bytes] of parts of a file, in order."""
+"""Offset and size of parts of a file [bytes], in ascending order."""
 
 
 def seal(file: io.BytesIO) -> None:
@@ -42,7 +42,7 @@ def seal(file: io.BytesIO) -> None:
 
 
 def verify(path: Path) -> bool:
-    """Return whether a file has a checksum, and verify it.
+    """Verify the checksum of a file; return whether it has one.
 
     Raises
     ------
@@ -75,11 +75,11 @@ def verify(path: Path) -> bool:
 
 
 def _compressed(file: h5py.File) -> list[tuple[int, int]]:
-    """Return offset and size [bytes] of the chunks that zlib compressed, in order."""
+    """Return offset and size of the chunks compressed by zlib [bytes], in ascending order."""
     chunks: list[tuple[int, int]] = []
 
     def collect(chunk: h5py.h5d.StoreInfo) -> None:
-        # A chunk that compression would not shrink is stored as it is, without Adler-32.
+        # A chunk that compression would not shrink is stored uncompressed, without Adler-32.
         if chunk.filter_mask == 0:
             chunks.append((chunk.byte_offset, chunk.size))
 
@@ -90,7 +90,7 @@ def _compressed(file: h5py.File) -> list[tuple[int, int]]:
 
 
 def _digest(file: BinaryIO, end: int, skipped: Ranges) -> str:
-    """Return the SHA-256 of the bytes up to ``end``, without those in ``skipped``."""
+    """Return the SHA-256 of the bytes before ``end`` that are not in ``skipped``."""
     digest = hashlib.sha256(json.dumps(skipped).encode("ascii"))
     begin = 0
     for offset, size in (*skipped, (end, 0)):

@@ -1,4 +1,4 @@
-"""Numbers derived from a table of runs, from the fields of the runs and their configuration."""
+"""Numbers computed from the table, the fields and the configuration of runs."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ REDUCTIONS: dict[str, Callable[[Any], Any]] = {
 
 
 FIRST_RUN = "first_run"
-"""Attribute of the table of a study: the configuration of its first run, JSON, SI."""
+"""Attribute of a study's table: the configuration of the first run as JSON in SI."""
 
 
 def names(data: xr.Dataset) -> dict[str, Any]:
-    """Return the values that expressions over a result or the table of a study may name.
+    """Return the values that expressions over a result or the table of a study may use, by name.
 
     These are its numeric variables and coordinates, and the numbers of its configuration by their
-    dotted path, such as ``kernel.tension`` or ``grid.size.0``, unless a coordinate varies them.
+    dotted path, such as ``kernel.tension`` or ``grid.size.0``, unless they vary in the study.
     """
     configuration = json.loads(data.attrs.get(FIRST_RUN, data.attrs["configuration"]))
     varied = tuple(f"{name}." for name in data.coords)
@@ -39,7 +39,7 @@ def names(data: xr.Dataset) -> dict[str, Any]:
         key: value for key, value in constants(configuration).items() if not key.startswith(varied)
     }
     numeric = {str(name): data[name] for name in data.variables if data[name].dtype.kind in "iuf"}
-    # numpy does not subtract truth values.
+    # numpy refuses to subtract bools.
     truths = {
         str(name): data[name].astype(float)
         for name in data.variables
@@ -49,7 +49,7 @@ def names(data: xr.Dataset) -> dict[str, Any]:
 
 
 def derive(table: xr.Dataset, expressions: Mapping[str, str]) -> xr.Dataset:
-    """Return the table of a study with further columns, which may name earlier ones.
+    """Return the table of a study with derived columns, which may use earlier ones.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Read and write xarray datasets as NetCDF-4 with h5py.
 
-For small files this is nine times faster than h5netcdf, and writing them is most of what a study of
-small runs costs beside its solves.
+For small files this is nine times faster than h5netcdf; writing them takes most of the time that a
+study of small runs spends outside the solver.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import h5py
     import xarray as xr
 
-# NetCDF-4 marks a dimension without a variable by this name.
+# NetCDF-4 marks a dimension without a variable with this name.
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
 _DIMENSION_ATTRIBUTES = {
     *("CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST"),
@@ -34,7 +34,7 @@ def serialised(
     dataset
         Variables of numbers, truth values or texts.
     grows
-        Dimensions along which the file can be made longer.
+        Dimensions along which the file can be extended.
     packed
         Variables that are compressed.
     """
@@ -63,7 +63,7 @@ def serialised(
 
 
 def dataset(file: h5py.File, *, without: Collection[str] = ()) -> xr.Dataset:
-    """Return a NetCDF-4 file without the variables along the dimensions ``without``."""
+    """Return the dataset in a NetCDF-4 file, except variables with a dimension in ``without``."""
     import xarray as xr
 
     variables = {}

@@ -49,12 +49,12 @@ class Result:
         return bool(self.dataset["converged"].all())
 
     def failures(self) -> list[tuple[int, str]]:
-        """Return the number of each step that did not converge, counted from 1, with its status."""
+        """Return number, counted from 1, and status of each step that did not converge."""
         failed = self.dataset.isel(step=~self.dataset["converged"].values)
         return _statuses(failed)
 
     def coarse(self) -> list[tuple[int, str]]:
-        """Return the number of each step whose cells are too coarse, with its status."""
+        """Return number and status of each step whose cells are too coarse."""
         coarse = self.dataset["status_code"].values == Status.COARSE.name
         return _statuses(self.dataset.isel(step=coarse))
 
@@ -77,8 +77,8 @@ def _statuses(data: xr.Dataset) -> list[tuple[int, str]]:
     return list(zip(data["step"].values.tolist(), map(str, data["status"].values), strict=True))
 
 
-def said_of_steps(steps: Sequence[tuple[int, str]]) -> str:
-    """Return the number of the first step and its message, and how many steps follow it."""
+def first_message(steps: Sequence[tuple[int, str]]) -> str:
+    """Return the number and message of the first step, and the number of further steps."""
     (number, message), *others = steps
     return f"step {number}{f' and {len(others)} more' if others else ''}: {message}"
 
@@ -89,7 +89,7 @@ def load(path: str | Path) -> Result:
     Raises
     ------
     StorageError
-        There is no such file, or it is damaged, of another schema version, or not a result.
+        The file does not exist, is damaged, has another schema version, or is not a result.
     """
     dataset = storage.read(Path(path))
     if problem := _damage(dataset):
@@ -98,7 +98,7 @@ def load(path: str | Path) -> Result:
 
 
 def _damage(dataset: xr.Dataset) -> str:
-    """Return why a dataset is not a result of any version; empty if it is one."""
+    """Return the reason why a dataset is not a result of any version; empty if it is one."""
     coordinates = "step", "x", "y"
     variables = {name: dataset[name] for name in dataset.variables}
     if problem := damage(variables, (*coordinates, *REQUIRED)):

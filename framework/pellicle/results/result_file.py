@@ -1,4 +1,4 @@
-"""One HDF5 file of a result or of a table: opened only if it is whole and of a known version."""
+"""Open the HDF5 file of a result or a table, after verifying its checksum and version."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
     Raises
     ------
     StorageError
-        There is no such file, or it is damaged, of another schema version, or not of this kind.
+        The file does not exist, is damaged, has another schema version, or is of another kind.
     """
     if not path.is_file():
         reason = "is a folder" if path.is_dir() else "no such file"
@@ -61,7 +61,7 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
 
 @contextmanager
 def _parsed(path: Path) -> Iterator[h5py.File]:
-    """Yield the HDF5 file at a path once its checksum has been verified."""
+    """Verify the checksum of an HDF5 file and yield the open file."""
     import h5py
 
     is_sealed = checksum.verify(path)
@@ -75,12 +75,15 @@ def _parsed(path: Path) -> Iterator[h5py.File]:
 
 
 def version_of(file: h5py.File) -> Any:
-    """Return the schema version of a file, None if it has none."""
+    """Return the schema version of a file, or None if it has none."""
     return netcdf.attributes(file).get("schema_version")
 
 
 def content(file: h5py.File, without: Collection[str] = ()) -> xr.Dataset:
-    """Return a file as the present version has it, without variables along some dimensions."""
+    """Return the dataset in a file, in the layout of the current version.
+
+    Variables with a dimension in ``without`` are left out.
+    """
     dataset = netcdf.dataset(file, without=without)
     if version_of(file) == 1:
         dataset = version_1.completed(dataset)
@@ -95,7 +98,7 @@ def attributes_of(file: h5py.File) -> dict[str, Any]:
 
 @contextmanager
 def _readable(path: Path) -> Iterator[None]:
-    """Turn the exceptions that a damaged file causes into a StorageError that says what to do."""
+    """Turn exceptions that a damaged file causes into a StorageError that names the remedy."""
     try:
         yield
     # h5py, numpy, xarray and json raise any of these for a file that is damaged or not HDF5.

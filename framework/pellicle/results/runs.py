@@ -23,21 +23,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Runs:
-    """A run or a study: a table of numbers, and the fields of each run, read when asked for."""
+    """A run or a study: a table of numbers, and the fields of each run, read when needed."""
 
     table: xr.Dataset
-    """Numbers of each run and step: over ``step`` of a run, over the axes too of a study.
+    """Numbers of each run and step, over ``step`` and, in a study, over its axes.
 
-    ``run`` names the runs; what a run that is not finished lacks is NaN.
+    The variable ``run`` names the runs; numbers of missing steps are NaN.
     """
     source: Callable[[str], xr.Dataset]
-    """Returns the dataset of a run by its name; raises StorageError where there is none."""
+    """Function that returns the dataset of a run by name, or raises StorageError."""
     configuration: str = "{}"
     """The run or study as JSON in SI, with paths as they were given."""
 
     @classmethod
     def of_run(cls, dataset: xr.Dataset, configuration: str = "{}") -> Runs:
-        """Return the one run whose result is ``dataset``, as a table of its steps."""
+        """Return a single run, given its result."""
         return cls(dataset.drop_dims(CELLS).assign(run=((), "")), lambda _: dataset, configuration)
 
     @classmethod
@@ -54,17 +54,17 @@ class Runs:
         return None if axes is None else tuple(json.loads(axes))
 
     def open(self, name: str = "") -> xr.Dataset:
-        """Return all numbers and fields of a run, by its name in the table of a study.
+        """Return all numbers and fields of a run, given its name in the table of a study.
 
         Raises
         ------
         StorageError
-            The run has no file, or one that cannot be read.
+            The file of the run does not exist or cannot be read.
         """
         return self.source(name)
 
     def datasets(self) -> Iterator[tuple[tuple[int, ...], xr.Dataset | None]]:
-        """Yield the index in the table and the dataset of each run, None for one without a file."""
+        """Yield the index in the table and the dataset of each run; None for a missing file."""
         for index, name in np.ndenumerate(self.table["run"].values):
             try:
                 yield index, self.open(str(name))
@@ -72,19 +72,19 @@ class Runs:
                 yield index, None
 
     def column(self, text: str) -> xr.DataArray:
-        """Return an expression over the table, with fields reduced to a number for each step.
+        """Return the value of an expression for each step; fields in it have to be reduced.
 
         Raises
         ------
         ConfigError
-            It is not arithmetic, or names an unknown variable.
+            The text is not arithmetic, or names an unknown variable.
         """
         if names_in(text) & {*FIELDS, *CELLS}:
             return self.from_each(lambda run: _by_step(text, run))
         return as_array(text, self.table)
 
     def from_each(self, function: Callable[[xr.Dataset], Any]) -> xr.DataArray:
-        """Return the value of ``function`` for each step of each run; NaN where there is no run."""
+        """Return the values of ``function`` for all steps of all runs; NaN for missing runs."""
         import xarray as xr
 
         runs, steps = self.table["run"], self.table.sizes["step"]
@@ -97,11 +97,11 @@ class Runs:
 
 
 def _by_step(text: str, run: xr.Dataset) -> Any:
-    """Return an expression over a run whose fields are reduced to a number for each step."""
+    """Return the value of an expression over a run for each step."""
     value = evaluate(text, names(run), REDUCTIONS)
     if set(getattr(value, "dims", ())) & set(CELLS):
         raise ConfigError(
-            f"{shown(text)} has a value for each cell, and one for each step is drawn; put fields, "
+            f"{shown(text)} has a value for each cell instead of each step; put fields, "
             f"x and y inside {', '.join(REDUCTIONS)}, such as mean(pressure)"
         )
     return value

@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Status(Enum):
-    """How a step ended; the value is the message to the user.
+    """The outcome of a load step; the value is the message to the user.
 
     `NOT_RUN` and `FAILED` occur in the table of a study only.
     """
@@ -14,7 +14,7 @@ class Status(Enum):
     CONVERGED = "converged"
     NEAREST_AREA = (
         "converged; the contact area misses the prescribed one by {measure:.1e}: it jumps from "
-        "{below} to {above}, and no load brings a nearer number of whole cells: more points do"
+        "{below} to {above}, and no load attains a nearer number of whole cells; use more points"
     )
     NEAREST = (
         "converged; the {quantity} misses the prescribed one by {measure:.1e}: it jumps from "
@@ -62,7 +62,7 @@ class Status(Enum):
 
     @property
     def converged(self) -> bool:
-        """Whether the numbers of the step may be used, possibly with a remark."""
+        """Whether the numbers of the step may be used, possibly with a caveat."""
         return self in (Status.CONVERGED, Status.NEAREST_AREA, Status.NEAREST, Status.COARSE)
 
     @property

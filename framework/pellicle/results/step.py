@@ -1,4 +1,4 @@
-"""Measured load steps as xarray datasets, the form of results everywhere."""
+"""Load steps as xarray datasets, the form of all results."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ def step_dataset(
     Parameters
     ----------
     grid, number, equilibrium
-        The step as solved.
+        The grid, number and equilibrium of the step.
     scalars
-        Values that the equilibrium does not have, by the name of their variable.
+        Further values, by the name of their variable.
     variables
-        Describe the names in ``scalars`` that `VARIABLES` does not have.
+        Variables for the names in ``scalars`` that are not in `VARIABLES`.
     """
     import xarray as xr
 
@@ -89,10 +89,10 @@ def step_dataset(
 
 
 class Steps:
-    """The finished load steps of a run, with fields in arrays that have room for all steps.
+    """The finished load steps of a run, with fields in arrays allocated for all steps.
 
-    The arrays become those of the result, so that no field is in memory twice. The operating system
-    provides their pages only as steps are added.
+    The result uses the same arrays, so that no field is in memory twice. The operating system
+    allocates their pages only when steps are added.
     """
 
     def __init__(self, number: int) -> None:
@@ -112,7 +112,7 @@ class Steps:
         return State(pressure, pressure, self._scalars[-1]["depth"].item())
 
     def append(self, step: xr.Dataset) -> xr.Dataset:
-        """Copy a step of `step_dataset` into the arrays, and return it as a view of them."""
+        """Copy a step of `step_dataset` into the arrays, and return it as views of them."""
         import xarray as xr
 
         index = slice(len(self), len(self) + 1)
@@ -121,17 +121,12 @@ class Steps:
             if variable.ndim > 1:
                 if name not in self._fields:
                     shape = (self._number, *variable.shape[1:])
-                    room = np.empty(shape, variable.dtype)
-                    self._fields[str(name)] = xr.Variable(variable.dims, room, variable.attrs)
+                    array = np.empty(shape, variable.dtype)
+                    self._fields[str(name)] = xr.Variable(variable.dims, array, variable.attrs)
                 fields[str(name)] = self._fields[str(name)].isel(step=index)
                 fields[str(name)].values[:] = variable.values
         self._scalars.append(step.drop_vars(fields))
         return step.assign(fields)
-
-    def extend(self, steps: Iterable[xr.Dataset]) -> None:
-        """Append several steps."""
-        for step in steps:
-            self.append(step)
 
     def joined(self) -> xr.Dataset:
         """Return all steps as one dataset; no step can be appended afterwards."""

@@ -1,12 +1,13 @@
 """Write and read result files: NetCDF-4, one slab along ``step`` per load step, and a checksum.
 
 A file is never changed in place: each version is written under another name, flushed to disk and
-renamed, so that at any moment every name holds a whole file. Rewriting a file for each step would
-take a time quadratic in the number of steps, so later steps go to small files beside it, its
-segments, until they are as many as the file's own; then, and at the end, the segments are joined to
-it. Reading joins them too.
+renamed, so that every file is complete at any moment. Rewriting the file for each step would take a
+time quadratic in the number of steps. So later steps are written to small files beside it, its
+segments. When these hold as many steps as the file itself, and at the end, they are merged into it.
+Reading merges them too.
 
-HDF5 writes to memory and the bytes are copied to disk: on a full disk HDF5 ends the process.
+HDF5 writes to memory, and the bytes are then copied to disk, because HDF5 itself ends the process
+when the disk is full.
 """
 
 from __future__ import annotations
@@ -35,13 +36,13 @@ Read = TypeVar("Read")
 REPLACING = (
     "choose another folder (-o DIR), or allow it to be replaced (--overwrite, overwrite=True)"
 )
-"""Advice where another file has the name."""
+"""Remedy if another file has the name."""
 _SMALL = 4_000_000
-"""Size [bytes] up to which a file is rewritten for each step: a segment would take as long."""
+"""Size [bytes] up to which a file is rewritten for each step, as fast as writing a segment."""
 
 
 def write(dataset: xr.Dataset, path: Path) -> None:
-    """Write the steps of a result, or the table of a study, in place of an old file.
+    """Write the steps of a result, or the table of a study, replacing any old file.
 
     Raises
     ------
@@ -55,7 +56,7 @@ def write(dataset: xr.Dataset, path: Path) -> None:
         file = netcdf.serialised(versioned, grows=grows, packed=fields)
         checksum.seal(file)
         part.write_bytes(file.getbuffer())
-        # While the old file still has the name: its segments must never continue the new one.
+        # The segments are removed before the old file is replaced: they must not continue the new.
         _remove_segments(path)
 
 
@@ -83,7 +84,7 @@ def append(dataset: xr.Dataset, path: Path) -> None:
 
 
 def _require_continued(path: Path, step: int, identity: object, dataset: xr.Dataset) -> None:
-    """Refuse steps of another run, or that do not follow ``step``, the last one of the file."""
+    """Refuse steps that are of another run or do not follow ``step``, the last in the file."""
     following = int(dataset["step"].values[0])
     if dataset.attrs.get("identity") != identity or following != step + 1:
         raise StorageError(
@@ -93,12 +94,12 @@ def _require_continued(path: Path, step: int, identity: object, dataset: xr.Data
 
 
 def require_consecutive(steps: xr.Dataset, path: Path) -> None:
-    """Refuse to resume a file whose steps are not 1, 2, …: two processes may have written it.
+    """Refuse to resume a file whose steps are not 1, 2, …, as when two processes wrote it.
 
     Raises
     ------
     StorageError
-        Steps are missing, or one exists twice.
+        A step is missing or exists twice.
     """
     numbers = steps["step"].values.tolist()
     if numbers != list(range(1, len(numbers) + 1)):
@@ -109,7 +110,7 @@ def require_consecutive(steps: xr.Dataset, path: Path) -> None:
 
 
 def close(path: Path) -> None:
-    """Join the segments of a result to its file.
+    """Merge the segments of a result into its file.
 
     Raises
     ------
@@ -127,7 +128,7 @@ def read(path: Path) -> xr.Dataset:
     Raises
     ------
     StorageError
-        There is no such file, or it is damaged, of another schema version, or not pellicle's.
+        The file does not exist, is damaged, has another schema version, or is not a result file.
     """
     return joined(_from_parts(path, content))
 
@@ -156,12 +157,12 @@ def attributes(path: Path) -> dict[str, Any]:
 
 
 def fields(path: Path, names: Sequence[str], step: int) -> tuple[dict[str, Any], list[Any]]:
-    """Return attributes and fields of a result file at the step with index ``step``, nothing else.
+    """Return attributes and the named fields of a result file at the step of index ``step``.
 
     Raises
     ------
     StorageError
-        As for `read`, or there is no such field or step.
+        As for `read`, or the step does not exist.
     """
     for part in _parts(path):
         with opened(part) as file:
@@ -175,13 +176,13 @@ def fields(path: Path, names: Sequence[str], step: int) -> tuple[dict[str, Any],
 def joined(steps: list[xr.Dataset]) -> xr.Dataset:
     """Return datasets of consecutive steps as one.
 
-    The list is emptied, so that only the field that is being joined is in memory twice.
+    The list is emptied, so that only one field at a time is in memory twice.
     """
     import xarray as xr
 
     if len(steps) == 1:
         return steps.pop()
-    # All steps have the same coordinates: comparing them would only cost time.
+    # All steps have the same coordinates, so they need not be compared.
     concat: Any = partial(
         xr.concat,
         dim="step",
@@ -214,7 +215,7 @@ def table(path: Path) -> xr.Dataset:
 def _from_parts(path: Path, read: Callable[[h5py.File], Read]) -> list[Read]:
     """Return the value of ``read`` for the file of a result and each segment, in order.
 
-    Where a run joins them in the meantime, they are read again.
+    If a run merges them in the meantime, they are read again.
     """
     while True:
         segments, results = _segments(path), []
@@ -230,7 +231,7 @@ def _from_parts(path: Path, read: Callable[[h5py.File], Read]) -> list[Read]:
 
 
 def _step_numbers(path: Path) -> list[int]:
-    """Return the numbers of the steps in one file, as they are stored."""
+    """Return the numbers of the steps stored in one file."""
     with opened(path) as file:
         numbers: list[int] = file["step"][:].tolist()
         return numbers
@@ -248,7 +249,7 @@ def _remove_segments(path: Path) -> None:
 def _parts(path: Path) -> list[Path]:
     """Return the file of a result and the segments that continue it.
 
-    Any other segment was joined by a process that ended before it could remove it.
+    Other segments were merged by a process that ended before it could remove them.
     """
     parts = [path]
     if segments := _segments(path):
@@ -261,7 +262,7 @@ def _parts(path: Path) -> list[Path]:
 
 
 def _join(path: Path, segments: Sequence[Path], *more: xr.Dataset) -> None:
-    """Replace a file by one of its steps, those of its segments and ``more``."""
+    """Replace a file by one that also contains the steps of its segments and of ``more``."""
     import h5py
 
     sizes = [*(segment.stat().st_size for segment in segments), *(steps.nbytes for steps in more)]
@@ -281,9 +282,9 @@ def _join(path: Path, segments: Sequence[Path], *more: xr.Dataset) -> None:
 
 
 def _with_room(path: Path, room: int) -> io.BytesIO:
-    """Return the content of a file in memory, followed by ``room`` [bytes].
+    """Return the content of a file in memory, followed by ``room`` bytes of zeros.
 
-    BytesIO would copy all of it whenever HDF5 writes beyond its end.
+    Without them BytesIO would copy the content whenever HDF5 writes beyond its end.
     """
     size = path.stat().st_size
     content = io.BytesIO(bytes(size + room + _SMALL))

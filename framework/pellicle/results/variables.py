@@ -11,14 +11,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Kind = Literal["field", "main", "requested", "other", "contact", "effort", "residual", "status"]
-"""``field`` has a value for each cell, ``main`` is listed for each run of a study, ``requested``
-exists only where the loading asks for it, as do those of a prescription, ``contact`` describes the
+"""``field`` has a value for each cell; ``main`` is listed for each run of a study; ``requested``
+exists only if the loading requests it, like variables of a prescription; ``contact`` describes the
 shape of the contact."""
 Type = Literal["number", "count", "truth", "text"]
 
 
 class Variable(NamedTuple):
-    """A number, a truth value or a text that a result has for each step, or for each cell."""
+    """A number, a truth value or a text of a result, for each step or each cell."""
 
     name: str
     unit: str
@@ -91,7 +91,7 @@ VARIABLES: Mapping[str, Variable] = {
 
 
 def names_of(*kinds: Kind) -> tuple[str, ...]:
-    """Return the names of the variables of some kinds."""
+    """Return the names of all variables of these kinds."""
     return tuple(name for name, variable in VARIABLES.items() if variable.kind in kinds)
 
 
@@ -101,12 +101,12 @@ REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "ite
 
 
 def corrected_area(type_: str) -> Variable:
-    """Return the variable of the contact area by the correction ``type_``."""
+    """Return the variable for the contact area with the correction ``type_``."""
     return Variable(f"contact_area_{type_}", "m2", f"contact area, {type_} correction", "other")
 
 
 def header(name: str, variable: xr.DataArray) -> str:
-    """Return the head of a variable's column in a table: its name and unit."""
+    """Return the header of a variable's column in a table: its name and unit."""
     unit = variable.attrs.get("units", "1")
     return name if unit == "1" else f"{name} [{unit}]"
 
@@ -119,10 +119,10 @@ def damage(
     required: Collection[str],
     codes: Collection[str] = Status.__members__,
 ) -> str:
-    """Return what is missing or of a wrong type among the variables of a file; empty if nothing is.
+    """Return which variable of a file is missing or has a wrong type; empty if none.
 
-    What is not in `VARIABLES` has to be numbers, but for ``run``, the name of a run's file;
-    ``codes`` are what ``status_code`` may be.
+    Variables that are not in `VARIABLES` have to be numeric, except ``run``, the name of a run's
+    file; ``codes`` are the allowed values of ``status_code``.
     """
     if missing := {*required} - {*map(str, variables)}:
         return f"lacks {', '.join(sorted(missing))}"

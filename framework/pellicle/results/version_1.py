@@ -31,12 +31,12 @@ _BEGINNINGS = {
 
 
 def completed(content: xr.Dataset) -> xr.Dataset:
-    """Return a result or a table of version 1 as the present version has it.
+    """Return a result or a table of version 1 in the layout of the current version.
 
     Raises
     ------
     KeyError
-        A message is unknown.
+        A status message is unknown.
     """
     if "step" in content.coords:
         attributes = content["step"].attrs

@@ -1,8 +1,8 @@
-"""Compose what all load steps of a run share: operator and profile, checked against the loading."""
+"""Create the operator and profile that all load steps of a run share; check the loading."""
 
 from __future__ import annotations
 
-from pellicle.checks import blamed
+from pellicle.checks import errors_attributed_to
 from pellicle.components import Setting
 from pellicle.components.calls import check_value, profile_of
 from pellicle.config.run import Run
@@ -16,9 +16,9 @@ def compose(run: Run) -> Setting:
     Raises
     ------
     ConfigError
-        Kernel, indenter or loading do not fit the grid.
+        The kernel, the indenter or the loading does not fit the grid.
     """
-    with blamed(run.kernel):
+    with errors_attributed_to(run.kernel):
         operator = make_operator(run.kernel, run.grid)
         warn_of_cells(run.kernel.compliance, run.grid)
     profile = profile_of(run.indenter, run.grid)

@@ -1,4 +1,4 @@
-"""The result file of a run as its journal: whole after every load step, and where a run resumes."""
+"""The result file of a run, complete after every load step, from which a run resumes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Journal:
     identity: str
     """The run's `Run.identity`: the result of another run is not replaced."""
     overwrite: bool = False
-    """Whether to start over, in place of whatever file there is."""
+    """Whether to start over and replace any existing file."""
 
     @property
     def path(self) -> Path:
@@ -37,7 +37,7 @@ class Journal:
         Raises
         ------
         StorageError
-            There is a file, but it cannot be read or resumed.
+            The file exists but cannot be read or resumed.
         """
         if self.overwrite or not self.path.exists():
             return None
@@ -68,13 +68,13 @@ class Journal:
         return [steps.isel(step=[index]) for index in range(steps.sizes["step"])]
 
     def append(self, step: xr.Dataset) -> None:
-        """Write a step behind those before it, the first in place of any old file."""
+        """Append a step to the file; the first step replaces any old file."""
         if step["step"].item() == 1:
             storage.write(step, self.path)
         else:
             storage.append(step, self.path)
 
     def close(self) -> tuple[Path, ...]:
-        """Make the steps one file, and return it."""
+        """Merge all steps into one file, and return its path."""
         storage.close(self.path)
         return (self.path,)

@@ -1,4 +1,4 @@
-"""One process at a time at the files of a run or of a study."""
+"""A lock that lets one process at a time write the files of a run or a study."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from pellicle.files import storage_errors
 
 @contextmanager
 def locked(folder: Path, name: str) -> Iterator[None]:
-    """Lock the files in ``folder`` that begin with ``name``; ``name.lock`` says who holds them.
+    """Lock the files in ``folder`` that begin with ``name``; ``name.lock`` names the process.
 
-    The lock itself is the operating system's, on a second file, and so ends with the process. Both
-    files are removed at the end.
+    The lock itself is one of the operating system, on a second file, so it ends with the process.
+    Both files are removed at the end.
 
     Raises
     ------
     StorageError
-        Another process holds them, or the folder cannot be written.
+        Another process has locked them, or the folder cannot be written.
     """
     sign = folder / f"{name}.lock"
     lock = filelock.FileLock(folder / f".{name}.lock")
@@ -54,8 +54,8 @@ def locked(folder: Path, name: str) -> Iterator[None]:
         yield
     finally:
         sign.unlink(missing_ok=True)
-        # Before it is released: filelock does not take a lock on a file that has lost its name.
-        # Windows cannot remove an open file, and keeps it.
+        # The file is removed before the lock is released: filelock does not acquire a lock on a
+        # file without a name. Windows cannot remove an open file; there it remains.
         with suppress(PermissionError):
             Path(lock.lock_file).unlink(missing_ok=True)
         lock.release()
@@ -65,6 +65,6 @@ def _holder(sign: Path) -> str:
     try:
         holder = json.loads(sign.read_text(encoding="utf-8"))
         return f"process {holder['pid']} on {holder['host']}, since {holder['since']}"
-    # It may be just being written.
+    # Another process may be writing it at this moment.
     except (OSError, ValueError, LookupError, TypeError):
         return "another process"

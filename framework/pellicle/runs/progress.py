@@ -1,4 +1,4 @@
-"""What a run or a study shows and hears while it works: progress bars, and Ctrl-C."""
+"""Progress bars of a run or a study, and Ctrl-C while it is being solved."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ if TYPE_CHECKING:
 _BETWEEN_UPDATES = 0.1
 
 
-class Said(NamedTuple):
-    """Where a run is."""
+class ProgressMessage(NamedTuple):
+    """How far a run has got."""
 
     step: int
-    """Load step that it works on, counted from 0."""
+    """The load step being solved, counted from 0."""
     steps: int
     iteration: int
-    excess: float
+    residual_ratio: float
     """Residual over the tolerance."""
     done: float
-    """Steps finished, the one at work by its share."""
+    """Number of finished steps, plus the finished share of the current one."""
 
 
 class Bar(Protocol):
-    """What a run tells how far it is; a context in which the run is solved."""
+    """The context in which a run is solved; it receives the progress of the run."""
 
     def __enter__(self) -> object:
-        """Begin to listen."""
+        """Start the display, if there is one."""
 
     def __exit__(
         self,
@@ -45,14 +45,14 @@ class Bar(Protocol):
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Cease to listen."""
+        """End the display."""
 
     def step(self, index: int) -> Monitor:
         """Return the monitor of a load step, counted from 0."""
 
 
-class Saying:
-    """Says where a run is, by a function, every now and then."""
+class ProgressReporter:
+    """Passes the progress of a run to a function, at most ten times a second."""
 
     def __init__(self, steps: int, say: Say) -> None:
         self._steps, self._say = steps, say
@@ -69,7 +69,7 @@ class Saying:
 
 
 class _Shown(ABC):
-    """A context with a bar, if there is a terminal for it, that holds back Ctrl-C."""
+    """A context with a bar, if there is a terminal, that defers Ctrl-C."""
 
     def __init__(self, bar: rich.progress.Progress | None) -> None:
         self._bar = bar
@@ -77,7 +77,7 @@ class _Shown(ABC):
 
     @abstractmethod
     def _begin(self, bar: rich.progress.Progress) -> None:
-        """Put onto the bar what it shows from the start."""
+        """Add the first task to the bar."""
 
     def __enter__(self) -> Self:
         self._interrupt.hold()
@@ -100,9 +100,9 @@ class _Shown(ABC):
 
 
 class Progress(_Shown):
-    """Shows a bar on a terminal; says nothing where there is none, or when not ``enabled``.
+    """Shows a bar on a terminal; shows nothing without a terminal or if not ``enabled``.
 
-    The bar has the step, the iteration, the residual and the time left. Ctrl-C takes effect at
+    The bar shows the step, the iteration, the residual and the time left. Ctrl-C takes effect at
     the next iteration.
     """
 
@@ -112,34 +112,35 @@ class Progress(_Shown):
         super().__init__(None if console is None else _make_bar(console))
 
     def _begin(self, bar: rich.progress.Progress) -> None:
-        self._task = bar.add_task("", total=float(self._steps), said="")
+        self._task = bar.add_task("", total=float(self._steps), message="")
 
     def step(self, index: int) -> Monitor:
         """Return the monitor of a load step, counted from 0."""
         show = _monitor(index, self._steps, self._show)
 
-        def monitor(iteration: int, excess: float) -> None:
-            """Show an iteration; ``excess`` is the residual over the tolerance."""
+        def monitor(iteration: int, residual_ratio: float) -> None:
+            """Show an iteration."""
             self._interrupt.check()
             if self._bar is not None:
-                show(iteration, excess)
+                show(iteration, residual_ratio)
 
         return monitor
 
-    def _show(self, said: Said) -> None:
+    def _show(self, message: ProgressMessage) -> None:
         if self._bar is not None:
             self._bar.update(
                 self._task,
-                completed=said.done,
-                description=f"step {said.step + 1}/{said.steps}",
-                said=f"iteration {said.iteration} residual {said.excess:.1e} × tolerance",
+                completed=message.done,
+                description=f"step {message.step + 1}/{message.steps}",
+                message=f"iteration {message.iteration} "
+                f"residual {message.residual_ratio:.1e} × tolerance",
             )
 
 
 class StudyProgress(_Shown):
-    """Shows a bar for a study and one for each run at work; without a terminal, a line a run.
+    """Shows a bar for a study and one for each running run; without a terminal, a line per run.
 
-    Ctrl-C takes effect when a run next says something. Nothing is shown when not ``enabled``.
+    Ctrl-C takes effect at the next report of a run. Nothing is shown if not ``enabled``.
     """
 
     def __init__(self, total: int, done: int, enabled: bool) -> None:
@@ -151,25 +152,25 @@ class StudyProgress(_Shown):
 
     def _begin(self, bar: rich.progress.Progress) -> None:
         self._all = bar.add_task(
-            "runs", total=float(self._total), completed=self._done, said=self._count()
+            "runs", total=float(self._total), completed=self._done, message=self._count()
         )
 
-    def report(self, task: Task, said: Said) -> None:
-        """Show where a run is."""
+    def report(self, task: Task, message: ProgressMessage) -> None:
+        """Show the progress of a run."""
         self._interrupt.check()
         if self._bar is None:
             return
         if task.name not in self._running:
-            shown = self._bar.add_task(f"  {task.name}", total=float(said.steps), said="")
+            shown = self._bar.add_task(f"  {task.name}", total=float(message.steps), message="")
             self._running[task.name] = shown, 0.0
         shown, _ = self._running[task.name]
-        self._running[task.name] = shown, said.done / said.steps
-        where = f"step {said.step + 1}/{said.steps} iteration {said.iteration}"
-        self._bar.update(shown, completed=said.done, said=where)
+        self._running[task.name] = shown, message.done / message.steps
+        where = f"step {message.step + 1}/{message.steps} iteration {message.iteration}"
+        self._bar.update(shown, completed=message.done, message=where)
         self._advance()
 
     def finished(self, task: Task, verdict: str, failed: bool) -> None:
-        """Show that a run is done, and how it ended."""
+        """Show that a run has finished, with its verdict."""
         self._done += 1
         self._failed += failed
         if self._bar is not None:
@@ -184,37 +185,37 @@ class StudyProgress(_Shown):
 
     def _advance(self) -> None:
         if self._bar is not None:
-            at_work = sum(share for _, share in self._running.values())
-            self._bar.update(self._all, completed=self._done + at_work, said=self._count())
+            running = sum(share for _, share in self._running.values())
+            self._bar.update(self._all, completed=self._done + running, message=self._count())
 
     def _count(self) -> str:
         left = self._total - self._done
         return f"{self._done - self._failed} done, {self._failed} failed, {left} left"
 
 
-def _monitor(index: int, steps: int, tell: Callable[[Said], None]) -> Monitor:
-    """Return a monitor of a load step that tells where it is, but not at every iteration."""
-    highest, told = 1.0, 0.0
+def _monitor(index: int, steps: int, show: Callable[[ProgressMessage], None]) -> Monitor:
+    """Return a monitor of a load step that passes its progress on, at most ten times a second."""
+    highest, shown_at = 1.0, 0.0
 
-    def monitor(iteration: int, excess: float) -> None:
-        nonlocal highest, told
+    def monitor(iteration: int, residual_ratio: float) -> None:
+        nonlocal highest, shown_at
         now = time.monotonic()
-        if now - told < _BETWEEN_UPDATES or not math.isfinite(excess):
+        if now - shown_at < _BETWEEN_UPDATES or not math.isfinite(residual_ratio):
             return
-        told = now
-        highest = max(highest, excess)
-        # Residuals fall exponentially, so the logarithm is what advances evenly.
-        share = 1 - math.log(max(excess, 1.0)) / math.log(highest) if highest > 1 else 0.0
-        tell(Said(index, steps, iteration, excess, index + share))
+        shown_at = now
+        highest = max(highest, residual_ratio)
+        # Residuals fall exponentially, so their logarithm advances evenly.
+        share = 1 - math.log(max(residual_ratio, 1.0)) / math.log(highest) if highest > 1 else 0.0
+        show(ProgressMessage(index, steps, iteration, residual_ratio, index + share))
 
     return monitor
 
 
 class _Interrupt:
-    """Holds back the first Ctrl-C until `check`; the second acts at once.
+    """Defers the first Ctrl-C to the next `check`; the second acts at once.
 
-    Raised just anywhere it could be lost: Python drops what is raised in a finaliser, and every
-    object of HDF5 has one.
+    An exception raised at an arbitrary point could be lost: Python drops exceptions in finalisers,
+    and every h5py object has one.
     """
 
     def __init__(self) -> None:
@@ -258,7 +259,7 @@ def _make_bar(console: rich.console.Console) -> rich.progress.Progress:
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
-        TextColumn("{task.fields[said]}"),
+        TextColumn("{task.fields[message]}"),
         TimeElapsedColumn(),
         *_time_left("left"),
         console=console,
@@ -272,7 +273,7 @@ def _make_study_bar(console: rich.console.Console) -> rich.progress.Progress:
     from rich.text import Text
 
     class Cut(TextColumn):
-        """Gives way to the other columns where the terminal is too narrow for all."""
+        """Column that is shortened first where the terminal is too narrow."""
 
         def render(self, task: rich.progress.Task) -> Text:
             return Text(task.description, no_wrap=True, overflow="ellipsis")
@@ -280,11 +281,11 @@ def _make_study_bar(console: rich.console.Console) -> rich.progress.Progress:
     return Progress(
         Cut("", table_column=Column(no_wrap=False)),
         BarColumn(bar_width=12),
-        TextColumn("{task.fields[said]}", markup=False),
+        TextColumn("{task.fields[message]}", markup=False),
         *_time_left("time left"),
         console=console,
         transient=True,
-        # A study's runs take minutes each: a speed of the last half minute means nothing.
+        # Runs of a study may take minutes each: the speed over half a minute says nothing.
         speed_estimate_period=3600,
     )
 

@@ -1,4 +1,4 @@
-"""A run from configuration to result: compose, solve every load step, write result and outputs."""
+"""Solve a run: create the operator, solve every load step, write the result and the outputs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from pellicle import memory
-from pellicle.checks import blamed, checked_threads, read_only_dataset
+from pellicle.checks import checked_threads, errors_attributed_to, read_only_dataset
 from pellicle.components import Output
 from pellicle.components.calls import files_of
 from pellicle.components.output import Runs, stem_of
@@ -21,7 +21,7 @@ from pellicle.config.run import Run
 from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
 from pellicle.plugins import registry
-from pellicle.results.result import Result, said_of_steps
+from pellicle.results.result import Result, first_message
 from pellicle.results.step import Steps
 
 from .compose import compose
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 STANDARD_OUTPUTS = ("csv", "figures")
-"""What is written besides the result file where a configuration names no outputs."""
-# Points of a transform from which on threads pay.
+"""Types of the outputs of a configuration that names none."""
+# Points of a transform above which threads save time.
 _LARGE = 2048**2
 Value = TypeVar("Value")
 
@@ -62,14 +62,14 @@ def run(
     threads
         Threads of the Fourier transforms, a whole number ≥ 1; None for `default_threads`.
     overwrite
-        Start over, in place of whatever result file there is. Otherwise the steps that it holds of
-        the same run are not solved again, and the result of another run is refused.
+        Start over and replace any existing result file. Otherwise its steps are not solved again
+        if they are of the same run, and the result of another run is refused.
 
     Raises
     ------
     ConfigError, PluginError, StorageError
-        The run cannot be made, or another process writes to the same files; what was computed
-        before is kept.
+        The run cannot be executed, or another process writes to the same files; finished steps
+        are kept.
 
     Warns
     -----
@@ -86,7 +86,7 @@ def run(
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
     if coarse := result.coarse():
-        warnings.warn(said_of_steps(coarse), ConvergenceWarning, stacklevel=2)
+        warnings.warn(first_message(coarse), ConvergenceWarning, stacklevel=2)
     return result
 
 
@@ -116,9 +116,9 @@ def execute(
 ) -> Executed:
     """Solve the load steps that ``journal`` lacks and write the outputs beside it.
 
-    After an interruption the outputs still show the steps that are finished. Without a journal
-    nothing is written. No other process may write there meanwhile; without ``lock`` the caller has
-    to ensure that.
+    After an interruption the outputs still show the finished steps. Without a journal nothing is
+    written. No other process may write the same files meanwhile; without ``lock`` the caller has to
+    ensure that.
     """
     import scipy.fft
 
@@ -155,10 +155,10 @@ def execute(
 def _hand_over(
     step: xr.Dataset, outputs: Sequence[Output], journal: Journal, *, is_new: bool = False
 ) -> None:
-    """Give a step to every output, and first, if it is new, to the journal."""
+    """Pass a step to every output; if it is new, first to the journal."""
 
     def give(output: Output) -> None:
-        with blamed(output):
+        with errors_attributed_to(output):
             output.step(read_only_dataset(step), stem_of(output, journal.stem))
 
     calls = [partial(give, output) for output in outputs]
@@ -177,9 +177,9 @@ def _written(
 def writers(
     outputs: Sequence[Output], runs: Callable[[], Runs], stem: Path, run: Run
 ) -> list[Callable[[], tuple[Path, ...]]]:
-    """Return for each output a call that writes its files; ``runs`` makes data for each anew.
+    """Return for each output a function that writes its files.
 
-    A ConfigError has the output's path among the outputs of ``run``.
+    ``runs`` returns fresh data for each. A ConfigError names the output by its path in ``run``.
     """
 
     def write(output: Output) -> tuple[Path, ...]:
@@ -194,7 +194,7 @@ def writers(
 
 
 def all_done(calls: Iterable[Callable[[], Value]]) -> list[Value]:
-    """Make all calls, even where one raises; return the values, or raise the first exception."""
+    """Call all functions, even if one raises; return the values, or raise the first exception."""
     values: list[Value] = []
     errors: list[Exception] = []
     for call in calls:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 def solve_steps(
     run: Run, setting: Setting, steps: Steps, bar: Bar
 ) -> Generator[xr.Dataset, None, None]:
-    """Add each load step that ``steps`` lack as soon as it is solved, and yield it."""
+    """Solve the load steps missing from ``steps``; add and yield each as soon as it is solved."""
     origin = provenance(run)
     for index in range(len(steps), len(run.loading.values)):
         # Only the copy in ``steps`` outlives a solve; the next one starts from its state.
@@ -89,7 +89,7 @@ def _stiffness(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> Stiffnes
     """Return the contact stiffness dF/dδ, δ being the depth of the indenter."""
     problem = replace(equilibrium.problem, control=Depth(equilibrium.depth))
     contact = equilibrium.contact
-    if problem.is_rigid(contact):
+    if problem.has_infinite_stiffness(contact):
         return Stiffness(np.inf, 0.0)
     if not contact.any():
         return Stiffness(0.0, 0.0)

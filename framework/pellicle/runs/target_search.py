@@ -1,8 +1,8 @@
 """The load step at which a measured quantity has a prescribed value.
 
-A contact area is a staircase of the force, so the quantity may jump. The search ends at any control
-whose value is within the resolution of the goal, or else at the jump across the goal, known to a
-width, on its nearer side.
+The contact area is a staircase function of the force, so the quantity may jump. The search ends at
+any control whose value is within the resolution of the goal, or else at the jump across the goal,
+located to a relative width, on the side nearer to the goal.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from pellicle.components.prescription import Search, Setting
 from pellicle.numerics.problem import Depth, Equilibrium
 from pellicle.numerics.solution import Solution, Stop
 
-# Trials after which no control is expected to bring the goal.
+# Number of trials to bracket the goal, after which it counts as out of reach.
 _MOST_TRIALS: Final = 40
 
 
 class Reached(NamedTuple):
-    """A load step, with the trial of a search that came nearest to its goal."""
+    """A solved load step; after a search, the trial nearest to the goal."""
 
     equilibrium: Equilibrium
     iterations: int
-    """Of all trials."""
+    """Iterations of the solver, summed over all trials."""
     stop: Stop
     search: Search | None = None
     missed: float = 0.0
@@ -43,8 +43,8 @@ class Reached(NamedTuple):
 def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) -> Reached:
     """Return the load step at which the quantity of ``search`` has its goal.
 
-    The root is bracketed, the bracket growing from the first trial, and found by Brent's method
-    (1973), over log F for a force. Every trial starts from the state of the step before.
+    A bracket grows from the first trial; Brent's method (1973) then finds the root, in log F if the
+    control is a force. Every trial starts from the state of the step before.
     """
     trials = _Trials(setting, search, solver, monitor)
     low = high = trials.first()
@@ -61,7 +61,7 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
         brentq(trials, low, high, xtol=search.width, rtol=1e-15)
     how: Literal["met", "nearest", "not found"] = "nearest" if jumps else "not found"
     return Reached(
-        trials.found,
+        trials.nearest,
         trials.iterations,
         trials.solution.stop,
         search,
@@ -72,9 +72,9 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
 
 
 def _stride(excess: float, trials: int) -> float:
-    """Return how far to move log F towards the goal; further with every trial.
+    """Return the step of log F towards the goal, which grows with every trial.
 
-    A contact area grows as F^(2/3) under a smooth indenter at most, and as F under tension or where
+    The contact area grows at most as F^(2/3) under a smooth indenter, and as F under tension or if
     the indenter is rough.
     """
     return min(1.5 * abs(excess) + 0.02 * 2.0**trials, math.log(30.0))
@@ -82,26 +82,26 @@ def _stride(excess: float, trials: int) -> float:
 
 @dataclass
 class _Trials:
-    """Solves for one control after the other, and keeps the one nearest to the goal."""
+    """Solves for one control after the other, and keeps the solution nearest to the goal."""
 
     setting: Setting
     search: Search
     solver: Solver
     monitor: Monitor
     excess: dict[float, float] = field(default_factory=dict)
-    """By log F, or by the depth over `scale`: how far the value is above the goal, 0 if met."""
+    """Signed distance of the value above the goal, 0 if met, by log F or by depth over `scale`."""
     iterations: int = 0
     missed: float = math.inf
     below: float = -math.inf
     above: float = math.inf
     limit: float = math.inf
-    """Depth of full contact over `scale`, where no load reaches further."""
+    """Depth of full contact over `scale`, which no load exceeds."""
     scale: float = field(init=False)
-    found: Equilibrium = field(init=False)
+    nearest: Equilibrium = field(init=False)
     solution: Solution = field(init=False)
 
     def first(self) -> float:
-        """Return where the first trial is: at the guess, or at the control of the step before."""
+        """Return the first control, scaled as in `excess`: the guess or that of the last step."""
         profile, state = self.setting.profile, self.setting.state
         heights = profile[np.isfinite(profile)]
         reach = 0.5 * float(np.ptp(heights)) or 1e-3 * min(self.setting.grid.spacing)
@@ -111,32 +111,32 @@ class _Trials:
             touch = -float(profile.max()) / reach
             if not self.setting.operator.has_mean_compliance:
                 self.limit = -self.setting.mean_height / reach
-            place = touch + 1.0 if guess is None else guess / reach
-            return place if place < self.limit else 0.5 * (touch + self.limit)
+            depth = touch + 1.0 if guess is None else guess / reach
+            return depth if depth < self.limit else 0.5 * (touch + self.limit)
         if guess is None and state is not None:
             guess = float(state.pressure.sum()) * self.setting.grid.cell_area
         if guess is None or guess <= 0:
             guess = self.setting.force_at(reach - float(profile.max()))
         return math.log(guess)
 
-    def __call__(self, place: float) -> float:
-        if place not in self.excess:
+    def __call__(self, control: float) -> float:
+        if control not in self.excess:
             force = self.search.control is not Depth
-            self.excess[place] = self._try(math.exp(place) if force else place * self.scale)
-        return self.excess[place]
+            self.excess[control] = self._try(math.exp(control) if force else control * self.scale)
+        return self.excess[control]
 
     def _try(self, control: float) -> float:
         goal = self.search.goal
         problem = self.setting.problem(self.search.control(control))
         solution = solution_of(self.solver, problem, self.setting.state, self.monitor)
         # Not measured: the quantity, such as an area, may need no displacement.
-        found = Equilibrium(problem, solution.pressure)
+        equilibrium = Equilibrium(problem, solution.pressure)
         self.iterations += solution.iterations
-        value = self.search.measure(found)
+        value = self.search.measure(equilibrium)
         missed = abs(value - goal) / (abs(goal) or 1.0)
-        # Of equals the later is nearer to the jump.
+        # Of two equal values the later is nearer to the jump.
         if missed <= self.missed:
-            self.missed, self.found, self.solution = missed, found, solution
+            self.missed, self.nearest, self.solution = missed, equilibrium, solution
         if abs(value - goal) <= self.search.resolution:
             return 0.0
         if value < goal:

@@ -1,4 +1,4 @@
-"""Solves the cases of known truth that plugins register."""
+"""Solve the validation cases that plugins register."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .runner import solve
 
 @dataclass(frozen=True)
 class Verdict:
-    """A case, what was computed, and how far it is off."""
+    """A case with the computed value."""
 
     case: Case
     computed: float
@@ -24,7 +24,7 @@ class Verdict:
 
     @property
     def error(self) -> float:
-        """Relative error."""
+        """Relative error of the computed value."""
         return abs(self.computed - self.case.expected) / abs(self.case.expected)
 
     @property
@@ -34,7 +34,7 @@ class Verdict:
 
 
 def validate(cases: Iterable[Case] | None = None) -> Iterator[Verdict]:
-    """Yield a verdict on each case, of all registered ones if none are given.
+    """Yield a verdict on each case; by default on all registered cases.
 
     Cases that share a configuration share its run.
 

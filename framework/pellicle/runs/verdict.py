@@ -12,34 +12,34 @@ from pellicle.results.status import Status
 
 from .target_search import Reached
 
-# A search that ends further from its goal than this share has not converged.
+# Relative distance from its goal above which a search has not converged.
 _NEAR = 0.05
-# With nine or twelve cells a paraboloid has its force to 8 %, with five to 14 %, with fewer not.
+# The force of a paraboloid is right to 8 % on nine or twelve cells, to 14 % on five, on fewer not.
 _RESOLVED = 13
 _RESOLVED_ACROSS = 4
 
 
 def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) -> tuple[Status, str]:
-    """Return the status of a step by its measured residuals, and the message to the user."""
-    found = step.equilibrium
+    """Return the status of a step, from its measured residuals, and the message to the user."""
+    equilibrium = step.equilibrium
     tolerance = run.solver.tolerance
-    if not np.isfinite(found.force):
+    if not np.isfinite(equilibrium.force):
         return Status.NOT_FINITE, Status.NOT_FINITE.value
-    if (lowest := float(found.pressure.min())) < 0:
-        share = -lowest / float(found.pressure.max())
+    if (lowest := float(equilibrium.pressure.min())) < 0:
+        share = -lowest / float(equilibrium.pressure.max())
         return Status.NEGATIVE_PRESSURE, Status.NEGATIVE_PRESSURE.value.format(measure=share)
     for status, residual in (
-        (Status.LOAD, found.residual_load),
-        (Status.CONTACT_RESIDUAL, found.residual_contact),
-        (Status.PENETRATION, found.residual_penetration),
-        (Status.COMPLEMENTARITY, found.residual_complementarity),
+        (Status.LOAD, equilibrium.residual_load),
+        (Status.CONTACT_RESIDUAL, equilibrium.residual_contact),
+        (Status.PENETRATION, equilibrium.residual_penetration),
+        (Status.COMPLEMENTARITY, equilibrium.residual_complementarity),
         (Status.STIFFNESS, stiffness.residual if stiffness else 0.0),
     ):
         if not residual <= tolerance:
             return status, status.value.format(
                 measure=residual, tolerance=tolerance, remedy=step.stop.value
             )
-    if run.indenter.footprint == "unbounded" and _touches_edge(run, found.contact):
+    if run.indenter.footprint == "unbounded" and _touches_edge(run, equilibrium.contact):
         nx, ny = run.grid.size
         loading = run.loading
         return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
@@ -49,9 +49,9 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
         )
     if step.search and (step.how != "met" or step.missed > _NEAR):
         return _not_met(step, step.search)
-    cells = int(np.count_nonzero(found.contact))
-    enough = _RESOLVED_ACROSS if min(found.contact.shape) == 1 else _RESOLVED
-    if found.problem.control.value > 0 and cells < min(enough, found.contact.size):
+    cells = int(np.count_nonzero(equilibrium.contact))
+    enough = _RESOLVED_ACROSS if min(equilibrium.contact.shape) == 1 else _RESOLVED
+    if equilibrium.problem.control.value > 0 and cells < min(enough, equilibrium.contact.size):
         return Status.COARSE, Status.COARSE.value.format(cells=cells or "none")
     return Status.CONVERGED, Status.CONVERGED.value
 
@@ -61,7 +61,7 @@ def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
     near, far = Status.NEAREST, Status.NOT_REACHED
     if search.quantity == "contact area":
         near, far = Status.NEAREST_AREA, Status.AREA
-    # What falls as the control grows is measured by its negative.
+    # A quantity that falls as the control grows is measured by its negative.
     below, above = sorted(map(abs, step.between))
     words = {
         "quantity": search.quantity,
@@ -72,7 +72,7 @@ def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
     }
     if step.how == "nearest" and step.missed <= _NEAR:
         return near, near.value.format(**words)
-    remedy = "no load was found that brings it"
+    remedy = "no load that attains it was found"
     if step.how == "nearest":
         remedy = "it jumps from {below} to {above}: use more points".format(**words)
     return far, far.value.format(**words, remedy=remedy)
@@ -81,7 +81,7 @@ def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
 def _touches_edge(run: Run, contact: Mask) -> bool:
     """Whether a cell at the border is in contact.
 
-    A period one cell wide has no border across: there the problem is plane.
+    A period one cell wide has no border in that direction: the problem is plane there.
     """
     plane = run.grid.boundary == "periodic"
     across = [axis for axis in (0, 1) if contact.shape[axis] > 1 or not plane]

@@ -1,4 +1,4 @@
-"""Fields of all runs of a study as arrays that read the files of the runs when they are used."""
+"""Fields of all runs of a study as arrays that are read from the runs' files when used."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 def add_fields(table: xr.Dataset, runs: Path) -> xr.Dataset:
     """Return the table of a study with the fields of its runs, which are read when used.
 
-    Their dimensions are those of the table, x and y. For missing steps they are NaN, or False for
-    ``contact``.
+    The dimensions of the fields are those of the table, x and y. Fields of missing steps are NaN,
+    or False for ``contact``.
 
     Raises
     ------
     StorageError
-        No run has a step.
+        No run of the study has a finished step.
     """
     exists = ~np.isnan(table["force"].values) if "force" in table else np.array(False)
     if not exists.any():
@@ -73,8 +73,8 @@ class _Field(BackendArray):
         missing = False if self.dtype == bool else np.nan
         cells = np.empty(self.shape[-2:], dtype=bool)[x, y].shape
         read = np.full((*exists.shape, *cells), missing, dtype=self.dtype)
-        for at in np.argwhere(exists):
-            *run, step = indices[(slice(None), *at)].tolist()
+        for position in np.argwhere(exists):
+            *run, step = indices[(slice(None), *position)].tolist()
             path = self._runs / f"{self._names[tuple(run)]}.h5"
-            read[tuple(at)] = storage.fields(path, [self._name], step)[1][0][x, y]
+            read[tuple(position)] = storage.fields(path, [self._name], step)[1][0][x, y]
         return read

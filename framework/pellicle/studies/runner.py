@@ -1,4 +1,4 @@
-"""A study from configuration to table: plan, skip finished runs, execute the others, collect."""
+"""Execute the unfinished runs of a study and collect the numbers of all runs in its table."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from pellicle.results.status import Status
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.lock import locked
-from pellicle.runs.progress import Saying, StudyProgress
+from pellicle.runs.progress import ProgressReporter, StudyProgress
 
 from . import table
 from .summary import coarse, failures
@@ -41,20 +41,20 @@ _WARNINGS = "warnings"
 
 @dataclass(frozen=True)
 class RunTask:
-    """A run of a study, finished or not; it pickles to workers."""
+    """A run of a study, finished or not; it can be pickled to workers."""
 
     name: str
-    """What is varied, with its values; the title of a run that stands alone."""
+    """The varied parameters with their values; the title of a single run."""
     run: Run
     journal: Journal
     index: tuple[int, ...] = ()
     """Its index in the table."""
     outputs: tuple[Output, ...] = ()
-    """What it writes besides its result file."""
+    """The outputs of each run, besides its result file."""
 
     @property
     def memory(self) -> int:
-        """Estimate of the memory that the run takes at its peak [bytes]."""
+        """Estimated peak memory of the run [bytes]."""
         return int(min(memory.estimate(self.run.grid, self.steps, self.run.solver), sys.maxsize))
 
     @property
@@ -69,7 +69,7 @@ class StudyResult(NamedTuple):
     table: xr.Dataset
     files: tuple[Path, ...]
     resumed: int
-    """Number of runs that were finished before."""
+    """Number of runs that had been finished before."""
 
 
 def run_study(
@@ -89,14 +89,14 @@ def run_study(
         A `Study`, the path of a TOML file, or a mapping of the same form.
     directory
         Folder of the study: a file for each run in ``runs``, ``study.h5`` and ``study.csv``. Steps
-        that it holds of the same runs are not solved again. Without it no file stays.
+        of the same runs in these files are not solved again. Without a folder no file is kept.
     progress
         Show a bar on a terminal; without one, a line for each run.
     fields
         Add pressure, displacement, gap and contact to the table; they are read from the files of
-        the runs where they are used.
+        the runs when they are used.
     overwrite
-        Start over, in place of what the folder holds.
+        Start over and replace the files in the folder.
     threads
         Threads of each run's Fourier transforms, a whole number ≥ 1; those of the executor if None.
 
@@ -104,13 +104,13 @@ def run_study(
     -------
     xarray.Dataset
         The numbers of each step over the varied parameters, which are dimensions, and ``step``;
-        NaN where a step is missing. ``status`` is how a step ended, or why it is missing; ``run``
-        names the file of a run.
+        NaN where a step is missing. ``status`` states how a step ended, or why it is missing;
+        ``run`` names the file of a run.
 
     Raises
     ------
     ConfigError, PluginError
-        The configuration is not a study; nothing was solved.
+        The configuration is not a valid study; nothing was solved.
     StorageError
         The folder cannot be used; finished steps are kept.
 
@@ -170,7 +170,7 @@ def execute(
 ) -> StudyResult:
     """Solve the runs of a study that are not finished, in a folder that no other process uses.
 
-    After an interruption the table and the outputs show what is finished.
+    After an interruption the table and the outputs show the finished steps.
     """
     with locked(directory, "study"):
         return _execute(study, directory, progress, overwrite, threads)
@@ -211,7 +211,7 @@ def _execute(
                 else:
                     rows.put(task.index, outcome)
                     messages |= dict.fromkeys(outcome.attrs.pop(_WARNINGS))
-                # A full disk fails all runs to come: writing at once detects it.
+                # On a full disk all later runs would fail: writing the table at once detects that.
                 files.write(rows, at_once=isinstance(outcome, StorageError))
                 bar.finished(task, *_verdict(outcome))
     finally:
@@ -232,9 +232,9 @@ def _execute(
 def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
     """Solve a run in a worker, write its files, and return its numbers.
 
-    Warnings are among the attributes, so that they are shown once for all runs.
+    Warnings are stored in the attributes, so that a warning is shown once for all runs.
     """
-    bar = Saying(task.steps, say)
+    bar = ProgressReporter(task.steps, say)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UserWarning)
         executed = runner.execute(
@@ -249,13 +249,13 @@ class Planned(NamedTuple):
 
     task: RunTask
     finished: int
-    """Number of its steps on file."""
+    """Number of steps in its file."""
     problem: str
-    """Why its file cannot be used; empty if it can."""
+    """Reason why its file cannot be used; empty if it can."""
 
 
 def plan(runs: Sequence[RunTask]) -> Iterator[Planned]:
-    """Yield what is finished of each run."""
+    """Yield each run with the number of its finished steps."""
     for task in runs:
         try:
             numbers = task.journal.numbers()
@@ -266,12 +266,12 @@ def plan(runs: Sequence[RunTask]) -> Iterator[Planned]:
 
 
 def read(path: Path) -> tuple[xr.Dataset, Path]:
-    """Return the table of a study by its folder or its ``study.h5``, and the folder.
+    """Return the table of a study and its folder, given the folder or its ``study.h5``.
 
     Raises
     ------
     StorageError
-        There is no table, or it cannot be read.
+        The table does not exist or cannot be read.
     """
     whole = path / "study.h5" if path.is_dir() else path
     dataset = storage.table(whole)
@@ -286,11 +286,11 @@ def is_table(path: Path) -> bool:
 
 
 def _collect(task: RunTask, rows: table.Table) -> int:
-    """Put the steps on file of a run into the table; return their number."""
+    """Copy the steps in the file of a run into the table; return their number."""
     try:
         numbers = task.journal.numbers()
     except StorageError:
-        # The run itself will fail with it, and state what to do.
+        # The run itself will fail with this error, whose message names the remedy.
         return 0
     if numbers is None:
         return 0
@@ -324,7 +324,7 @@ def _one_line(error: Exception) -> str:
 
 
 class _Writer:
-    """Keeps the files of the table up to date, in a small share of the time of a study."""
+    """Keeps the files of the table up to date, spending a small share of the time of the study."""
 
     def __init__(self, directory: Path) -> None:
         self._directory = directory

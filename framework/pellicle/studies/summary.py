@@ -1,4 +1,4 @@
-"""Summaries of the table of a study: a row, a progress and a reason for each run."""
+"""Summaries of the table of a study: parameters, progress and failures of its runs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _FAILURES = {
     "NOT CONVERGED": "did not converge",
     "not run": "were not finished",
 }
-"""Words for a number of runs with a verdict."""
+"""Phrases for messages such as "3 did not converge", by verdict."""
 _WORST_FIRST = "failed", "not run", "NOT CONVERGED"
 
 
@@ -55,7 +55,7 @@ def progress_of(run: xr.Dataset) -> tuple[int, int, str]:
 
 
 def reasons(table: xr.Dataset) -> Iterator[str]:
-    """Yield the first bad status of each run that failed or did not converge, with its name."""
+    """Yield the name of each run that failed or did not converge, with its first bad status."""
     for run in runs_of(table):
         statuses = _statuses(run)[0]
         bad = next((n for n, status in enumerate(statuses) if not status.converged), None)
@@ -65,7 +65,7 @@ def reasons(table: xr.Dataset) -> Iterator[str]:
 
 
 def runs_of(table: xr.Dataset) -> Iterator[xr.Dataset]:
-    """Yield the part of a table that belongs to one run, for each run."""
+    """Yield the part of a table that belongs to each run."""
     sizes = table["run"].sizes
     for index in np.ndindex(*sizes.values()):
         yield table.isel(dict(zip(sizes, index, strict=True)))
@@ -77,7 +77,7 @@ def _parameters(run: xr.Dataset) -> dict[str, str]:
 
 
 def failures(table: xr.Dataset) -> str:
-    """Return how many runs failed, did not converge or were not finished; empty if none."""
+    """Return a phrase on runs that failed, did not converge or were not finished, if any."""
     verdicts = [{status.verdict for status in statuses} for statuses in _statuses(table)]
     counts = {verdict: sum(verdict in run for run in verdicts) for verdict in _FAILURES}
     parts = [f"{count} {_FAILURES[verdict]}" for verdict, count in counts.items() if count]
@@ -85,7 +85,7 @@ def failures(table: xr.Dataset) -> str:
 
 
 def coarse(table: xr.Dataset) -> Iterator[str]:
-    """Yield a sentence with the number of runs whose cells do not resolve the contact, if any."""
+    """Yield a message with the number of runs whose cells do not resolve the contact, if any."""
     statuses = _statuses(table)
     count = sum(Status.COARSE in run for run in statuses)
     if count:

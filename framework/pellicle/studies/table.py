@@ -61,7 +61,7 @@ class Table:
             self._numbers.setdefault(str(name), empty)[index][:count] = variable.values
 
     def fail(self, index: tuple[int, ...], reason: str) -> None:
-        """Record why a run has no more steps."""
+        """Record why the remaining steps of a run are missing."""
         codes = self._texts["status_code"][index]
         missing = codes == Status.NOT_RUN.name
         codes[missing] = Status.FAILED.name
@@ -94,13 +94,13 @@ class Table:
 
 
 def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any, np.dtype[Any]]:
-    """Return a copy, as whole numbers if they are counts and none is missing."""
+    """Return a copy of values, as integers if they are counts and none is missing."""
     counts = name in VARIABLES and VARIABLES[name].type == "count"
     return values.astype(int) if counts and np.isfinite(values).all() else values.copy()
 
 
 def damage(table: xr.Dataset) -> str:
-    """Return why a dataset is not the table of a study; empty if it is one."""
+    """Return the reason why a dataset is not the table of a study; empty if it is one."""
     numbers = any(variable.dtype.kind in "fiu" for variable in table.data_vars.values())
     required = (*_TEXTS, "run", *(["converged"] if numbers else []))
     if problem := damage_of(table.data_vars, required, ("", *Status.__members__)):

@@ -1,1 +1,1 @@
-"""Closed forms and semi-analytic solutions that numerical results are judged by."""
+"""Closed-form and semi-analytic solutions to which numerical results are compared."""

@@ -16,12 +16,12 @@ class HasAbelTransform(Protocol):
         h(x) = −x ∫₀^x f'(r) / sqrt(x² − r²) dr   [m].
 
     Without tension the depth is h(a) and the force 2 E* (a h(a) − ∫₀^a h dx) at contact radius a
-    (Sneddon 1965). An indenter that has it has a reference solution under tension too.
+    (Sneddon 1965). An indenter with this transform has a reference solution under tension too.
     """
 
     @property
     def contact_radius_limit(self) -> float:
-        """Contact radius [m] that cannot be reached; infinite if there is none."""
+        """Upper bound of the contact radius, never attained [m]; infinite if there is none."""
         ...
 
     @property

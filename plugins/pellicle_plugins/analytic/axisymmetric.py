@@ -1,7 +1,7 @@
 """Contact of a rigid axisymmetric indenter with a half-space under surface tension.
 
-The equation and its solution are in ``axisymmetric_equation``. Here two mesh levels are compared,
-and the contact radius is found for a depth or a force.
+``axisymmetric_equation`` has the equation and its solution. This module compares two mesh levels
+and determines the contact radius for a depth or a force.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def indent(
     Parameters
     ----------
     indenter
-        A paraboloid, sphere or cone component, or anything else that `HasAbelTransform`.
+        A paraboloid, sphere or cone component, or any other object with `HasAbelTransform`.
     reduced_modulus
         E* = E / (1 − ν²) [Pa].
     tension
@@ -148,7 +148,7 @@ def _radius(indenter: HasAbelTransform, s: float, quantity: str, target: float) 
         high, low = low, low - max(above / 2, 0.1)
     if low == high:
         return float(np.exp(high))
-    # Imported here because outputs import this module, and most draw without it.
+    # Outputs import this module, but most of them do not need scipy.optimize.
     from scipy.optimize import brentq
 
     return float(np.exp(brentq(excess, low, high, xtol=1e-14, rtol=1e-14)))

@@ -2,13 +2,13 @@
 
 The Abel transform reduces the contact to ∫_{−a}^{a} φ(t) K(x − t) dt = E* (δ − h(x)),
 K(z) = ∫₀^∞ cos(qz) / (1 + s q) dq, s = 2τ₀/E*, with P = π ∫ φ and φ(±a) = 0.  Its
-derivative in x, with χ = −φ', no longer holds the depth:
+derivative in x, with χ = −φ', does not contain the depth:
 
     ∫₀^a χ(t) [K(x − t) − K(x + t)] dt = E* h'(x),
 
-and its only solution, which goes as (a − t)^(−1/2) at the edge, has φ(±a) = 0 built
-in.  Then P = 2π ∫ t χ dt, p(r) = ∫_r^a χ / sqrt(t² − r²) dt, and δ is the first
-equation at x = 0.
+and its only solution, proportional to (a − t)^(−1/2) at the edge, satisfies φ(±a) = 0.
+Then P = 2π ∫ t χ dt, p(r) = ∫_r^a χ / sqrt(t² − r²) dt, and δ follows from the
+first equation at x = 0.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from .product_integration import clustering, collocation, weights
 from .tension_kernel import auxiliary_g, primitive
 
 LEVELS = ((12, 1e-3), (16, 3e-4), (22, 1e-4))
-"""Gauss points to a panel, and size of the finest panel over that of the layer."""
+"""Gauss points per panel, and size of the finest panel over that of the edge layer."""
 NEGLIGIBLE = 1e-12
-"""s/a below which tension is left out: force and depth would change by less than 1e-11."""
+"""s/a below which tension is neglected, which changes force and depth by less than 1e-11."""
 _CHUNK = 2048
 
 
@@ -61,7 +61,7 @@ class Solution:
     def pressure(self, t: Array) -> Array:
         """Return p / E* at positions 0 ≤ t ≤ 1, shape (m,)."""
         inside = points_at(t)
-        # The limit from inside: at η = 0 itself nothing would be left to integrate.
+        # The limit from inside is taken: at η = 0 the interval of integration would be empty.
         targets = Points(inside.psi, np.maximum(inside.eta, 1e-100))
 
         def abel(distance: Array, source: Points, _target: Points) -> Array:
@@ -103,5 +103,5 @@ def solve(indenter: HasAbelTransform, a: float, ratio: float, level: int) -> Sol
 
 
 def without_negligible(ratio: float) -> float:
-    """Return s/a, or exactly 0 if tension is to be left out."""
+    """Return s/a, or exactly 0 if tension is negligible."""
     return ratio if ratio > NEGLIGIBLE else 0.0

@@ -24,7 +24,7 @@ class ConeContact:
     force: float
     """F [N]."""
     mean_pressure: float
-    """F / πa² = E* cot(α) / 2 [Pa], whatever the depth."""
+    """F / πa² = E* cot(α) / 2 [Pa], independent of the depth."""
 
     def pressure(self, r: ArrayLike) -> Array:
         """Return p = (E* cot α / 2) arcosh(a / r) [Pa] at r ≥ 0 [m]; infinite at 0."""
@@ -43,7 +43,7 @@ def cone(
     force: float | None = None,
     contact_radius: float | None = None,
 ) -> ConeContact:
-    """Return the contact of a cone r cot α, one quantity being given.
+    """Return the contact of a cone r cot α for one given quantity.
 
     δ = (π/2) a cot α and F = (π/2) E* a² cot α (Sneddon 1965).
 

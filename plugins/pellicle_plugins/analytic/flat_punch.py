@@ -43,7 +43,7 @@ def flat_punch(
     depth: float | None = None,
     force: float | None = None,
 ) -> FlatPunchContact:
-    """Return the contact of a flat punch, F = 2 E* a δ, one quantity being given.
+    """Return the contact of a flat punch, F = 2 E* a δ, for one given quantity.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ def sphere(
     force: float | None = None,
     contact_radius: float | None = None,
 ) -> HertzContact:
-    """Return the contact of a paraboloid r² / 2R, one quantity being given.
+    """Return the contact of a paraboloid r² / 2R for one given quantity.
 
     a² = R δ, F = 4 E* a³ / 3R, p₀ = 2 E* a / πR.
 
@@ -105,7 +105,7 @@ def ellipse(
     depth: float | None = None,
     force: float | None = None,
 ) -> HertzContact:
-    """Return the contact of a quadric x² / 2R_x + y² / 2R_y, δ or F being given.
+    """Return the contact of a quadric x² / 2R_x + y² / 2R_y for a given δ or F.
 
     Parameters
     ----------

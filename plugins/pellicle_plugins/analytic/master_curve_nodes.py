@@ -1,7 +1,7 @@
-"""Solves the axisymmetric equation at the nodes of the master curves and writes them down.
+"""Solve the axisymmetric equation at the nodes of the master curves and write them to a file.
 
-``python -m pellicle_plugins.analytic.master_curve_nodes`` renews ``master_curves.json``, which
-``master_curves`` interpolates and explains.
+``python -m pellicle_plugins.analytic.master_curve_nodes`` replaces ``master_curves.json``, which
+``master_curves`` describes and interpolates.
 """
 
 from __future__ import annotations

@@ -1,16 +1,16 @@
 """Force against depth under surface tension, interpolated between exact solutions.
 
-Dimensional analysis leaves little to tabulate.  With s = 2τ₀/E* and the force without tension
+By dimensional analysis only few variables remain.  With s = 2τ₀/E* and the force without tension
 P₀(δ), log(P/P₀) is a function of x alone for three of the indenters:
 
 - paraboloid, x = s / √(δR), P₀ = (4/3) E* R^(1/2) δ^(3/2);
 - cone, x = s cot α / δ, P₀ = (2/π) E* tan α δ²;
-- flat punch, x = s / a, P₀ = 2 E* a δ;
+- flat punch, x = s / a, P₀ = 2 E* a δ.
 
-and of x = s / √(δR) and δ/R for the sphere, as that of the paraboloid plus (δ/R) times a smooth
-function, tabulated for δ ≤ R.  The nodes are solutions of the axisymmetric equation
-(``master_curve_nodes``); between them runs a spline of degree 5 in t = log(1 + x/SCALE), which is
-linear where tension hardly counts and logarithmic where it rules.
+For the sphere it is a function of x = s / √(δR) and δ/R: that of the paraboloid plus (δ/R) times a
+smooth function, tabulated for δ ≤ R.  The nodes are solutions of the axisymmetric equation
+(``master_curve_nodes``), interpolated by a spline of degree 5 in t = log(1 + x/SCALE), which is
+linear in x where tension hardly matters and logarithmic where it dominates.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ def flat_punch(radius: float, depth: Array, length: float) -> ForceCurve:
 def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a sphere of R = ``radius`` [m] at s = ``length`` [m].
 
-    Exact up to δ = R; beyond it the shape's share of log P is held at its value there.
+    It is valid up to δ = R; beyond, the contribution of the shape to log P is kept constant.
     """
     touching, d = _touching(depth)
     flat = paraboloid(radius, d, length)

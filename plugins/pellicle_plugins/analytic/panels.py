@@ -83,11 +83,11 @@ def graded(order: int, edge: float, centre: float, ratio: float = 0.5) -> list[P
     Parameters
     ----------
     order
-        Gauss points to a panel.
+        Gauss points per panel.
     edge, centre
         Length in ψ below which panels are not divided further at either end.
     ratio
-        Of the lengths of neighbouring panels.
+        Ratio of the lengths of neighbouring panels.
     """
     nodes = gauss(order)[0]
 

@@ -59,7 +59,7 @@ def weights(
     above
         Integrate over t > x only.
     power
-        Of the substitution next to the singularity, see ``clustered``.
+        Power of the substitution near the singularity, see ``clustered``.
 
     Returns
     -------
@@ -112,7 +112,7 @@ def collocation(panels: list[Panel], kernel: Kernel, power: int, parity: int) ->
     Parameters
     ----------
     panels
-        Of [0, 1].
+        Panels of [0, 1].
     kernel, power
         See ``weights``.
     parity

@@ -1,4 +1,4 @@
-"""The semi-analytic reference solution of a run: the same axisymmetric contact without a grid."""
+"""The semi-analytic reference solution of a run with an axisymmetric contact."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _LINE = 401
 
 
 def contact(run: xr.Dataset, step: int) -> AxisymmetricContact | None:
-    """Return the reference contact of a load step, counted from 1; None where 0 is prescribed.
+    """Return the reference contact of a load step, counted from 1; None if 0 is prescribed.
 
     Raises
     ------
@@ -115,12 +115,12 @@ def exact(runs: Runs) -> Runs:
 
 
 def exact_line(run: xr.Dataset) -> xr.Dataset:
-    """Return pressure, contact and numbers of the semi-analytic solution along a line of a run.
+    """Return pressure, contact and numbers of the semi-analytic solution along a line.
 
     Parameters
     ----------
     run
-        One step with either ``x`` or ``y`` as its only dimension in space.
+        One step of a run, with either ``x`` or ``y`` as its only spatial dimension.
 
     Returns
     -------

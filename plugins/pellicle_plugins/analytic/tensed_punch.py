@@ -1,8 +1,8 @@
 """Contact of a rigid flat punch with a half-space under surface tension.
 
-The integral equation of the ``axisymmetric`` module with a flat profile,
-∫_{−a}^{a} φ(t) K(x − t) dt = E* δ, P = π ∫ φ.  Its solution goes as C (a² − t²)^(−1/2)
-at the edge, which is a line load of total π² C on the rim of the punch.
+The integral equation of ``axisymmetric_equation`` with a flat profile is
+∫_{−a}^{a} φ(t) K(x − t) dt = E* δ, P = π ∫ φ.  Its solution approaches C (a² − t²)^(−1/2)
+at the edge, which represents a line load of total force π² C on the rim of the punch.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class TensedPunch:
     depth: float
     """δ [m]."""
     force: float
-    """P [N], the ring force included."""
+    """P [N], including the ring force."""
     ring_force: float
     """Part of the force that the rim carries as a line load [N]; 0 without tension."""
 
@@ -64,7 +64,7 @@ def punch(
     depth: float | None = None,
     force: float | None = None,
 ) -> TensedPunch:
-    """Return the contact of a flat punch, depth or force being given.
+    """Return the contact of a flat punch for a given depth or force.
 
     Parameters
     ----------

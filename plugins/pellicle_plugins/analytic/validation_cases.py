@@ -1,6 +1,6 @@
 """Validation cases with known results: closed forms and the axisymmetric integral equation.
 
-Solutions are imported where a case is made: plugins load at every start, scipy.optimize need not.
+Cases import the solutions themselves, so that loading this plugin does not import scipy.optimize.
 """
 
 from __future__ import annotations

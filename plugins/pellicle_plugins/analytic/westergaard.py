@@ -53,7 +53,7 @@ def wavy(
     mean_pressure: float | None = None,
     half_width: float | None = None,
 ) -> WavyContact:
-    """Return the contact of a wavy surface, p̄ = p* sin²(πa/λ), one being given.
+    """Return the contact of a wavy surface, p̄ = p* sin²(πa/λ), for a given p̄ or a.
 
     Parameters
     ----------

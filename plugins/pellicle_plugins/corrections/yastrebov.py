@@ -29,7 +29,7 @@ class Yastrebov(AreaCorrection):
         return _area(contact, int(along_x + along_y), spacing)
 
     def periodic_area(self, contact: Mask, spacing: tuple[float, float]) -> float:
-        """Return the same with the switches across the edges of the domain [m²]."""
+        """Return the same on a periodic domain, including switches across its edges [m²]."""
         along_x, along_y = (
             np.count_nonzero(contact != np.roll(contact, 1, axis)) for axis in (0, 1)
         )

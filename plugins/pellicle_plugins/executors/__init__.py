@@ -1,1 +1,1 @@
-"""Executors: where the runs of a study are carried out."""
+"""Executors, which execute the runs of a study."""

@@ -1,4 +1,4 @@
-"""Runs on a cluster, by way of dask's distributed scheduler."""
+"""Runs on a cluster through dask's distributed scheduler."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from pellicle.components import AnyTask, Executor, Outcome, Outcomes, Report, Th
 class Dask(Executor):
     """Runs on the workers of a dask scheduler, on this machine or on a cluster.
 
-    A run whose worker dies starts again on another, and is given up when four have died of it (the
-    setting ``distributed.scheduler.allowed-failures`` is 3). Needs the extra ``cluster``, pellicle
-    of one version on all workers, and a folder of the study that all of them see under the same
-    path.
+    A run whose worker dies starts again on another, and is abandoned when four workers have died
+    (with ``distributed.scheduler.allowed-failures`` at its default of 3). This needs the extra
+    ``cluster``, the same version of pellicle on all workers, and a study folder with the same path
+    on all of them.
     """
 
     type: Literal["dask"] = "dask"
@@ -36,8 +36,8 @@ class Dask(Executor):
     ) -> Outcomes[AnyTask, Outcome]:
         """Yield each task as it finishes; see `Executor.map`.
 
-        If the iterator is closed early, running tasks end when they next report something; this
-        waits for them up to 10 s. If this process dies, they end likewise.
+        If the iterator is closed early, running tasks end at their next report, for which this
+        waits up to 10 s. They also end if this process dies.
 
         Raises
         ------

@@ -21,9 +21,9 @@ from pellicle.components import AnyTask, Report, Work
 from .execution import execute_remotely, pack
 
 _CHECK_INTERVAL = 2.0
-"""Time without events after which we check whether there are workers [s]."""
+"""Time without events after which the scheduler is asked whether it has workers [s]."""
 _END_TIMEOUT = 10.0
-"""Time for which we wait for running tasks to end, at their next report [s]."""
+"""Largest time to wait for running tasks to end at their next report [s]."""
 _POLL_INTERVAL = 0.05
 _NO_WORKERS = (
     "the dask scheduler has no workers; runs wait until there are some: start them with `dask "
@@ -50,7 +50,7 @@ def connected(address: str) -> Client:
 
 
 class Submission(Generic[AnyTask]):
-    """Tasks that are submitted on entry; unfinished ones are withdrawn on exit."""
+    """Tasks that are submitted on entry; unfinished tasks are withdrawn on exit."""
 
     def __init__(self, client: Client, work: Work[AnyTask, Any], tasks: Sequence[AnyTask]) -> None:
         self._client = client
@@ -86,8 +86,8 @@ class Submission(Generic[AnyTask]):
     def outcomes(self, report: Report[AnyTask]) -> Iterator[tuple[AnyTask, Any]]:
         """Yield each task with its outcome, as they finish.
 
-        dask attributes the death of a worker to all its tasks, waiting ones included. So the tasks
-        that it gives up are submitted once more after the others, one at a time.
+        dask attributes the death of a worker to all its tasks, including waiting ones. So the tasks
+        that it abandons are submitted once more after the others, one at a time.
         """
         yield from self._refused
         suspects: list[int] = []
@@ -142,8 +142,8 @@ class Submission(Generic[AnyTask]):
 def _bootstrap() -> Callable[..., bytes]:
     """Return `execute_on_worker` in a form that unpickles where pellicle is not installed.
 
-    A nested function is sent by value. A function that is sent by name would end a worker that
-    cannot import it, without an error here.
+    A nested function is pickled by value. A function pickled by name would end a worker that cannot
+    import it, without an error in this process.
     """
 
     def start(*arguments: Any) -> bytes:
@@ -163,7 +163,7 @@ def execute_on_worker(payload: bytes, our_version: str, topic: str, index: int) 
     key = worker.get_current_task()
 
     def say(message: Any) -> None:
-        # dask cannot stop a running task, but marks one whose result nobody waits for.
+        # dask cannot stop a running task, but changes its state when its result is not needed.
         task = worker.state.tasks.get(key)
         if task is None or task.state != "executing":
             raise CancelledError(f"{key} was withdrawn")
@@ -182,7 +182,7 @@ def _runs_any(client: Client, prefix: str) -> bool:
 
 
 def _largest_worker(client: Client) -> float:
-    """Return the memory limit [bytes] of the largest worker, or inf where there is none."""
+    """Return the memory limit of the largest worker [bytes], or inf without a limit."""
     limits = [worker["memory_limit"] for worker in client.scheduler_info()["workers"].values()]
     return float("inf") if not all(limits) else max(limits, default=float("inf"))
 

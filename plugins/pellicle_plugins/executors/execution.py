@@ -1,4 +1,4 @@
-"""Execute one task, here or in another process, and return whatever becomes of it."""
+"""Execute one task, in this or another process, and return its outcome."""
 
 from __future__ import annotations
 
@@ -12,24 +12,25 @@ from pellicle.components import AnyTask, Outcome, Say, Work
 
 
 def execute(work: Work[AnyTask, Outcome], task: AnyTask, say: Say) -> Outcome | Exception:
-    """Return what ``work(task, say)`` returns or raises; only an interruption passes through."""
+    """Return what ``work(task, say)`` returns or raises; only KeyboardInterrupt is not caught."""
     try:
         return work(task, say)
     except Exception as error:
         return error
     except SystemExit as error:
-        return PellicleError(f"{task.name}: its work left by sys.exit({error.code!r})")
+        return PellicleError(f"{task.name}: its work called sys.exit({error.code!r})")
 
 
 def pack(work: Work[AnyTask, Outcome], task: AnyTask) -> bytes:
     """Return the payload for `execute_remotely`.
 
-    cloudpickle sends what scripts and notebooks define by value, since workers cannot import it.
+    cloudpickle sends definitions in scripts and notebooks by value, since workers cannot import
+    them.
 
     Raises
     ------
     PellicleError
-        It does not pickle.
+        The task cannot be pickled.
     """
     try:
         payload: bytes = cloudpickle.dumps((work, task))
@@ -39,7 +40,7 @@ def pack(work: Work[AnyTask, Outcome], task: AnyTask) -> bytes:
 
 
 def execute_remotely(payload: bytes, say: Say) -> bytes:
-    """Return the pickled outcome of a packed task; what does not pickle becomes an error."""
+    """Return the pickled outcome of a packed task; one that cannot be pickled is an error."""
     try:
         work, task = pickle.loads(payload)
     except Exception as error:
@@ -52,7 +53,7 @@ def execute_remotely(payload: bytes, say: Say) -> bytes:
     outcome: Any = execute(work, task, say)
     try:
         packed: bytes = cloudpickle.dumps(outcome)
-        # Exceptions with arguments of their own often pickle but do not unpickle.
+        # Exceptions with their own arguments can often be pickled but not unpickled.
         pickle.loads(packed)
     except Exception as error:
         if isinstance(outcome, Exception):

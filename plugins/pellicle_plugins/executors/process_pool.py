@@ -19,13 +19,13 @@ _THREAD_VARIABLES = (
     "BLIS_NUM_THREADS",
     "VECLIB_MAXIMUM_THREADS",
 )
-"""Variables that limit the threads of linear algebra, read when its library is loaded."""
+"""Environment variables with a number of threads, read by linear algebra libraries on loading."""
 _WORKER_MEMORY = 150_000_000
-"""Memory of a worker with pellicle and its libraries loaded, without its task [bytes]."""
+"""Memory of a worker that has loaded pellicle and its libraries, without a task [bytes]."""
 
 
 class ProcessPool(Generic[AnyTask]):
-    """Workers that share tasks; no more tasks run at once than fit into memory.
+    """Workers that share tasks; only as many tasks run at once as fit into memory.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class ProcessPool(Generic[AnyTask]):
         self._idle: list[Worker] = []
         self._running: dict[Connection[Any, Any], tuple[Worker, AnyTask]] = {}
         self._free_memory: float | None = None
-        """Memory available when no task was running [bytes]; None where it is unknown."""
+        """Memory available when no task was running [bytes]; None if unknown."""
 
     def __enter__(self) -> Self:
         return self
@@ -90,7 +90,7 @@ class ProcessPool(Generic[AnyTask]):
     def receive(self, report: Report[AnyTask]) -> list[tuple[AnyTask, Any]]:
         """Wait for messages of the workers; return the tasks that have finished."""
         finished: list[tuple[AnyTask, Any]] = []
-        # wait() without connections would return at once.
+        # Without connections, wait() would return at once.
         for connection in wait(list(self._running)) if self._running else []:
             assert isinstance(connection, Connection)
             worker, task = self._running[connection]
@@ -114,8 +114,8 @@ class ProcessPool(Generic[AnyTask]):
     def _fits(self, task: AnyTask, available: float | None) -> bool:
         """Whether a task fits into the available memory, and beside the running tasks.
 
-        Running tasks have allocated an unknown part of their estimated memory already, so their
-        sum is compared with the memory that was available when none was running.
+        Running tasks have already allocated an unknown part of their estimated memory, so the sum
+        of the estimates is compared with the memory available when no task was running.
         """
         if available is None or self._free_memory is None:
             return True

@@ -23,15 +23,15 @@ from pellicle.components import (
 class Processes(Executor):
     """Several runs at once on this machine, as many as there are cores and memory for.
 
-    A run starts when its estimated memory is free, so that large ones wait for each other; one that
-    does not fit even alone fails and says so. A worker that dies loses its own run only. Ctrl-C
-    ends all workers.
+    A run starts when its estimated memory is free, so large runs wait for each other; a run that
+    does not fit even alone fails. If a worker dies, only its own run is lost. Ctrl-C ends all
+    workers.
     """
 
     type: Literal["processes"] = "processes"
     workers: Annotated[
         Workers | None,
-        Field(description="processes; as many as fill the cores that we may use if absent"),
+        Field(description="number of processes; if absent, enough to use all available cores"),
     ] = None
     threads: Annotated[
         Threads, Field(description="threads of each run's Fourier transforms and linear algebra")

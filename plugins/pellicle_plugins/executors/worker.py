@@ -1,4 +1,4 @@
-"""A process that executes one task after the other for its parent, and ends with it."""
+"""A process that executes tasks one by one for its parent process, and ends with it."""
 
 from __future__ import annotations
 
@@ -25,12 +25,11 @@ _MESSAGE, _OUTCOME = b"m", b"o"
 
 
 class Worker:
-    """The parent's side of a process.
+    """A worker process, as its parent sees it.
 
-    loky starts it as a new process, not as a copy of one that may have threads, and without
-    importing the parent's ``__main__``, so that neither a script without
-    ``if __name__ == "__main__"`` nor a notebook runs again. What they define is sent by value, with
-    cloudpickle.
+    loky starts a new process instead of forking one that may have threads. It does not import the
+    parent's ``__main__``, so neither a script without ``if __name__ == "__main__"`` nor a notebook
+    is run again. cloudpickle sends their definitions by value.
     """
 
     def __init__(self, environment: Mapping[str, str]) -> None:
@@ -43,14 +42,14 @@ class Worker:
 
     def start(self, payload: bytes) -> None:
         """Send a packed task."""
-        # If the worker has died in the meantime, `receive` returns that as the outcome.
+        # If the worker has died in the meantime, `receive` returns its death as the outcome.
         with suppress(OSError):
             self.connection.send_bytes(payload)
 
     def receive(self) -> tuple[bool, Any]:
         """Return True and the outcome of the task, or False and a message of its work.
 
-        To be called when `connection` is ready. The death of the worker is an outcome too.
+        Call this when `connection` is ready. The death of the worker is an outcome too.
         """
         try:
             message = self.connection.recv_bytes()
@@ -66,7 +65,7 @@ class Worker:
         return bool(self._process.is_alive())
 
     def end(self) -> None:
-        """End the process, whatever it is doing, and wait until it is gone."""
+        """Terminate the process and wait for its end."""
         self.connection.close()
         self._process.terminate()
         self._process.join()
@@ -81,7 +80,7 @@ def _cause(code: int) -> str:
 
 @contextmanager
 def _interrupts_blocked() -> Iterator[None]:
-    """Block Ctrl-C here meanwhile, and for good in a process that starts meanwhile."""
+    """Block Ctrl-C within this context, and permanently in processes started within it."""
     if sys.platform == "win32":
         yield
         return
@@ -93,7 +92,7 @@ def _interrupts_blocked() -> Iterator[None]:
 
 
 def _serve(connection: Connection[Any, Any]) -> None:
-    """Execute tasks until the parent ends this process, or ends itself."""
+    """Execute tasks until the parent terminates this process or dies."""
     # A terminal sends Ctrl-C to workers too, but the parent decides when they end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     payloads: SimpleQueue[bytes] = SimpleQueue()
@@ -107,7 +106,7 @@ def _serve(connection: Connection[Any, Any]) -> None:
 
 
 def _listen(connection: Connection[Any, Any], payloads: SimpleQueue[bytes]) -> None:
-    """Receive tasks; when the parent is gone, even by SIGKILL, exit at once."""
+    """Receive tasks; exit at once when the parent has died, even by SIGKILL."""
     try:
         while True:
             payloads.put(connection.recv_bytes())

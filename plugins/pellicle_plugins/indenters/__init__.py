@@ -1,1 +1,1 @@
-"""Indenters: the rigid bodies that are pressed in."""
+"""Indenters, the rigid bodies pressed into the surface."""

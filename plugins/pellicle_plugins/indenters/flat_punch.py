@@ -18,7 +18,7 @@ from .axisymmetric import Axisymmetric
 
 
 class FlatPunch(Axisymmetric):
-    """Flat-ended circular cylinder; a cell belongs to it if its centre does."""
+    """Flat-ended circular cylinder of the cells whose centres lie under it."""
 
     type: Literal["flat_punch"] = "flat_punch"
     radius: Annotated[Length, Field(description="radius of the flat end [m]")]

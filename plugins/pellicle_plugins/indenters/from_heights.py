@@ -12,19 +12,19 @@ from pellicle.errors import ConfigError
 
 
 class FromHeights(Indenter):
-    """Rough punch given by heights; peaks touch first, it ends at the edge of the domain."""
+    """Rough punch given by heights, whose peaks touch first; it ends at the edge of the domain."""
 
     footprint: ClassVar[Footprint] = "domain"
 
     sha256: Annotated[
         str | None,
-        Field(description="hash of what was read; checked if given"),
+        Field(description="hash of the file or array; verified if given"),
     ] = None
     _heights: Array = PrivateAttr()
     _digest: str = PrivateAttr()
 
     def _keep(self, heights: Array, digest: str) -> None:
-        """Keep the heights, and the hash of the file or array that they were read from."""
+        """Store the heights, and the hash of the file or array from which they were read."""
         if self.sha256 not in (None, digest):
             raise ConfigError(
                 f"{self.sha256} is not the hash {digest} of the heights: they have changed; remove "

@@ -27,10 +27,10 @@ _BYTES = 10
 
 
 class Heights(FromHeights):
-    """Rough punch given by its heights at the cell centres; peaks touch first, it ends at the edge.
+    """Rough punch given by heights at the cell centres; its peaks touch first.
 
-    From the library, ``values`` takes an array instead of a file; the configuration then records
-    its content hash only, that of the heights as float64 in C order.
+    It ends at the edge of the domain. In Python, ``values`` takes an array instead of a file; the
+    configuration then records only its hash, that of the heights as float64 in C order.
     """
 
     type: Literal["heights"] = "heights"
@@ -44,7 +44,7 @@ class Heights(FromHeights):
     dataset: Annotated[
         str | None, Field(description="name of the array in an HDF5 file that holds several")
     ] = None
-    # An array is replaced by its checked copy, which nobody else can change.
+    # An array is replaced by its checked copy, which the caller cannot change.
     values: Annotated[
         Any,
         AfterValidator(lambda raw: None if raw is None else _checked(raw, "the array", "")),
@@ -110,8 +110,8 @@ def _load_npy(path: Path, dataset: str | None) -> Any:
         if not any(word in str(error) for word in ("pickle", "magic", "Python objects")):
             raise
         raise ConfigError(
-            f"{path} is pickled or no .npy file, and a pickle can run any code; save a plain array "
-            "with numpy.save(…, allow_pickle=False)",
+            f"{path} is pickled or not an .npy file, and a pickle can run any code; save a plain "
+            "array with numpy.save(…, allow_pickle=False)",
             "path",
         ) from None
 
@@ -172,7 +172,7 @@ def _require_shape(
 
 
 def _require_kind(raw: Any, name: str, field: str) -> None:
-    """Refuse what is not a two-dimensional array of real numbers."""
+    """Refuse anything but a two-dimensional array of real numbers."""
     given = raw if hasattr(raw, "dtype") and hasattr(raw, "shape") else np.asarray(raw)
     # An HDF5 dataset may have no shape at all.
     kind, shape = given.dtype.kind, tuple(given.shape or ())

@@ -26,7 +26,7 @@ class Paraboloid(Axisymmetric):
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return −(x² + y²)/2R [m]."""
-        # Twice the largest double would be infinite, and the paraboloid flat.
+        # 2R of the largest double would be infinite and the paraboloid flat.
         return -(x**2 + y**2) / 2 / self.radius
 
     contact_radius_limit: ClassVar[float] = inf

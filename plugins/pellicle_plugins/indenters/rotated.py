@@ -17,7 +17,7 @@ from .transformed import RigidMotion, profile_of
 
 
 class Rotated(RigidMotion):
-    """Another indenter turned about the vertical through the centre of the domain."""
+    """Another indenter rotated about the vertical through the centre of the domain."""
 
     type: Literal["rotated"] = "rotated"
     angle: Annotated[

@@ -25,7 +25,7 @@ class Scaled(Transformed):
     ]
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return factor · f [m], and −inf where the indenter does not exist."""
+        """Return factor · f [m], or −inf where f is −inf."""
         profile = profile_of(self.part, x, y, "part")
         # −inf · 0 would be NaN.
         return np.multiply(profile, self.factor, out=profile.copy(), where=np.isfinite(profile))

@@ -20,11 +20,11 @@ from pellicle.units import Length, Quantity
 from .sampling import UniformAxis
 
 _ROUNDING = 1e-9
-"""Relative margin of the wavelength limits: a wave that fits the domain exactly must count."""
+"""Relative margin of the wavelength limits, which includes waves that fit the domain exactly."""
 
 
 class SelfAffine(Indenter):
-    """Self-affine rough punch with random phases; it ends where the domain does.
+    """Self-affine rough punch with random phases; it ends at the edge of the domain.
 
     The heights are a Fourier series fixed by the seed and the spectrum alone, so a finer grid
     samples the same surface: C(q) = C₀ q^{−2(H+1)} for q₀ ≤ q ≤ q_s and 0 elsewhere (Yuan & Wang
@@ -135,8 +135,8 @@ def _maximum(series: _Series, x: UniformAxis, y: UniformAxis) -> float:
     With the maximum of the samples the depth of first touch would depend on the grid.
     """
     shortest = max(int(np.abs(series.m).max()), int(series.n.max()), 1)
-    # At least eight samples per shortest wavelength. Shifted copies of the grid, one after the
-    # other, take the memory of one grid, all samples at once would take 16 times as much.
+    # At least eight samples per shortest wavelength, on shifted copies of the grid one after the
+    # other: these take the memory of one grid, all samples at once would take 16 times as much.
     copies = [max(1, ceil(8 * shortest / axis.number)) for axis in (x, y)]
     tops: list[tuple[float, float, float]] = []
     for i, j in np.ndindex(*copies):

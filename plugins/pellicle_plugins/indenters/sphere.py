@@ -18,7 +18,7 @@ from .axisymmetric import Axisymmetric
 
 
 class Sphere(Axisymmetric):
-    """Sphere with its exact profile, not the paraboloid's; nothing beyond its equator."""
+    """Sphere with its exact profile up to its equator."""
 
     type: Literal["sphere"] = "sphere"
     radius: Annotated[Length, Field(description="radius R [m]")]
@@ -37,7 +37,7 @@ class Sphere(Axisymmetric):
 
     @property
     def depth_limit(self) -> float:
-        """R, the equator [m]."""
+        """Depth R at which the equator is reached [m]."""
         return self.radius
 
     pointed: ClassVar[bool] = False

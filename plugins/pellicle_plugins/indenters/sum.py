@@ -21,8 +21,8 @@ from .transformed import profile_of
 class Sum(Indenter):
     """Heights of several indenters added, such as roughness on a sphere.
 
-    It ends with the domain if any of its parts does. Depth counts from the lowest point of the
-    sum, not from those of its parts.
+    It ends at the edge of the domain if any of its parts does. Depth is measured from the lowest
+    point of the sum, not of its parts.
     """
 
     type: Literal["sum"] = "sum"
@@ -62,7 +62,7 @@ class Sum(Indenter):
         at = np.unravel_index(np.argmax(total), shape)
         top = float(total[at])
         if not np.isfinite(top):
-            raise ConfigError("are nowhere there together; shift them so that they meet", "parts")
+            raise ConfigError("do not overlap anywhere; shift them so that they do", "parts")
         hidden += self._summit(x, y, smooth) - float(smooth.max())
         # Rounding may leave the lowest point slightly above 0.
         return np.minimum(total - (top + hidden), 0.0)

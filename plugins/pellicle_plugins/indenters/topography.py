@@ -31,14 +31,14 @@ _LEVELS: tuple[_Level, ...] = get_args(_Level)
 _PER_FILLED = 900
 """Peak memory per missing point that is filled in [bytes], for 10 to 30 % of 2000² points."""
 _LARGE, _STEEP = 0.1, 1.0
-"""Size [m] and rms slope above which a wrong unit is likelier than such a surface."""
+"""Size [m] and rms slope above which a wrong unit is more likely than such a surface."""
 
 
 class Topography(FromHeights):
-    """Rough punch as a microscope or profilometer measured it, in the file's own unit and size.
+    """Rough punch measured by a microscope or profilometer, in the unit and size of its file.
 
-    The domain lies on the scan, at its middle or about ``centre``, and may be smaller than it; what
-    lies under the domain is filled, levelled and interpolated to the cells.
+    The domain lies within the scan, at its middle or about ``centre``; the part of the scan under
+    the domain is filled, levelled and interpolated to the cells.
     Reading needs the extra ``topography``.
     """
 
@@ -57,7 +57,7 @@ class Topography(FromHeights):
         tuple[Length, Length] | None,
         BeforeValidator(pair, json_schema_input_type=Length | tuple[Length, Length] | None),
         Field(
-            description="edge length of the scan [m], where the file does not say it: one, or two "
+            description="edge length of the scan [m], if the file does not state it: one, or two "
             "as [along x, along y]"
         ),
     ] = None
@@ -71,8 +71,8 @@ class Topography(FromHeights):
     level: Annotated[
         _Level,
         Field(
-            description="what is taken away by least squares: a mean height, which changes nothing "
-            "as only differences count, a plane or a paraboloid"
+            description="shape subtracted by least squares: the mean height, which has no effect "
+            "since only differences matter, a plane or a paraboloid"
         ),
     ] = "tilt"
     fill: Annotated[
@@ -104,23 +104,23 @@ class Topography(FromHeights):
 
     def _warn_of_unit(self, scan: Scan) -> None:
         """Warn of a size or slopes that suggest a wrong unit."""
-        doubts = []
+        reasons = []
         if max(scan.size) > _LARGE:
-            doubts.append(f"is of {scan.size[0]:g} × {scan.size[1]:g} m")
+            reasons.append(f"measures {scan.size[0]:g} × {scan.size[1]:g} m")
         slope = max(
             _rms(np.diff(scan.heights, axis=axis)) / (edge / n)
             for axis, (edge, n) in enumerate(zip(scan.size, scan.heights.shape, strict=True))
         )
         if slope > _STEEP:
-            doubts.append(f"has an rms slope of {slope:.3g}")
-        if doubts:
+            reasons.append(f"has an rms slope of {slope:.3g}")
+        if reasons:
             remedy = (
                 "export it again with the units of its sides and of its heights"
                 if self.unit is None and self.size is None
                 else "correct unit or size"
             )
             warnings.warn(
-                f"{self.path} {' and '.join(doubts)}: a unit may be wrong; if so, {remedy}",
+                f"{self.path} {' and '.join(reasons)}: a unit may be wrong; if so, {remedy}",
                 stacklevel=2,
             )
 
@@ -168,7 +168,7 @@ class Topography(FromHeights):
         """Return the points of the scan under the domain along one axis."""
         low = axis.first - axis.spacing / 2 + self._middle[which]
         high = low + axis.period
-        # Instruments count the size of a scan with or without its last point.
+        # The size that an instrument states may or may not include the last point.
         if low < -0.51 * pitch or high > self._size[which] + 0.51 * pitch:
             name, centre = "xy"[which], self._middle[which]
             room = 2 * min(centre, self._size[which] - centre)

@@ -26,7 +26,7 @@ _POINTS_PER_BYTE = 1032
 _POSITION_TOLERANCE = 0.05
 """Allowed rounding of the positions of regular points, relative to their spacing."""
 _SIZE_TOLERANCE = 0.02
-"""Allowed difference of the sizes in the header and by the coordinates, relative."""
+"""Allowed relative difference between the size in the header and that of the coordinates."""
 
 
 class Scan(NamedTuple):
@@ -88,7 +88,7 @@ def _read(
         file = path.open("rb")
     except OSError as error:
         raise ConfigError(f"{path}: {error.strerror}; give the file of a scan", "path") from None
-    # Readers warn of what we cannot change, and raise any exception for a damaged file.
+    # Readers give warnings that the user cannot act on, and raise any exception for a damaged file.
     with file, warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         warnings.simplefilter("error", np.exceptions.ComplexWarning)
@@ -128,7 +128,7 @@ def _read(
             raise
         except io.CannotDetectFileFormat:
             raise ConfigError(
-                f"{path} is of no format that can be read, or damaged; give one of "
+                f"{path} is damaged or in an unknown format; give one of "
                 f"{', '.join(sorted(reader.format() for reader in io.readers))}, or plain "
                 "numbers as type = 'heights'",
                 "path",
@@ -151,11 +151,11 @@ def library() -> ModuleType:
     Raises
     ------
     ConfigError
-        It is not installed.
+        The package is not installed.
     """
     try:
         with warnings.catch_warnings():
-            # It warns that there is no MPI, which we do not use.
+            # It warns that MPI is missing, which pellicle does not use.
             warnings.simplefilter("ignore", ImportWarning)
             import SurfaceTopography.IO
     except ImportError as error:
@@ -168,7 +168,7 @@ def library() -> ModuleType:
 
 
 def _channel(reader: Any, path: Path, name: str | None) -> Any:
-    """Return the data set of that name, or the default; it must be heights on a regular grid."""
+    """Return the named data set or the default; refuse all but heights on a regular grid."""
     channels = {channel.name: channel for channel in reader.channels}
     heights = ", ".join(repr(channel.name) for channel in reader.height_channels) or "none"
     if name is not None and name not in channels:
@@ -213,7 +213,7 @@ def _on_grid(columns: Array, size: tuple[float, float], path: Path) -> Array:
     Raises
     ------
     ConfigError
-        They are not on a regular grid, or its edges differ from ``size``, stated in the file.
+        The points are not on a regular grid, or its edges differ from ``size``, stated in the file.
     """
     *positions, heights = columns
     rows, extents = [], []
@@ -231,7 +231,7 @@ def _on_grid(columns: Array, size: tuple[float, float], path: Path) -> Array:
     cell = rows[0] * shape[1] + rows[1]
     if heights.size != shape[0] * shape[1] or (np.bincount(cell) != 1).any():
         raise _irregular(path)
-    # Coordinates and size may be in different units, and the size with or without the last pitch.
+    # Coordinates and size may have different units; the size may lack the last pitch.
     ratios = [
         {edge / extent, edge / (extent * (n - 1) / n)}
         for edge, extent, n in zip(size, extents, shape, strict=True)
@@ -252,7 +252,7 @@ def _scale(channel: Any, path: Path, unit: float | None) -> float:
     if channel.unit is None:
         if unit is None:
             raise ConfigError(
-                f"is missing, and {path} does not say in which unit its heights are; give the "
+                f"is missing, and {path} does not state the unit of its heights; give the "
                 "length that 1 stands for: '1 um'",
                 "unit",
             )
@@ -269,12 +269,12 @@ def _size(
     channel: Any, path: Path, scale: float, size: tuple[float, float] | None
 ) -> tuple[float, float]:
     stated = channel.physical_sizes
-    # Programs without knowledge of the size write 0.
+    # Programs that do not know the size write 0.
     if stated is None or not all(0 < edge < inf for edge in stated):
         if size is None:
             raise ConfigError(
-                f"is missing, and {path} does not say it; give the edge lengths of the scan, such "
-                "as ['80 um', '60 um']",
+                f"is missing, and {path} does not state it; give the edge lengths of the scan, "
+                "such as ['80 um', '60 um']",
                 "size",
             )
         return size
@@ -290,7 +290,7 @@ def require_content(points: int, path: Path) -> None:
     Raises
     ------
     ConfigError
-        They cannot; the error is in ``path``.
+        They cannot; the error names the field ``path``.
     """
     length = path.stat().st_size
     if points > _POINTS_PER_BYTE * length:
@@ -307,7 +307,7 @@ def require_memory(needed: float, subject: str, remedy: str, field: str) -> None
     Raises
     ------
     ConfigError
-        It does not; the error is in ``field``.
+        It does not; the error names the field ``field``.
     """
     available = memory.available()
     if available is not None and needed > available:

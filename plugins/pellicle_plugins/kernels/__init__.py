@@ -1,1 +1,1 @@
-"""Kernels: how the surface yields to pressure."""
+"""Kernels, which give the displacement of the surface under pressure."""

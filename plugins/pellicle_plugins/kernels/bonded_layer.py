@@ -20,11 +20,11 @@ _COEFFICIENTS: Final = [6 / factorial(2 * k + 3) for k in range(12)]
 
 
 class BondedLayer(ElasticLayer):
-    """Elastic layer that sticks to a rigid base (Hayes et al. 1972).
+    """Elastic layer bonded to a rigid base (Hayes et al. 1972).
 
-    A layer much thicker than the contact is a half-space. A thin compressible one is a bed of
-    springs, p = M u/h. A thin incompressible one can only flow sideways, G = (h³/3μ) q², and is
-    stiffer the longer the wave.
+    A layer much thicker than the contact acts as a half-space, a thin compressible one as a bed of
+    springs, p = M u/h. A thin incompressible layer can only flow sideways, G = (h³/3μ) q², and is
+    the stiffer the longer the wave.
     """
 
     type: Literal["bonded_layer"] = "bonded_layer"

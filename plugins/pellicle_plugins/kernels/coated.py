@@ -34,7 +34,7 @@ class Coated(Skin):
         return substrate / (1 + substrate * self.skin_stiffness(q))
 
     def mean_compliance(self) -> float:
-        """Return that of the substrate [m/Pa]: a uniform displacement does not bend the skin."""
+        """Return G(0) of the substrate [m/Pa]: a uniform displacement does not bend the skin."""
         return mean_compliance(self.substrate)
 
 

@@ -1,4 +1,4 @@
-"""The modulus fields of kernels whose compliance depends on E* and on ν."""
+"""The elastic constants of kernels whose compliance depends on E* and on ν."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The fields of kernels of an elastic layer on a rigid base."""
+"""The fields of kernels for an elastic layer on a rigid base."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pellicle.units import Length
 
 from .elastic_constants import IsotropicSolid
 
-# Value of 2qh at which e^{−2qh} is below double precision, and the layer a half-space.
+# Value of 2qh above which e^{−2qh} is below double precision and the layer acts as a half-space.
 _DEEP = 100.0
 
 
@@ -31,5 +31,5 @@ class ElasticLayer(IsotropicSolid):
         return self.thickness * (1 - 2 * nu) / (self.contact_modulus * (1 - nu) ** 2)
 
     def _twice_depth(self, q: Array) -> Array:
-        """Return 2qh, limited to where the compliance no longer changes, before exp underflows."""
+        """Return 2qh, limited to `_DEEP` so that exp does not underflow."""
         return np.minimum(2 * self.thickness * q, _DEEP)

@@ -21,7 +21,8 @@ class GurtinMurdoch(Skin, IsotropicSolid):
 
     The surface has a residual tension τ₀ and a stiffness κ_s = λ_s + 2μ_s against in-plane strain.
     Pressure also displaces the surface of a compressible solid sideways, which the surface
-    stiffness hinders. For ν = ½, where it does not, and for κ_s = 0 this is `tensed_membrane`.
+    stiffness hinders. For ν = ½, without sideways displacement, and for κ_s = 0 this is
+    `tensed_membrane`.
     """
 
     type: Literal["gurtin_murdoch"] = "gurtin_murdoch"

@@ -1,4 +1,4 @@
-"""The modulus fields of kernels whose compliance depends on E* alone."""
+"""The elastic constants of kernels whose compliance depends on E* alone."""
 
 from __future__ import annotations
 

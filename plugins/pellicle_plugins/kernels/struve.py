@@ -1,7 +1,7 @@
 """The Struve-minus-Bessel functions of a tensed membrane, fast and to near machine precision.
 
 scipy's ``struve(0, z) - y0(z)`` cancels: its relative error is 1e-12 at z = 10³, 6e-11 at 10⁴ and
-1.6e-8 at 10⁶, where this has 2e-15, and it takes a hundred times as long (for z from 10⁻³ to 10⁶).
+1.6e-8 at 10⁶, against 2e-15 here, and it takes a hundred times as long (z from 10⁻³ to 10⁶).
 
 All arguments and values are dimensionless.  Two regimes meet at z = 4:
 

@@ -1,1 +1,1 @@
-"""What load steps prescribe."""
+"""Prescriptions of load steps."""

@@ -27,11 +27,11 @@ class BaseDisplacement(Prescription):
     spring_constant: Annotated[
         float,
         Quantity("N/m", above=0),
-        Field(description="spring constant k of what holds the indenter [N/m]"),
+        Field(description="spring constant k of the spring that holds the indenter [N/m]"),
     ]
 
     def target(self, setting: Setting, value: float) -> Depth:
-        """Return the depth less the deflection of the spring."""
+        """Return depth control with a spring between base and indenter."""
         return Depth(value, 1 / self.spring_constant)
 
     def report(self, setting: Setting, step: Equilibrium) -> dict[str, float]:

@@ -21,7 +21,7 @@ RESIDUAL = Variable(
 
 
 class ContactArea(Prescription):
-    """Area of the cells in contact [m²], met to the nearest whole cells."""
+    """Area of the cells in contact [m²], attained to the nearest whole number of cells."""
 
     type: Literal["contact_area"] = "contact_area"
     unit: ClassVar[str] = "m**2"
@@ -34,12 +34,12 @@ class ContactArea(Prescription):
             raise ConfigError(f"{in_unit(value, self.unit)} is {problem}")
 
     def target(self, setting: Setting, value: float) -> Force | Search:
-        """Return the search for as many cells; no force without any."""
+        """Return a search for the force with this contact area; no force for an area of 0."""
         return area_search(setting, value)
 
 
 def unreachable(setting: Setting, area: float) -> str:
-    """Return why the indenter cannot have a contact area [m²] on this grid; empty if it can."""
+    """Return the reason why a contact area [m²] is impossible on this grid; empty if possible."""
     cell, profile = setting.grid.cell_area, setting.profile
     covered = int(np.count_nonzero(np.isfinite(profile)))
     first = int(np.count_nonzero(profile == profile.max()))
@@ -60,7 +60,7 @@ def unreachable(setting: Setting, area: float) -> str:
 
 
 def area_search(setting: Setting, area: float) -> Force | Search:
-    """Return the search for a contact area [m²]; it starts near the force of the step before."""
+    """Return the search for a contact area [m²], starting near the force of the last step."""
     if not area > 0:
         return Force(0.0)
     cell, state = setting.grid.cell_area, setting.state
@@ -70,13 +70,13 @@ def area_search(setting: Setting, area: float) -> Force | Search:
     else:
         heights = np.sort(setting.profile[np.isfinite(setting.profile)])[::-1]
         lowest = heights[min(math.ceil(area / cell + 0.5), heights.size - 1)]
-        # Slightly deeper: at the very height of a cell round-off decides whether it touches.
+        # Slightly deeper, because exactly at the height of a cell round-off decides its contact.
         guess = setting.force_at(-1.01 * float(lowest))
 
     def measure(step: Equilibrium) -> float:
         return float(np.count_nonzero(step.contact)) * cell
 
-    # A jump to 1e-4 of the force is the jump; half a cell is the nearest whole number of cells.
+    # A jump is located to 1e-4 of the force; half a cell means the nearest whole number of cells.
     return Search(
         goal=area,
         measure=measure,

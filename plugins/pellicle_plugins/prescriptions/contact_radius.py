@@ -16,7 +16,7 @@ from .contact_area import RESIDUAL, area_search, unreachable
 
 
 class ContactRadius(Prescription):
-    """Radius [m] of the circle of the same area as the cells in contact."""
+    """Radius of the circle with the area of the cells in contact [m]."""
 
     type: Literal["contact_radius"] = "contact_radius"
     unit: ClassVar[str] = "m"
@@ -29,7 +29,7 @@ class ContactRadius(Prescription):
             raise ConfigError(f"{value:g} m is {problem}")
 
     def target(self, setting: Setting, value: float) -> Force | Search:
-        """Return the search for the area of the circle."""
+        """Return the search for the force with the area of the circle."""
         return area_search(setting, np.pi * value**2)
 
 

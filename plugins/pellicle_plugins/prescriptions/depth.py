@@ -14,8 +14,8 @@ from pellicle.errors import ConfigError
 class IndenterDepth(Prescription):
     """Depth of the indenter's lowest point [m] below the undeformed surface; 0 at first touch.
 
-    It is measured from the mean plane of the surface on a periodic grid whose mean displacement is
-    0, as that of a half-space.
+    On a periodic grid whose mean displacement is 0, as for a half-space, it is measured from the
+    mean plane of the surface.
     """
 
     type: Literal["depth"] = "depth"
@@ -37,7 +37,7 @@ def refuse_beyond_full_contact(setting: Setting, depth: float, value: float) -> 
     Raises
     ------
     ConfigError
-        The depth is that of full contact or more, where the mean displacement is 0.
+        The mean displacement is 0, and the depth is that of full contact or more.
     """
     mean = setting.mean_height
     if depth >= -mean and not setting.operator.has_mean_compliance:

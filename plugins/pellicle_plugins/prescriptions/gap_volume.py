@@ -40,7 +40,7 @@ class GapVolume(Prescription):
             )
 
     def target(self, setting: Setting, value: float) -> Search:
-        """Return the search for the force that leaves the volume."""
+        """Return the search for the force with this volume of the gap."""
         return Search(
             -value,
             lambda step: -_volume(step),

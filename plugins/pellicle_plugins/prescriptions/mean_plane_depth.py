@@ -1,4 +1,4 @@
-"""The depth of a rough surface by its mean plane."""
+"""The depth of the mean plane of a rough surface."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class MeanPlaneDepth(Prescription):
         endless = setting.grid.boundary == "free" and setting.footprint == "unbounded"
         if endless or mean == -float("inf"):
             raise ConfigError(
-                "is not defined for an indenter that goes on beyond a free domain, or does not "
+                "is not defined for an indenter that extends beyond a free domain, or does not "
                 "fill its domain: it has no mean plane; prescribe depth",
                 "loading.mean_plane_depth",
             )

@@ -1,4 +1,4 @@
-"""Nested grids, a primal–dual active set, and a preconditioner that knows the contact's edge."""
+"""The primal–dual active set method on nested grids, with a preconditioner for the contact."""
 
 from __future__ import annotations
 
@@ -27,14 +27,15 @@ from .scaling import ScaledSolver
 _COARSE_TOLERANCE: Final = 1e-5
 # Grids of up to this many cells along the longer edge are not coarsened.
 _COARSEST: Final = 48
-# A start whose error exceeds this share of the height range costs more to correct, along the
-# contact edge, than a solve from the coarser grids.
+# A start is used if its error is at most this share of the height range; correcting a worse one
+# along the contact edge takes longer than solving on the coarser grids first.
 _CLOSE: Final = 0.05
 # Sign-certainty factors: the sign of a cell counts as final if its value exceeds this multiple of
 # its last change. The strict one applies after an outer iteration without progress.
 _SIGN_CERTAINTY: Final = 1.0
 _STRICT_SIGN_CERTAINTY: Final = 30.0
-# With bending stiffness, local relaxation follows once the gap has fallen to this share.
+# With bending stiffness, an inner solve ends for local relaxation when the gap has fallen to this
+# share.
 _REDUCTION: Final = 0.1
 # Cells of a prolonged contact with a gap above this share of the height range are released: on a
 # surface that is rough at the size of a cell they are pits, which the coarse grid cannot resolve.
@@ -61,7 +62,7 @@ class History:
     fewest: float = np.inf
     """Least number of misclassified cells."""
     returns: int = 0
-    """How often an earlier contact came back; `contacts` is then cleared."""
+    """Number of times that an earlier contact recurred; `contacts` is then cleared."""
 
     @property
     def makes_progress(self) -> bool:
@@ -69,7 +70,7 @@ class History:
         return len(self.contacts) <= 1 and self.returns == 0
 
     def after(self, contact: Mask, misclassified: int) -> History:
-        """Return the history after an inner solve with so many misclassified cells."""
+        """Return the history after an inner solve on a contact with its misclassified cells."""
         packed = np.packbits(contact).tobytes()
         if misclassified < self.fewest:
             return History(frozenset({packed}), misclassified)
@@ -93,7 +94,7 @@ class _Iterate:
     """max(|gap| under pressure, penetration) of ``trial`` [m]."""
     history: History
     progress: Progress
-    """Of the error over `scale` and of the least number of misclassified cells."""
+    """Progress of the error over `scale` and of the least number of misclassified cells."""
     may_relax: bool
     """False once local relaxation has led away from the solution."""
 
@@ -104,16 +105,16 @@ class _Iterate:
 
     @property
     def pressure(self) -> Array:
-        """``trial`` without its tensile part, with the prescribed force if there is one [Pa]."""
+        """``trial`` without its tensile part, scaled to the prescribed force if any [Pa]."""
         if self.trial.min() >= 0:
             return self.trial
         return with_force(self.problem, np.maximum(self.trial, 0))
 
 
 class ActiveSet(ScaledSolver):
-    """Solver whose operator applications hardly grow with the grid or with the tension.
+    """Solver whose number of operator applications hardly grows with the grid or the tension.
 
-    The contact is first solved for on coarser grids. In each outer iteration an inner solve finds
+    The contact is first computed on coarser grids. In each outer iteration an inner solve finds
     the pressure, of either sign, that closes the gap on the contact; cells with tensile pressure
     leave the contact and cells that penetrate join it (Hintermüller, Ito & Kunisch 2002), until no
     cell is misclassified. This differs from the textbook method in four points:
@@ -124,14 +125,14 @@ class ActiveSet(ScaledSolver):
        `OnContact.transferred`).
     3. With bending stiffness the state of one cell decides that of the next ones, and cells change
        sides together in a local relaxation (see `relaxed`).
-    4. When a contact comes back, one cell at a time changes sides (Murty 1974) until fewer are
+    4. When a contact recurs, one cell at a time changes sides (Murty 1974) until fewer cells are
        misclassified than ever before.
     """
 
     type: Literal["active_set"] = "active_set"
 
     def begin(self, problem: Problem, start: State | None) -> _Iterate:
-        """Return the iterate of the step before if it is close, or that of a coarser grid."""
+        """Return the iterate of the last step if it is close, else that of a coarser grid."""
         preconditioner = Preconditioner(problem.operator)
         if start is not None and start.contact.any():
             state = _iterate(problem, preconditioner.on(start.contact), start.pressure)
@@ -170,12 +171,12 @@ class ActiveSet(ScaledSolver):
                 after = _iterate(problem, on_contact, trial, history, state)
                 if after.error <= max(state.error, _DIVERGED * after.scale):
                     return after
-                # The same contact once more, to be solved further.
+                # The inner solve on the same contact is continued instead.
                 after = _iterate(problem, state.on_contact, inner.pressure, state.history, state)
                 return replace(after, may_relax=False)
         on_contact = _changed(problem, state, inner, history)
         trial = on_contact.transferred(inner.pressure)
-        # Frees two arrays while the next displacement is computed.
+        # This frees two arrays while the next displacement is computed.
         del inner
         return _iterate(problem, on_contact, trial, history, state)
 
@@ -188,10 +189,10 @@ class ActiveSet(ScaledSolver):
         return state.pressure
 
     def terminate(self, problem: Problem, state: _Iterate) -> Stop | None:
-        """Return whether neither the error nor the number of misclassified cells falls any more.
+        """Return `Stop.STALLED` if neither error nor number of misclassified cells falls any more.
 
-        Both count: a contact with a row of misclassified cells may have a larger error than one
-        that is wrong everywhere.
+        The error alone is not enough: a contact with one row of misclassified cells may have a
+        larger error than one that is wrong everywhere.
         """
         return Stop.STALLED if state.progress.stagnant >= _STAGNATION else None
 
@@ -206,7 +207,7 @@ class ActiveSet(ScaledSolver):
         goal = self.tolerance / 2
         pressure, displacement = np.zeros(problem.grid.shape), np.zeros(problem.grid.shape)
         error, before, iteration = 1.0, np.inf, 0
-        # Each solve leaves a gap that its single precision has no digits for.
+        # Each solve leaves a gap that single precision cannot resolve, so it is repeated.
         while goal < error < before / 2:
             monitor(iteration, error / self.tolerance)
             pressure = inner_solve(
@@ -218,7 +219,7 @@ class ActiveSet(ScaledSolver):
         return pressure * unit
 
     def _prolonged(self, problem: Problem) -> Array | None:
-        """Return the pressure [Pa] of the solution on a coarser grid, None if there is none."""
+        """Return the pressure [Pa] prolonged from a coarser grid, or None without a solution."""
         if max(problem.grid.shape) <= _COARSEST:
             return None
         try:
@@ -226,8 +227,8 @@ class ActiveSet(ScaledSolver):
         except ConfigError:
             # A thin incompressible layer is rigid under cells much wider than its thickness.
             return None
-        if not coarse.touches:
-            # The indenter touches with less than half of every coarse cell.
+        if not coarse.needs_solving:
+            # The indenter touches less than half of every coarse cell.
             coarse = replace(coarse, profile=highest(problem.profile, coarse.grid.shape))
         tolerance = max(self.tolerance, _COARSE_TOLERANCE)
         solver = self.model_copy(update={"tolerance": tolerance})
@@ -241,8 +242,8 @@ class ActiveSet(ScaledSolver):
 def _without_pits(problem: Problem, state: _Iterate) -> _Iterate:
     """Return the iterate of a prolonged pressure without the cells that are pits.
 
-    Where heights change from cell to cell, the contact of a coarser grid covers pits as well. A
-    prescribed force may be large enough for them to touch.
+    If heights vary from cell to cell, the contact of a coarser grid covers pits too. Under force
+    control they are kept, since the force may be large enough to close them.
     """
     if problem.prescribed == "force":
         return state
@@ -259,7 +260,7 @@ def _without_pits(problem: Problem, state: _Iterate) -> _Iterate:
 def _changed(
     problem: Problem, state: _Iterate, inner: InnerSolution, history: History
 ) -> OnContact:
-    """Return the contact with the misclassified cells changed, only one of them in a cycle."""
+    """Return the contact after changing the misclassified cells, or one of them in a cycle."""
     contact, cells = state.on_contact.contact, inner.misclassified
     if history.returns > (1 if state.bends else 0):
         cells = cells[:1]
@@ -280,7 +281,7 @@ def _iterate(
     history: History | None = None,
     before: _Iterate | None = None,
 ) -> _Iterate:
-    """Return the iterate of a pressure [Pa], scaled to the prescribed force if there is one."""
+    """Return the iterate of a pressure [Pa], scaled to the prescribed force if any."""
     history = history or History()
     trial = with_force(problem, trial)
     displacement = problem.operator(trial)

@@ -13,14 +13,14 @@ Field = NDArray[np.float32]
 
 
 class Stiffness:
-    """K: multiplies by the stiffness k(q) = 1/G(q) over its greatest value, in single precision.
+    """K, the multiplication by k(q) = 1/G(q) over its greatest value, in single precision.
 
     Parameters
     ----------
     operator
-        Gives the kernel and the spacing of the cells.
+        Operator with the kernel and the spacing of the cells.
     shape
-        Cells of the periodic plane.
+        Number of cells of the periodic plane along x and y.
     """
 
     def __init__(self, operator: Operator, shape: tuple[int, int]) -> None:
@@ -37,7 +37,7 @@ class Stiffness:
         self._symbol = np.asarray(stiffness / self.greatest, dtype=np.float32)
 
     def __call__(self, field: Field) -> Field:
-        """Return K applied to a field of `shape`; times `greatest` it is a pressure [Pa]."""
+        """Return K applied to a field; for a field in m the pressure is `greatest` times this."""
         transform = scipy.fft.rfft2(field)
         transform *= self._symbol
         force = scipy.fft.irfft2(transform, s=self.shape, overwrite_x=True)

@@ -1,4 +1,4 @@
-"""The published method: projected conjugate gradients."""
+"""Projected conjugate gradients, the published method."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .scaling import ScaledSolver
 
 # Contact is added only where the penetration is at least this share of the error inside.
 _PROPORTION: Final = 0.3
-# Stands for −inf, whose product with 0 is not a number.
+# Replaces −inf, whose product with 0 is NaN.
 _NO_INDENTER: Final = -1e200
 
 
@@ -31,16 +31,16 @@ class _Iterate:
     profile: Array
     pressure: Array
     displacement: Array
-    """A p [m], by recurrence or applied afresh."""
+    """A p [m], by recurrence or by an application of the operator."""
     contact: Mask
     direction: Array
     gap: Array
-    """Under force control its mean over the contact is 0."""
+    """Gap [m]; under force control its mean over the contact is 0."""
     inner_gap: Array
     """The gap in contact, 0 elsewhere."""
     scratch: Array
     energy: float = 0.0
-    """Σ gap² over the contact at the last step; 0 restarts with steepest descent."""
+    """Σ gap² over the contact at the last step [m²]; 0 restarts with steepest descent."""
     scale: float = 1.0
     """Height range of the indenter in contact [m]."""
     inside: float = 0.0
@@ -76,16 +76,16 @@ class ConjugateGradient(ScaledSolver):
     This differs from the papers in three points:
 
     1. The displacement is updated by the recurrence u ← u − τ A t. The operator is applied afresh
-       only where pressure was clipped or contact was added, and before the end.
+       only after pressure was clipped or contact was added, and before the end.
     2. The iteration ends by the residuals that a run reports, not by the change of the pressure.
-    3. Contact is added only when the penetration is no longer small against the error inside. Under
+    3. Contact is added only when the penetration is not small compared with the error inside. Under
        high tension, cells at the edge would otherwise change sides for ever.
     """
 
     type: Literal["conjugate_gradient"] = "conjugate_gradient"
 
     def begin(self, problem: Problem, start: State | None) -> _Iterate:
-        """Return the iterate of the pressure of the step before, or of a first guess."""
+        """Return the iterate of the pressure of the last step, or of an initial guess."""
         if start is not None and start.contact.any():
             pressure = np.array(with_force(problem, start.pressure))
         else:
@@ -118,7 +118,7 @@ class ConjugateGradient(ScaledSolver):
         """Return the iterate after one projected step along the conjugate direction."""
         pressure, direction = state.pressure, state.direction
         energy = dot(state.inner_gap, state.inner_gap)
-        # Cells that left the contact have no direction, even where the search restarts.
+        # Cells that left the contact have no search direction, even after a restart.
         direction *= state.contact
         direction *= energy / state.energy if state.energy else 0.0
         direction += state.inner_gap
@@ -149,7 +149,7 @@ class ConjugateGradient(ScaledSolver):
         displacement *= factor
         state = state.opened(problem)
         if self.residual(problem, state) <= self.tolerance:
-            # The recurrence accumulates round-off; only a fresh displacement may end the iteration.
+            # The recurrence accumulates round-off, so the operator is applied before the end.
             state = replace(state, displacement=problem.operator(pressure)).opened(problem)
         return state
 
@@ -163,7 +163,7 @@ def _step_length(problem: Problem, state: _Iterate, change: Array) -> float:
         curvature -= float(state.direction.sum()) * mean
     if curvature > 0:
         return slope / curvature
-    # There is no contact yet, or one cell under a given force: the stiffness of a single cell.
+    # Without contact, or with one cell under a given force, the stiffness of a single cell is used.
     single = np.zeros(problem.grid.shape)
     lowest = np.unravel_index(int(problem.profile.argmax()), problem.grid.shape)
     single[lowest] = 1.0

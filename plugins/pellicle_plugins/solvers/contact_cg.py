@@ -1,4 +1,4 @@
-"""Conjugate gradients on a fixed contact: the pressure that closes the gap there."""
+"""Conjugate gradients for the pressure that closes the gap on a fixed contact."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .preconditioner import Cells, OnContact
 
 # A solve ends when the misclassified cells of uncertain sign are at most this share of the others.
 _UNCERTAIN: Final = 0.3
-# A single iteration does not tell by how much the next one may change a cell.
+# After a single iteration the change of the next one cannot be estimated.
 _MIN_ITERATIONS: Final = 2
-# No solve reduces the error by more than this: the operator is applied in single precision, which
-# has no more digits, and the next solve starts from a displacement in double precision.
+# Least ratio of errors after and before a solve: the operator is applied in single precision, which
+# has no more digits. The next solve starts from a displacement in double precision.
 _MAX_REDUCTION: Final = 1e-5
-# Iterations without a smaller error after which the rest is taken for round-off.
+# Iterations without a smaller error after which the remaining error counts as round-off.
 _STAGNATION: Final = 50
 
 
@@ -27,9 +27,9 @@ class InnerSolution(NamedTuple):
     """The result of an inner solve."""
 
     pressure: Array
-    """Of either sign [Pa]; 0 off the contact."""
+    """Pressure of either sign [Pa]; 0 off the contact."""
     displacement: Array
-    """Displacement [m]; its change has the digits of single precision."""
+    """Displacement [m]; its change is accurate to single precision."""
     error: float
     """max |gap| on the contact [m]."""
     misclassified: Cells
@@ -48,17 +48,17 @@ def inner_solve(
 ) -> InnerSolution:
     """Return the pressure that nearly closes the gap on a contact, and the misclassified cells.
 
-    Preconditioned conjugate gradients, under force control in the space of pressures of that
-    force. They end when the error is at ``goal`` [m] or has fallen to the share ``reduction``, or
-    when the signs of nearly all misclassified cells are certain: a value is certain if it exceeds
+    These are preconditioned conjugate gradients; under force control they keep the force. They end
+    when the error is at most ``goal`` [m] or has fallen to the share ``reduction``, or when the
+    signs of nearly all misclassified cells are certain: a sign is certain if the value exceeds
     ``certainty`` times its last change. With an infinite ``certainty`` the signs do not matter. All
-    vectors are on the cells of the contact but the displacement, which tells where else the
+    vectors are on the cells of the contact except the displacement, which shows where else the
     surface penetrates.
 
     The operator is applied in single precision, in less than half of the time; solving again for
     the remaining gap recovers all digits (iterative refinement; Wilkinson 1963). Under a skin with
-    bending stiffness it is applied in double precision: a gap that single precision does not
-    resolve corresponds to pressures above those whose signs are sought.
+    bending stiffness it is applied in double precision, because a gap that single precision does
+    not resolve corresponds to pressures larger than those whose signs are to be determined.
     """
     cells = preconditioner.cells
     if not cells.size:
@@ -119,7 +119,7 @@ def inner_solve(
                 misclassified = certain
                 break
             del last
-        # On a large contact each of these is as large as the grid.
+        # On a large contact each of these arrays is as large as the grid.
         del change, inside
         ascent = directions(residual)
         before, descent = descent, dot(residual, ascent)
@@ -127,7 +127,7 @@ def inner_solve(
         direction *= curvature / before * (descent / before)
         direction += ascent
         del ascent
-    # Room for the gap, which is computed next, and for the result.
+    # This frees memory for the gap, which is computed next, and for the result.
     del residual, direction, field
     if misclassified is None:
         margin = max(error, goal)
@@ -140,10 +140,11 @@ def inner_solve(
 class _Uniform:
     """The uniform pressure on a contact that nearly fills its period.
 
-    Where the mean displacement is zero, u = A·1 on the contact is −A·1 off it, which vanishes as
-    the cells off the contact do. So soft a direction is solved for exactly, and all others are kept
-    conjugate to it (deflation; Nicolaides 1987). Computed from the cells off the contact, u has all
-    its digits; computed from those on it, single precision would lose them in the difference.
+    If the mean displacement is 0, a uniform pressure on the contact has the displacement u = A·1_c
+    = −A·1_o, with 1_c and 1_o being 1 on and off the contact. It vanishes with the number of cells
+    off the contact. So this direction is solved for exactly, and all others are kept conjugate to
+    it (deflation; Nicolaides 1987). Computed from the cells off the contact, u has all its digits;
+    computed from those on it, single precision would lose them by cancellation.
     """
 
     def __init__(self, displacement: Array, cells: Cells) -> None:
@@ -155,7 +156,10 @@ class _Uniform:
 
     @classmethod
     def of(cls, problem: Problem, cells: Cells) -> _Uniform | None:
-        """Return it under depth control, for a contact of more than half but not all cells."""
+        """Return the uniform pressure under depth control on a contact of most cells, else None.
+
+        The contact has to cover more than half of the cells, but not all.
+        """
         off = problem.profile.size - cells.size
         if (
             problem.prescribed == "force"
@@ -173,7 +177,7 @@ class _Uniform:
         return float(residual.sum()) / self._curvature
 
     def share(self, direction: Array) -> float:
-        """Return the uniform part that makes a direction conjugate to a uniform one."""
+        """Return the uniform part to subtract from a direction to make it conjugate."""
         return dot(self.inside, direction) / self._curvature
 
 
@@ -185,10 +189,10 @@ def _misclassified(
     margin: float,
     last: tuple[float, Array, Array] | None = None,
 ) -> tuple[Cells, int]:
-    """Return flat indices of misclassified cells of certain sign, and the number of the others.
+    """Return flat indices of misclassified cells of certain sign, and the number of uncertain ones.
 
-    A cell in contact is misclassified if its pressure in ``on_contact`` [Pa] is tensile, another
-    one if its gap is below −``margin`` [m]. ``last`` is the sign-certainty factor and the last
+    A cell in contact is misclassified if its pressure in ``on_contact`` [Pa] is tensile, any other
+    cell if its gap is below −``margin`` [m]. ``last`` is the sign-certainty factor and the last
     changes of pressure in contact [Pa] and gap [m]; without it all signs are certain.
     """
     contact = preconditioner.contact
@@ -206,10 +210,10 @@ def _misclassified(
 
 
 class _Directions:
-    """Preconditioned search directions on a contact, of no net force under force control.
+    """Preconditioned search directions on a contact, without net force under force control.
 
-    The spring of an indenter is one more uniform compliance, which the preconditioner takes in by
-    the formula of Sherman & Morrison (1950). Force control is the limit of a soft spring.
+    The spring of an indenter adds a uniform compliance, which enters the preconditioner by the
+    formula of Sherman & Morrison (1950). Force control is the limit of a soft spring.
     """
 
     def __init__(
@@ -226,10 +230,10 @@ class _Directions:
             self._lift /= total if self._keeps_force else total + 1 / spring
 
     def __call__(self, residual: Array) -> Array:
-        """Return the preconditioned residual, without net force or conjugate to `_Uniform`."""
+        """Return the preconditioned residual, made free of net force or conjugate to `_Uniform`."""
         if self._keeps_force:
-            # The mean only adds round-off: single precision must not spend its digits on it. In
-            # the preconditioner's precision the difference takes half of the memory.
+            # The mean would use up digits of single precision. In the precision of the
+            # preconditioner the difference takes half of the memory.
             closing = (residual - self.mean(residual)).astype(np.float32)
             direction = self._preconditioner(closing)
         else:

@@ -17,17 +17,17 @@ Moments = tuple[Field, ...]
 
 _NEAR: Final = np.float32(0.75)
 _FAR: Final = np.float32(0.25)
-# All but the cells at the ends, by the number of axes.
+# Index of all cells except those at the ends, by the number of axes.
 _INNER: Final = ((), (slice(1, -1),), (slice(1, -1), slice(1, -1)))
-# Fine cells in a block: its intermediate arrays stay in the cache.
+# Fine cells in a block, few enough for its intermediate arrays to fit in the cache.
 _BLOCK: Final = 2**17
 
-# Above this order of the stiffness the extension must not have kinks.
+# Order of the stiffness above which the extension must not have kinks.
 _BENDS: Final = 2.5
 _SWEEPS: Final = 16
 # Eigenvalues of Δ² for waves of about nine cells and of two, in units of the cell.
 _SLOWEST, _FASTEST = 0.25, 64.0
-# Roots of the Chebyshev polynomial, taken from both ends in turn: in order, round-off grows.
+# Roots of the Chebyshev polynomial, used from both ends in turn: in order, round-off would grow.
 _ROOTS: Final = np.cos(np.pi * (np.arange(_SWEEPS) + 0.5) / _SWEEPS)
 # Relaxation factors of the Chebyshev iteration on that range.
 _DAMPINGS: Final = tuple(
@@ -38,18 +38,19 @@ _DAMPINGS: Final = tuple(
 
 
 def bends(order: float) -> bool:
-    """Whether bending dominates where the stiffness goes as q^``order``."""
+    """Whether bending dominates if the stiffness is proportional to q^``order``."""
     return order > _BENDS
 
 
 class Extension:
-    """E: keeps values where ``known`` and continues them elsewhere with nearly the least energy.
+    """E, which keeps values where ``known`` and extends them elsewhere with nearly least energy.
 
     A pyramid of fields: each level holds weighted means of 2 × 2 cells of the next finer one, with
-    a weight w ≤ 1 for how far the contact decides the value of the cell. Where the stiffness goes
-    as q^α the displacement around a point force falls as r^(α − 2), so a lone cell loses weight by
-    2^(α − 2) from level to level: not at all at order 2, by half at order 1. On the way back to
-    finer levels a cell is its own mean times w plus the interpolated coarser level times 1 − w.
+    a weight w ≤ 1 for how far the contact determines the value of the cell. If the stiffness is
+    proportional to q^α, the displacement around a point force falls as r^(α − 2), so the weight of
+    an isolated cell changes by the factor 2^(α − 2) from level to level: 1 at order 2, one half at
+    order 1. On the way back to finer levels the value of a cell is its own mean times w plus the
+    interpolated coarser level times 1 − w.
 
     A bending energy penalises kinks. Where it dominates, a mean is shifted from the centroid of
     the known cells to the centre of its cell, along the slope of the interpolated coarser level,
@@ -57,16 +58,15 @@ class Extension:
     Δ²u = 0.
 
     The domain is periodic. On a line of cells, as on a grid one cell across, a mean is over two
-    cells, and a lone cell loses weight by 2^(α − 1). Single precision is enough for a
-    preconditioner.
+    cells, and the factor is 2^(α − 1). Single precision is enough for a preconditioner.
 
     Parameters
     ----------
     known
         Bool of shape (mx, my), where the values are given.
     orders
-        α at the length scale of each level, from the finest; no more levels than both edges can be
-        halved.
+        α at the length scale of each level, the finest first; both edges must be divisible by 2 as
+        often as there are levels.
     stretch
         The aspect ratio of the cells, see `stretch_of`; by default they are square.
     """
@@ -178,14 +178,14 @@ def _alternating(field: Field, axis: int) -> Field:
 
 
 def _slope(field: Field, axis: int) -> Field:
-    """Return the central difference of a periodic field along an axis, over a cell."""
+    """Return the central difference of a periodic field along an axis, per cell."""
     slope = np.roll(field, -1, axis) - np.roll(field, 1, axis)
     slope *= np.float32(0.5)
     return slope
 
 
 def _sum_of_block(fine: Field) -> Field:
-    """Return the sums over 2 × 2 cells, over two on a line."""
+    """Return the sums over 2 × 2 cells, or over two cells on a line."""
     rows = fine[0::2] + fine[1::2]
     return rows if rows.ndim == 1 else rows[:, 0::2] + rows[:, 1::2]
 
@@ -232,7 +232,7 @@ def _transposed_interpolate(fine: Field, free: Field) -> Field:
 
 
 def _refined(wide: Field, axis: int) -> Field:
-    """Return twice as many cells along an axis, interpolated; cells at the ends only contribute."""
+    """Interpolate to twice as many cells along an axis, without the cells at the ends."""
     near, far = _NEAR * wide[_along(axis, 1, -1)], _FAR * wide
     fine = np.empty([n * (2 if i == axis else 1) for i, n in enumerate(near.shape)], near.dtype)
     np.add(near, far[_along(axis, 0, -2)], out=fine[_along(axis, 0, None, 2)])
@@ -257,7 +257,7 @@ def _along(axis: int, start: int, stop: int | None = None, step: int = 1) -> tup
 
 
 def stretch_of(dx: float, dy: float) -> tuple[float, float]:
-    """Return (h/dx)² and (h/dy)², h such that their sum is 2."""
+    """Return (h/dx)² and (h/dy)², where h makes their sum 2."""
     ratio = (dx / dy) ** 2
     return 2 / (1 + ratio), 2 * ratio / (1 + ratio)
 
@@ -265,7 +265,7 @@ def stretch_of(dx: float, dy: float) -> tuple[float, float]:
 def biharmonic(field: Field, stretch: tuple[float, float]) -> Field:
     """Return h⁴ Δ² of a periodic field; its eigenvalues are at most 64.
 
-    ``stretch`` is that of the cells; h is their edge if they are square.
+    ``stretch`` is that of the cells, see `stretch_of`; h is the edge of square cells.
     """
     return _laplacian(_laplacian(field, stretch), stretch)
 

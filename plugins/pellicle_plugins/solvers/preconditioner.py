@@ -1,4 +1,4 @@
-"""An approximate inverse of the operator restricted to the contact: Eᵀ K E."""
+"""Eᵀ K E, an approximate inverse of the operator restricted to the contact."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Cells = NDArray[np.int64]
 
 # Without a margin, contact at the edge of a free domain couples to the opposite edge.
 _FREE_MARGIN: Final = 1.25
-# Cells that are this many times as wide across a line as along it deform as in plane strain.
+# Width across a line of cells, over their length along it, above which strain is plane.
 _SLENDER: Final = 8
 # The extension's plane is rounded up to a size that can be halved this many times.
 _HALVINGS: Final = 6
@@ -49,8 +49,8 @@ class Preconditioner:
         orders = _stiffness_orders(operator, levels + 1)
         self.bends = bends(orders[0])
         """Whether bending dominates the stiffness at the size of a cell."""
-        # A plate bends all the way from one contact to the next. On other surfaces, and towards the
-        # edge of a free domain, cells far from all contact are better left at zero.
+        # A plate bends all the way from one contact to the next. On other surfaces, and near the
+        # edge of a free domain, an extension by 0 far from all contact is better.
         all_levels = self.bends and grid.boundary == "periodic"
         self._orders = orders[: levels if all_levels else min(levels, _HALVINGS)]
         self._stretch = stretch_of(*edges(grid))
@@ -62,7 +62,7 @@ class Preconditioner:
 
     @cached_property
     def grid_stiffness(self) -> Stiffness:
-        """K on the grid itself, as if it were periodic; see `relaxed`."""
+        """K on the grid itself, as if the grid were periodic; see `relaxed`."""
         fits = self._plane == self._shape
         return self._stiffness if fits else Stiffness(self._operator, self._shape)
 
@@ -77,9 +77,9 @@ class Preconditioner:
         return Extension(mask, self._orders, self._stretch)
 
     def _on_the_plane(self, cells: Cells) -> tuple[Cells, Cells]:
-        """Return flat indices on the extension's plane, of ``cells`` and then of their copies.
+        """Return flat indices on the extension's plane of ``cells``, followed by their copies.
 
-        The second array gives the position in ``cells`` of the source of each copy.
+        The second array has the position in ``cells`` of the source of each copy.
         """
         nowhere = np.empty(0, dtype=np.int64)
         if self._padded == self._shape:
@@ -89,7 +89,7 @@ class Preconditioner:
         indices = i * py + j
         copies, sources = [indices], [nowhere]
         if self._plane == self._shape:
-            # Beyond its period a periodic field repeats its first cells.
+            # Beyond the period the first cells are repeated.
             for down, right in ((nx, 0), (0, ny), (nx, ny)):
                 repeated = np.flatnonzero((i + down < px) & (j + right < py))
                 sources.append(repeated)
@@ -108,7 +108,7 @@ class Preconditioner:
 
 
 class OnContact:
-    """Eᵀ K E on one contact, in single precision, from and to its cells."""
+    """Eᵀ K E on one contact, in single precision; a map between values on its cells."""
 
     def __init__(self, preconditioner: Preconditioner, contact: Mask) -> None:
         self.preconditioner = preconditioner
@@ -121,19 +121,19 @@ class OnContact:
         self._values = np.zeros(self._extension.shape, dtype=np.float32)
 
     def __call__(self, residual: Array | Field) -> Array:
-        """Return the preconditioned residual; both have one value for each cell of `cells`."""
+        """Return the preconditioned residual; both arrays have one value per cell of `cells`."""
         # A power of two changes no digit, and keeps small residuals in single precision.
         size = 2.0 ** math.frexp(float(np.abs(residual).max()))[1]
         force = self.preconditioner._stiffen(self._apply(residual / size))
         return self._apply_transpose(force) * size
 
     def extended(self, values: Array | Field) -> Field:
-        """Return E of one value for each cell of `cells`; of the grid's shape."""
+        """Return E applied to one value per cell of `cells`, on the grid."""
         nx, ny = self.contact.shape
         return self._apply(values)[:nx, :ny]
 
     def transferred(self, forces: Array) -> Array:
-        """Return forces [Pa] of the grid's shape, those off the contact transferred onto it by Eᵀ.
+        """Return forces [Pa] after transferring those off the contact onto it by Eᵀ.
 
         Eᵀ K is the inverse of the operator on the contact to second order in the error of E. So
         forces that displace the surface onto the indenter on the contact become nearly the
@@ -179,7 +179,7 @@ def _free_shape(grid: Grid) -> tuple[int, int]:
 
 
 def _round_up(shape: tuple[int, int]) -> tuple[int, int]:
-    """Return the shape, its axes of more than one cell rounded up to numbers to be halved."""
+    """Return the shape with axes of more than one cell rounded up to multiples of a power of 2."""
     fewest = min((n for n in shape if n > 1), default=1)
     multiple = 2 ** min(_HALVINGS, max(0, fewest.bit_length() - 2))
     nx, ny = (-(-n // multiple) * multiple if n > 1 else 1 for n in shape)
@@ -187,7 +187,7 @@ def _round_up(shape: tuple[int, int]) -> tuple[int, int]:
 
 
 def _levels(shape: tuple[int, int]) -> int:
-    """Return how often the shape can be halved into whole cells, two or more along each axis."""
+    """Return how often the shape can be halved, leaving two or more whole cells per axis."""
     halved = [n for n in shape if n > 1]
     levels = 0
     while halved and all(n >= 4 and n % 2 == 0 for n in halved):
@@ -197,13 +197,13 @@ def _levels(shape: tuple[int, int]) -> int:
 
 
 def edges(grid: Grid) -> tuple[float, float]:
-    """Return dx and dy [m]; an axis of one cell, which has no waves, gets that of the other."""
+    """Return dx and dy [m]; for an axis of one cell, which has no waves, that of the other axis."""
     (nx, ny), (dx, dy) = grid.shape, grid.spacing
     return (dx if nx > 1 else dy, dy if ny > 1 else dx)
 
 
 def _stiffness_orders(operator: Operator, levels: int) -> list[float]:
-    """Return α ≥ 0 of the stiffness k ~ q^α at the cell size of each level, the finest first."""
+    """Return α ≥ 0 of the stiffness k ∝ q^α at the cell size of each level, the finest first."""
     q = np.pi / max(edges(operator.grid)) * 0.5 ** np.arange(levels + 1, dtype=np.float64)
     stiffness = 1 / operator.compliance(q)
     return [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]

@@ -1,4 +1,4 @@
-"""Local relaxation: the contact under a skin with bending stiffness, decided cells together."""
+"""Local relaxation of the contact under a skin with bending stiffness."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pellicle.numerics.problem import Problem
 from .contact_cg import InnerSolution
 from .preconditioner import OnContact
 
-# Enough to relax waves of up to about twenty cells; the inner solves take care of longer ones.
+# Enough steps to relax waves of up to about twenty cells; inner solves relax longer waves.
 _STEPS: Final = 160
 
 

@@ -1,4 +1,4 @@
-"""Solving in numbers near 1, whatever the units and sizes of a problem."""
+"""Scale heights and pressures of a problem to near 1 for the solvers."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ _SINGLE_EXPONENT = 100
 class ScaledSolver(IterativeSolver):
     """Iterative solver whose heights and pressures are near 1.
 
-    Numbers below 1e-38 are lost in single precision, and below 1e-308 where squares are summed;
-    displacements on a domain of 1e-12 m are. The units are powers of two, so no digit changes.
+    Numbers below 1e-38 underflow in single precision, squares below 1e-308 in double precision;
+    displacements on a domain of 1e-12 m would. The units are powers of two, so no digit changes.
     """
 
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
         """Iterate in scaled units; see `IterativeSolver.solve`."""
         height = height_unit(problem)
         pressure = height / problem.operator.unit
-        # Squares of a pressure far beyond any of this step would overflow.
+        # Squares of a pressure far above those of this step would overflow.
         if start is not None and float(start.pressure.max()) / pressure < 2.0**_SINGLE_EXPONENT:
             before = start.pressure / pressure
             start = State(before, before, start.depth / height)
@@ -39,9 +39,9 @@ class ScaledSolver(IterativeSolver):
 
 
 def height_unit(problem: Problem) -> float:
-    """Return a power of two near the heights [m] that decide the contact.
+    """Return a power of two near the heights [m] that determine the contact.
 
-    At a given depth that is how far the indenter reaches below the undeformed surface. Under force
+    Under depth control this is the extent of the indenter below the undeformed surface. Under force
     control it is the geometric mean of the indenter's height range and of the displacement of the
     most compliant wave under the mean pressure; either may be much smaller than the other.
     """

@@ -76,7 +76,7 @@ HEIGHTS: dict[str, tuple[str, Callable[[Path], object], list[str]]] = {
     "missing": ("h.npy", lambda path: None, ["indenter.path", "h.npy: no such file; give"]),
     "folder": ("h.npy", lambda path: path.mkdir(), ["indenter.path", "no such file"]),
     "empty": ("h.npy", lambda path: path.touch(), ["indenter.path", "h.npy is empty"]),
-    "junk npy": ("h.npy", lambda path: path.write_bytes(b"junk junk"), ["no .npy file"]),
+    "junk npy": ("h.npy", lambda path: path.write_bytes(b"junk junk"), ["not an .npy file"]),
     "pickled": (
         "h.npy",
         lambda path: np.save(path, np.array([[{}]], dtype=object), allow_pickle=True),
@@ -96,7 +96,7 @@ HEIGHTS: dict[str, tuple[str, Callable[[Path], object], list[str]]] = {
     "npz": (
         "h.npy",
         _write_npz,
-        ["no .npy file"],
+        ["not an .npy file"],
     ),
     "NaN": ("h.npy", lambda path: np.save(path, NAN), ["holds 16 NaN or infinite", "fill or crop"]),
     "complex": ("h.npy", lambda path: np.save(path, GOOD * 1j), ["holds complex", "real numbers"]),

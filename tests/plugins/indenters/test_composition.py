@@ -239,7 +239,7 @@ def test_parts_that_do_not_meet_are_refused() -> None:
     """Two punches side by side have no sum."""
     punch = {"type": "flat_punch", "radius": "0.1 mm"}
     parts = [{"type": "shifted", "x": x, "part": punch} for x in ("-0.2 mm", "0.2 mm")]
-    with pytest.raises(pl.ConfigError, match=r"indenter\.parts: are nowhere there together"):
+    with pytest.raises(pl.ConfigError, match=r"indenter\.parts: do not overlap anywhere"):
         pl.run(_run({"type": "sum", "parts": parts}), progress=False)
 
 

@@ -206,10 +206,10 @@ def test_depth_that_does_not_touch(boundary: Boundary, points: int) -> None:
     # The centre is no cell's on an even grid, so that the lowest cell is above the lowest point.
     problem = make(points + 1, boundary, skin(0.02), paraboloid, "depth", 1.0)
     lowest = -float(problem.profile.max())
-    assert not replace(problem, control=Depth(0.999 * lowest)).touches
-    assert not replace(problem, control=Depth(lowest)).touches
+    assert not replace(problem, control=Depth(0.999 * lowest)).needs_solving
+    assert not replace(problem, control=Depth(lowest)).needs_solving
     just = replace(problem, control=Depth(1.001 * lowest))
-    assert just.touches
+    assert just.needs_solving
     equilibrium = active_set(just).equilibrium
     assert np.count_nonzero(equilibrium.contact) == 4
     assert (
@@ -407,7 +407,7 @@ def test_grids(
     ]
     for prescribed, value in controls:
         problem = make(points, boundary, skin(s), paraboloid, prescribed, value, size)
-        if not problem.touches or value >= -float(problem.profile.mean()):
+        if not problem.needs_solving or value >= -float(problem.profile.mean()):
             value = -float(problem.profile.max() + problem.profile.mean()) / 2
             problem = replace(problem, control=replace(problem.control, value=value))
         assert_agrees(problem)

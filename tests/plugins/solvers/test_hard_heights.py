@@ -79,7 +79,7 @@ def test_single_peaks_that_no_coarser_cell_touches_are_seen() -> None:
     heights = np.full(grid.shape, -1e-5)
     heights[::16, ::16] = 0.0
     problem = make(SOLID, grid, heights, "depth", 1e-6)
-    assert not problem.coarsened().touches
+    assert not problem.coarsened().needs_solving
     assert_solved(problem, 12)
 
 
