@@ -21,7 +21,7 @@ import pluggy
 from . import hookspecs
 from .components import FAMILIES, Component, Prescription, Suite
 from .components.foreign_code import diverted_output, noted_interrupts
-from .errors import ConfigError, PellicleError, PluginError
+from .errors import ConfigError, PellicleError, PluginError, shown
 from .loading import OPTIONS
 from .model.messages import nearest
 from .units import quantity_of
@@ -128,7 +128,7 @@ class Registry:
             return value
         if not isinstance(value, Mapping) or "type" not in value:
             known = ", ".join(sorted(self.components[base.family]))
-            what = "has no type" if isinstance(value, Mapping) else f"{value!r} is not a table"
+            what = "has no type" if isinstance(value, Mapping) else f"{shown(value)} is not a table"
             raise ConfigError(f"{what}; give a table with type = one of: {known}")
         component_class = cast("type[AnyComponent]", self.find(base.family, value["type"]))
         try:

@@ -154,7 +154,7 @@ def test_version_1_is_read(old_file: Path) -> None:
 MESSAGES_OF_VERSION_1 = {
     "converged": "CONVERGED",
     "converged; the contact area misses the prescribed one by 1.0e-03, and no load brings a "
-    "nearer number of whole cells; use more points": "NEAREST_AREA",
+    "nearer number of whole cells: more points do": "NEAREST_AREA",
     "converged, but the cells are too coarse for this contact, which covers 4 of them: force, "
     "depth and area may be far off; use more points, or a smaller grid.size": "COARSE",
     "the contact area misses the prescribed one by 1.0e-01, over 0.05; use more points": "AREA",

@@ -200,3 +200,18 @@ def test_depth_of_the_mean_plane(solver: str) -> None:
             # The mean displacement is 0, so the mean gap is the height of the mean plane.
             gap = float(data["gap"].mean())
             assert gap == pytest.approx(-data["mean_plane_depth"].item(), rel=1e-9)
+
+
+def test_an_area_between_two_numbers_of_cells_is_said_to_be_unresolved() -> None:
+    """An area of 4.45 cells is met by 4, within half a cell; no load is to blame for the rest."""
+    grid = pl.Grid(points=16, size="0.5 mm")
+    configuration = {
+        "grid": grid,
+        "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
+        "indenter": {"type": "paraboloid", "radius": "1 mm"},
+        "loading": {"contact_area": 4.45 * grid.cell_area},
+    }
+    with pytest.warns(pl.ConvergenceWarning, match="nothing nearer can be resolved"):
+        result = pl.run(configuration, progress=False).dataset
+    assert result["contact_area"].item() == pytest.approx(4 * grid.cell_area)
+    assert result["status_code"].item() == "AREA"

@@ -22,7 +22,8 @@ def new(
         typer.Option(
             "--plugin",
             metavar="FAMILY",
-            help="Write the package of a kernel, indenter, solver, correction, output or executor.",
+            help="Write the package of a kernel, indenter, solver, correction, output, executor or "
+            "prescription.",
         ),
     ] = None,
 ) -> None:

@@ -37,6 +37,8 @@ from .prescription import Prescription, Search, Setting
 from .solver import Monitor, Solver
 
 # Rounding error of heights over the size of the domain, and relative rounding error of areas.
+# How Python refuses a State used as an array, which it was in earlier versions.
+_OUTDATED = "'State'|State is not an array|can't multiply sequence|argument 'pressure'"
 _ROUNDING = 1e-12
 
 
@@ -166,9 +168,8 @@ def solution_of(
     try:
         with errors_attributed_to(solver):
             value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
-    except (AttributeError, TypeError, ValueError) as error:
-        outdated = "'State'|tuple|sequence|inhomogeneous" if start else "argument 'pressure'"
-        if not re.search(outdated, str(error)):
+    except (AttributeError, TypeError) as error:
+        if not re.search(_OUTDATED, str(error)):
             raise
         raise PluginError(
             f"{' '.join(error.__notes__)}: {error}; solve() starts from None or a pellicle.State, "

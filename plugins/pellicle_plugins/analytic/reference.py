@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from pellicle import Run
 from pellicle.errors import ConfigError
 from pellicle.results.derived import derive
 from pellicle.results.runs import Runs
+from pellicle.results.variables import names_of
 from pellicle_plugins.kernels.half_space import HalfSpace
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 
@@ -96,22 +98,32 @@ def exact(runs: Runs) -> Runs:
             "reference",
         )
 
-    force, area = number("force"), np.pi * number("contact_radius") ** 2
+    force, radius = number("force"), number("contact_radius")
+    area = np.pi * radius**2
     domain = runs.from_each(
         lambda run: Run.from_json(run.attrs["configuration"]).grid.area * np.ones(run.sizes["step"])
     )
-    areas = {name: area for name in runs.table.data_vars if str(name).startswith("contact_area")}
-    table = runs.table.assign(
-        {
-            "depth": number("depth"),
-            "force": force,
-            "contact_fraction": area / domain,
-            "mean_pressure": force / domain,
-            **areas,
-        }
+    known = {
+        "depth": number("depth"),
+        "force": force,
+        "mean_pressure": force / domain,
+        "contact_fraction": area / domain,
+        "mean_contact_pressure": force / area.where(area > 0),
+        "contact_radius": radius,
+        "semi_major_axis": radius,
+        "semi_minor_axis": radius,
+        "perimeter": 2 * np.pi * radius,
+        **{name: area for name in runs.table.data_vars if str(name).startswith("contact_area")},
+    }
+    # What the equation does not give must not pass for its solution.
+    table = runs.table[[*names_of("status"), "run"]].assign(
+        {name: values.assign_attrs(runs.table[name].attrs) for name, values in known.items()}
     )
     derived = json.loads(table.attrs["configuration"]).get("study", {}).get("derived", {})
-    return Runs(derive(table, derived), no_fields)
+    for name, text in derived.items():
+        with suppress(ConfigError):
+            table = derive(table, {name: text})
+    return Runs(table, no_fields)
 
 
 def exact_line(run: xr.Dataset) -> xr.Dataset:

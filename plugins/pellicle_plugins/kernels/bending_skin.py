@@ -19,7 +19,7 @@ from .skin import Skin
 class BendingSkin(Skin, ElasticSolid):
     """Elastic half-space under a skin with tension and bending stiffness (Kirchhoff plate).
 
-    Waves shorter than (2B/E*)^⅓ are carried by the bending stiffness. Without it this is
+    Waves with 1/q below (2B/E*)^⅓ are carried by the bending stiffness. Without it this is
     `tensed_membrane`. The shear traction between skin and solid is neglected.
     """
 

@@ -20,6 +20,7 @@ from pellicle.model.expression import evaluate
 from pellicle.model.messages import nearest
 from pellicle.report.plotting import save_figure, without_round_off
 from pellicle.results.derived import names
+from pellicle.results.result import Result
 from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ class TableFigure(Output):
     def picked(self, table: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
         """Yield the name of each curve or panel and the point of the table that it shows.
 
-        Other axes are at their first value, steps at the last.
+        Other axes are at their first value, steps at the last of the table.
         """
         one_axis(table.sizes, self.by, "by")
         first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
@@ -79,13 +80,13 @@ class TableFigure(Output):
             yield label(self.label, point, self.by), point
 
     def steps(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
-        """Yield the name of each curve or panel and the load step that it shows, if it exists."""
+        """Yield the name of each curve or panel and the last load step of its run, if finished."""
         for name, point in self.picked(runs.table):
             try:
                 run = runs.open(str(point["run"].item()))
             except StorageError:
                 continue
-            number = int(point["step"].item())
+            number = min(int(point["step"].item()), Result(run).planned_steps)
             if number in run["step"]:
                 yield name, without_round_off(run.sel(step=number))
 

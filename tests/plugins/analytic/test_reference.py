@@ -12,7 +12,7 @@ import xarray as xr
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.reference import contact
+from pellicle_plugins.analytic.reference import contact, exact
 
 
 @pytest.mark.parametrize(
@@ -76,3 +76,24 @@ def test_run_with_a_stranger_s_body(monkeypatch: pytest.MonkeyPatch) -> None:
     assert solution is not None
     assert solution.reduced_modulus == pytest.approx(1e4)
     assert solution.depth == pytest.approx(8 / 3 * 2e-4**4 / 1e-9, rel=1e-9)
+
+
+def test_only_what_the_equation_gives_is_its_solution() -> None:
+    """No simulated number passes for the semi-analytic one, and those it has are the equation's."""
+    result = pl.run(
+        {
+            "grid": {"points": 16, "size": "0.5 mm"},
+            "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
+            "indenter": {"type": "paraboloid", "radius": "1 mm"},
+            "loading": {"depth": "10 um"},
+        },
+        progress=False,
+    )
+    table = exact(pl.Runs.of_run(result.dataset)).table
+    radius = table["contact_radius"].item()
+    assert radius == pytest.approx(1e-4, rel=1e-9)
+    assert radius != result.dataset["contact_radius"].item()
+    assert table["perimeter"].item() == pytest.approx(2 * np.pi * radius)
+    mean = table["force"].item() / (np.pi * radius**2)
+    assert table["mean_contact_pressure"].item() == pytest.approx(mean)
+    assert not {"patches", "major_axis_angle", "iterations"} & {*map(str, table.data_vars)}

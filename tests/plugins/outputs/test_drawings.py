@@ -203,3 +203,11 @@ def test_logarithmic_axes_of_nothing_positive(tmp_path: Path) -> None:
     curves = {"type": "curves", "log": ["x", "y"]}
     pl.run(run | nothing | {"outputs": [curves]}, directory=tmp_path, progress=False)
     assert [float(row["y"]) for row in rows(tmp_path / "run-curves.csv")] == [0.0, 0.0]
+
+
+def test_a_run_of_fewer_steps_is_drawn_at_its_last(tmp_path: Path) -> None:
+    """Each run of a study is shown at its own last step, however many steps the others have."""
+    configuration = study({"type": "profiles", "y": "pressure", "by": "loading.depth"})
+    configuration["study"] = {"vary": {"loading.depth": [["10 um"], ["10 um", "15 um"]]}}
+    pl.run_study(configuration, tmp_path, progress=False, threads=1)
+    assert len({row["curve"] for row in rows(tmp_path / "study-profiles.csv")}) == 2

@@ -1,7 +1,7 @@
 """Force models: the force on an indenter as a function of named parameters.
 
 A new model (adhesion, layers, relaxation) is one file with its `Parameter` records and a class
-that satisfies `ForceModel`; likelihoods, intervals and pooled fits work with any.
+that satisfies `ForceModel`; likelihoods and initial guesses work with any.
 """
 
 from __future__ import annotations
