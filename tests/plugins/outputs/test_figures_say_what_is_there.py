@@ -117,7 +117,7 @@ def test_curves_of_fields_say_what_to_write(output: dict[str, Any], tmp_path: Pa
     """A field has no value for a step: the message names the functions that make one of it."""
     with pytest.raises(
         pl.ConfigError,
-        match=r"^outputs\.0: .* a value for each cell, .* inside mean, sum, min, max",
+        match=r"^outputs\.0: .* a value for each cell .* inside mean, sum, min, max",
     ):
         pl.run({**RUN, "outputs": [output]}, directory=tmp_path, progress=False)
 
