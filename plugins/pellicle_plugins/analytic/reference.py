@@ -12,6 +12,7 @@ import numpy as np
 from pellicle import Run
 from pellicle.errors import ConfigError
 from pellicle.results.derived import derive
+from pellicle.results.result import Result
 from pellicle.results.runs import Runs
 from pellicle.results.variables import names_of
 from pellicle_plugins.kernels.half_space import HalfSpace
@@ -76,20 +77,13 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
 
 
 def exact(runs: Runs) -> Runs:
-    """Return the table of ``runs`` with depth, force and areas of the semi-analytic solution.
+    """Return the table of ``runs`` with the numbers of the semi-analytic solution, and no others.
 
     Raises
     ------
     ConfigError
         The axisymmetric equation does not describe a run, or a field is requested.
     """
-
-    def number(quantity: str) -> xr.DataArray:
-        def of(run: xr.Dataset) -> list[float]:
-            contacts = (contact(run, step) for step in run["step"].values.tolist())
-            return [getattr(one, quantity) if one else 0.0 for one in contacts]
-
-        return runs.from_each(of)
 
     def no_fields(_name: str) -> xr.Dataset:
         raise ConfigError(
@@ -98,32 +92,50 @@ def exact(runs: Runs) -> Runs:
             "reference",
         )
 
-    force, radius = number("force"), number("contact_radius")
-    area = np.pi * radius**2
-    domain = runs.from_each(
-        lambda run: Run.from_json(run.attrs["configuration"]).grid.area * np.ones(run.sizes["step"])
-    )
-    known = {
-        "depth": number("depth"),
-        "force": force,
-        "mean_pressure": force / domain,
-        "contact_fraction": area / domain,
-        "mean_contact_pressure": force / area.where(area > 0),
-        "contact_radius": radius,
-        "semi_major_axis": radius,
-        "semi_minor_axis": radius,
-        "perimeter": 2 * np.pi * radius,
-        **{name: area for name in runs.table.data_vars if str(name).startswith("contact_area")},
-    }
-    # What the equation does not give must not pass for its solution.
+    names = [name for name in _numbers(None, 1.0, runs.table) if name in runs.table]
+    dims = *runs.table["run"].dims, "step"
+    shape = *runs.table["run"].shape, runs.table.sizes["step"]
+    columns = {name: np.full(shape, np.nan) for name in names}
+    for index, run in runs.datasets():
+        if run is None:
+            continue
+        for position, step in enumerate(run["step"].values.tolist()):
+            numbers = _numbers(contact(run, step), Result(run).grid.area, runs.table)
+            for name in names:
+                columns[name][(*index, position)] = numbers[name]
     table = runs.table[[*names_of("status"), "run"]].assign(
-        {name: values.assign_attrs(runs.table[name].attrs) for name, values in known.items()}
+        {name: (dims, values, runs.table[name].attrs) for name, values in columns.items()}
     )
     derived = json.loads(table.attrs["configuration"]).get("study", {}).get("derived", {})
     for name, text in derived.items():
         with suppress(ConfigError):
             table = derive(table, {name: text})
     return Runs(table, no_fields)
+
+
+def _numbers(
+    solution: AxisymmetricContact | None, domain: float, simulated: xr.Dataset
+) -> dict[str, float]:
+    """Return what the equation gives of the variables of a result; ``domain`` is in m².
+
+    Corrected areas are those of ``simulated``: on a continuous surface none differs.
+    """
+    radius = solution.contact_radius if solution else 0.0
+    force = solution.force if solution else 0.0
+    area = np.pi * radius**2
+    corrected = [str(name) for name in simulated if str(name).startswith("contact_area_")]
+    return {
+        "depth": solution.depth if solution else 0.0,
+        "force": force,
+        "mean_pressure": force / domain,
+        "contact_fraction": area / domain,
+        "mean_contact_pressure": force / area if area else np.nan,
+        "contact_radius": radius,
+        "semi_major_axis": radius,
+        "semi_minor_axis": radius,
+        "perimeter": 2 * np.pi * radius,
+        **dict.fromkeys(["contact_area", *corrected], area),
+    }
 
 
 def exact_line(run: xr.Dataset) -> xr.Dataset:
@@ -158,14 +170,8 @@ def exact_line(run: xr.Dataset) -> xr.Dataset:
     positions = np.concatenate([-positive[:0:-1], positive])
     r = np.minimum(np.hypot(positions, offset), np.where(np.abs(positions) <= half, a, np.inf))
     pressure = solution.pressure(r) if solution else np.zeros(r.shape)
-    area = np.pi * a**2
-    numbers = {
-        "contact_area": area,
-        "force": solution.force if solution else 0.0,
-        "depth": solution.depth if solution else 0.0,
-    }
-    areas = {name: area for name in run.data_vars if str(name).startswith("contact_area_")}
-    line = run.drop_dims(along).assign({**numbers, **areas})
+    numbers = _numbers(solution, Result(run).grid.area, run)
+    line = run.drop_dims(along)[[*names_of("status")]].assign(numbers)
     return line.assign_coords({along: (along, positions, run[along].attrs)}).assign(
         pressure=xr.DataArray(pressure, dims=along, attrs=run["pressure"].attrs),
         contact=xr.DataArray(r <= a, dims=along),

@@ -12,7 +12,7 @@ import xarray as xr
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle_plugins.analytic.axisymmetric import indent
-from pellicle_plugins.analytic.reference import contact, exact
+from pellicle_plugins.analytic.reference import contact, exact, exact_line
 
 
 @pytest.mark.parametrize(
@@ -97,3 +97,21 @@ def test_only_what_the_equation_gives_is_its_solution() -> None:
     mean = table["force"].item() / (np.pi * radius**2)
     assert table["mean_contact_pressure"].item() == pytest.approx(mean)
     assert not {"patches", "major_axis_angle", "iterations"} & {*map(str, table.data_vars)}
+
+
+def test_numbers_along_a_line_are_the_equation_s() -> None:
+    """An expression over a semi-analytic line has the equation's numbers, no simulated ones."""
+    result = pl.run(
+        {
+            "grid": {"points": 16, "size": "0.5 mm"},
+            "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
+            "indenter": {"type": "paraboloid", "radius": "1 mm"},
+            "loading": {"depth": "10 um"},
+        },
+        progress=False,
+    )
+    line = exact_line(result.dataset.isel(step=0, y=8))
+    assert line["contact_radius"].item() == pytest.approx(1e-4, rel=1e-9)
+    share = line["contact_area"].item() / result.grid.area
+    assert line["contact_fraction"].item() == pytest.approx(share)
+    assert "patches" not in line
