@@ -72,11 +72,11 @@ def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
     }
     if step.how == "nearest" and step.missed <= _NEAR:
         return near, near.value.format(**words)
-    remedy = "no load that attains it was found"
-    if step.how == "met":
-        remedy = "nothing nearer can be resolved: use more points"
-    if step.how == "nearest":
-        remedy = "it jumps from {below} to {above}: use more points".format(**words)
+    remedy = {
+        "met": "nothing nearer can be resolved: use more points",
+        "nearest": "it jumps from {below} to {above}: use more points".format(**words),
+        "not found": "no load that attains it was found",
+    }[step.how]
     return far, far.value.format(**words, remedy=remedy)
 
 
