@@ -1,54 +1,17 @@
 """A stranger's package: built, installed and run as its author and its users would."""
 
 import json
-import os
-import subprocess
-import sys
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import pytest
 
 import pellicle as pl
+from tests.packaging.conftest import Command
 
 SOURCE = Path(__file__).with_name("third_party")
 SYMBOL_ONLY = Path(__file__).with_name("symbol_only")
 ONE_OUTPUT = Path(__file__).with_name("one_output")
 CELLS = Path(__file__).parents[1] / "data" / "kernel_cells.csv"
-Command = Callable[..., subprocess.CompletedProcess[str]]
-
-
-@pytest.fixture(scope="module")
-def python(tmp_path_factory: pytest.TempPathFactory) -> Command:
-    """Return the interpreter of an environment in which the packages are installed."""
-    wheels, site = tmp_path_factory.mktemp("wheels"), tmp_path_factory.mktemp("site")
-    build = [sys.executable, "-m", "build", "--wheel", "--no-isolation", f"--outdir={wheels}"]
-    for source in (SOURCE, SYMBOL_ONLY, ONE_OUTPUT):
-        subprocess.run([*build, source], check=True, capture_output=True)
-    install = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index"]
-    subprocess.run(
-        [*install, f"--target={site}", *wheels.iterdir()], check=True, capture_output=True
-    )
-    environment = {k: v for k, v in os.environ.items() if not k.startswith("PELLICLE_")}
-
-    def run(*arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, *arguments],
-            env=environment | {"PYTHONPATH": str(site), "PYTHONUTF8": "1"} | more,
-            cwd=tmp_path_factory.mktemp("empty"),
-            capture_output=True,
-            encoding="utf-8",
-            check=False,
-        )
-
-    return run
-
-
-@pytest.fixture(scope="module")
-def pellicle(python: Command) -> Command:
-    """Return the command ``pellicle`` of that environment."""
-    return partial(python, "-m", "pellicle")
 
 
 def test_is_listed_with_its_origin(pellicle: Command) -> None:

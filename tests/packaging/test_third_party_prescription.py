@@ -1,58 +1,21 @@
 """A stranger's prescription: built, installed, checked by the kit, and run."""
 
 import json
-import os
-import subprocess
-import sys
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import pellicle as pl
+from tests.packaging.conftest import Command
 
 SOURCE = Path(__file__).with_name("mean_gap")
-Command = Callable[..., subprocess.CompletedProcess[str]]
 CHECK = """
 from pellicle.testing import check_prescription
 from pellicle_mean_gap import MeanGap
 for share in (1.0, 0.5):
     check_prescription(MeanGap(share=share))
 """
-
-
-@pytest.fixture(scope="module")
-def python(tmp_path_factory: pytest.TempPathFactory) -> Command:
-    """Return the interpreter of an environment in which the package is installed."""
-    wheels, site = tmp_path_factory.mktemp("wheels"), tmp_path_factory.mktemp("site")
-    build = [sys.executable, "-m", "build", "--wheel", "--no-isolation", f"--outdir={wheels}"]
-    subprocess.run([*build, SOURCE], check=True, capture_output=True)
-    install = [sys.executable, "-m", "pip", "install", "--no-deps", "--no-index"]
-    subprocess.run(
-        [*install, f"--target={site}", *wheels.iterdir()], check=True, capture_output=True
-    )
-    environment = {k: v for k, v in os.environ.items() if not k.startswith("PELLICLE_")}
-    path = os.pathsep.join([str(site), *filter(None, [os.environ.get("PYTHONPATH")])])
-
-    def run(*arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, *arguments],
-            env=environment | {"PYTHONPATH": path, "PYTHONUTF8": "1"} | more,
-            cwd=tmp_path_factory.mktemp("empty"),
-            capture_output=True,
-            encoding="utf-8",
-            check=False,
-        )
-
-    return run
-
-
-@pytest.fixture(scope="module")
-def pellicle(python: Command) -> Command:
-    """Return the command ``pellicle`` of that environment."""
-    return partial(python, "-m", "pellicle")
 
 
 def test_keeps_its_contract(python: Command) -> None:
