@@ -144,7 +144,7 @@ class Adhesion:
 
     @property
     def _length(self) -> float:
-        """s [m]."""
+        """Elastocapillary length s = 2τ₀/E* [m]."""
         return 2 * self.tension / self.reduced_modulus
 
     @property
