@@ -78,7 +78,8 @@ class Adhesion:
         limit = self.indenter.contact_radius_limit
         if not np.all((radius > 0) & (radius < limit)):
             raise ConfigError(
-                f"must be positive and less than {limit} m, got {contact_radius}", "contact_radius"
+                f"must be positive and less than {limit} m, got {contact_radius!r}",
+                "contact_radius",
             )
         return self._equilibrium(xi_at(self.indenter, radius))
 
@@ -88,8 +89,8 @@ class Adhesion:
         Parameters
         ----------
         spring_constant
-            k_c [N/m] of what holds the indenter.  0, the default, is a dead load: pull-off, the
-            lowest force.  ``math.inf`` is a fixed depth: the lowest depth.  In between, dF/dδ = −k_c.
+            k_c [N/m] of what holds the indenter; dF/dδ = −k_c there.  0, the default, is a dead
+            load: pull-off, the lowest force.  ``math.inf`` is a fixed depth: the lowest depth.
 
         Returns
         -------

@@ -82,7 +82,7 @@ def radius_curves(indenter: HasAbelTransform, length: float, xi: Array) -> Radiu
         series = _series(indenter, length, int(panel))
         for order in range(3):
             values[order][:, inside] = chebyshev.chebval(t, series) * (2 / _PANEL) ** order
-            series = chebyshev.chebder(series)
+            series = np.asarray(chebyshev.chebder(series), dtype=np.float64)
     (force, depth, stiffness), slopes, curvatures = values
     radius = radius_at(indenter, xi)
     return RadiusCurves(
@@ -106,7 +106,7 @@ def _series(indenter: HasAbelTransform, length: float, panel: int) -> Array:
     # Two mesh levels agree to 1e-13, so they are compared at the ends of the panel only.
     rows = np.log([_solved(indenter, length, radius, 0) for radius in radii])
     finer = np.log([_solved(indenter, length, radius, 1) for radius in (radii[0], radii[-1])])
-    series = np.asarray(chebyshev.chebfit(nodes, rows, _NODES - 1))
+    series = np.asarray(chebyshev.chebfit(nodes, rows, _NODES - 1), dtype=np.float64)
     error = max(np.abs(finer - rows[[0, -1]]).max(), np.abs(series[-2:]).max())
     if not error <= TOLERANCE:
         raise ConvergenceError(

@@ -115,7 +115,7 @@ def test_a_cone_steeper_than_the_rim_is_never_pulled() -> None:
     cone = Cone(half_angle=radians(80))
     rim = sqrt(4 * 0.01 / 2.0)
     assert 1 / tan(radians(80)) > rim
-    assert adhesion(2.0, 0.01, indenter=cone).instability() == (0, 0, 0)
+    assert not np.any(adhesion(2.0, 0.01, indenter=cone).instability())
     assert adhesion(2.0, 0.02, indenter=cone).instability().force < 0
 
 
