@@ -23,7 +23,7 @@ from .axisymmetric_equation import solve, without_negligible
 from .tensed_punch import unit_forces
 
 _PANEL = 2.0
-_NODES = 12
+_NODES = 14
 TOLERANCE = 1e-9
 
 
