@@ -21,9 +21,9 @@ from pydantic import (
     model_validator,
 )
 
-from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
+from pellicle.components import AreaCorrection, Indenter, Interaction, Kernel, Output, Solver
 from pellicle.components.output import refuse_shared_files
-from pellicle.errors import ConfigError
+from pellicle.errors import ConfigError, Problem
 from pellicle.grid import Grid, grid_of_run
 from pellicle.model.from_file import FromFile
 from pellicle.model.paths import get, replaced, walk
@@ -44,6 +44,12 @@ class Run(FromFile):
     grid: Annotated[Grid, Field(description="the domain and its cells")]
     kernel: Annotated[Kernel, FromRegistry(), Field(description="how the surface yields")]
     indenter: Annotated[Indenter, FromRegistry(), Field(description="what is pressed in")]
+    interaction: Annotated[
+        Annotated[Interaction, FromRegistry()] | None,
+        Field(
+            description="what acts across the gap; without it contact is hard and does not stick"
+        ),
+    ] = None
     loading: Annotated[Loading, Field(description="the load steps")]
     solver: Annotated[Solver, FromRegistry(), Field(description="how it is solved")] = Field(
         default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER})
@@ -73,6 +79,22 @@ class Run(FromFile):
                 'or depth, or set grid.boundary = "periodic"',
                 f"loading.{self.loading.prescribed}",
             )
+        return self
+
+    @model_validator(mode="after")
+    def _pulls_by_an_interaction(self) -> Self:
+        if self.interaction is None:
+            quantity = self.loading.prescription.quantity()
+            problems = []
+            for index, value in enumerate(self.loading.values):
+                try:
+                    quantity(value)
+                except ValueError as error:
+                    field = f"loading.{self.loading.prescribed}.{index}"
+                    reason = f"{error}; only an [interaction] holds a surface that is pulled"
+                    problems.append(Problem(field, reason))
+            if problems:
+                raise ConfigError(problems)
         return self
 
     @model_validator(mode="after")
