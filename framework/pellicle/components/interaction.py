@@ -48,8 +48,8 @@ class Interaction(Component):
         """Return dσ/dg [Pa/m]; by default from differences of `traction`."""
         half = 0.5 * _DIFFERENCE * self.cutoff()
         low, high = np.maximum(gap - half, 0.0), np.minimum(gap + half, self.cutoff())
-        change: Array = self.traction(high) - self.traction(low)
-        return change / (high - low)
+        slopes: Array = (self.traction(high) - self.traction(low)) / (high - low)
+        return slopes
 
     def resolved(self, kernel: Kernel, grid: Grid) -> GapLaw:
         """Return the law that the cells of ``grid`` can resolve; by default the interaction itself.

@@ -162,7 +162,6 @@ class IterativeSolver(Solver):
             state = self.step(problem, state)
             iteration += 1
         solution = Solution(self.state(state), iteration, stop)
-        if stop is Stop.STALLED:
-            if residual <= _ROUNDINGS * round_off(problem, solution.pressure):
-                solution = replace(solution, stop=Stop.ROUND_OFF)
+        if stop is Stop.STALLED and residual <= _ROUNDINGS * round_off(problem, solution.pressure):
+            solution = replace(solution, stop=Stop.ROUND_OFF)
         return solution

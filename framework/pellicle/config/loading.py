@@ -99,7 +99,9 @@ def loading_model(type_: str) -> type[Model]:
     fields = {n: info for n, info in component.model_fields.items() if n != "type"} | options
     meaning = (inspect.getdoc(component) or "").partition("\n")[0]
     steps: Any = Annotated[
-        tuple[float, ...], LoadSteps(component.quantity(interaction=True)), Field(description=meaning)
+        tuple[float, ...],
+        LoadSteps(component.quantity(interaction=True)),
+        Field(description=meaning),
     ]
     definitions: dict[str, Any] = {type_: (steps, ...)}
     definitions |= {name: (info.annotation, info) for name, info in fields.items()}

@@ -102,7 +102,7 @@ class Law:
 def attracted(law: Law, gap: Array, contact: Mask, boundary: Boundary) -> Array:
     """Return the traction σ(gap) on each cell, −(strength) in contact.
 
-    A law that needs contact acts only on the patches of cells within its cutoff that hold a contact.
+    A law that needs contact acts only on patches of cells within its cutoff that hold a contact.
     """
     traction = law.traction(np.where(contact, 0.0, gap))
     if law.needs_contact:

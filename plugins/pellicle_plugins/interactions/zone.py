@@ -7,8 +7,8 @@ from scipy.optimize import brentq
 
 from pellicle.components import Kernel
 
-# q times the width of the zone of `softening_strength`. In the zone the gap obeys k(q) = −dσ/dg with
-# k = 1/G: a quarter of that wave, π/2, is the zone on a membrane; 1.27 was measured on a half-space.
+# q times the width of the zone of `softening_strength`. The gap in the zone is a wave for which
+# 1/G(q) = dσ/dg. A quarter of it, π/2, fits on a membrane; 1.27 was measured on a half-space.
 _PHASE = 1.4
 
 

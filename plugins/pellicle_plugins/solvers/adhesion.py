@@ -25,13 +25,17 @@ from .scaling import ScaledSolver
 _CONTACT_SHARE: Final = 0.05
 # Rounds whose tractions are extrapolated.
 _MEMORY: Final = 8
-# A front moves by at most this many cells in a round, beyond which the linear estimate says nothing.
+# A front moves by at most this many cells in a round; beyond, the linear estimate says nothing.
 _MOST_CELLS: Final = 2.0
 # Energy by which a front of unit length resists a wave of unit wavenumber, over the work of
 # adhesion: 1 on a half-space (Rice 1985), 2 on a membrane.
 _FRONT_STIFFNESS: Final = 1.25
 # Longest wave of a front, as a multiple of the mean extent of the contact, area over perimeter.
 _LONGEST: Final = 0.5
+# Bounds of the factor on the shift of the fronts, and its growth in a round.
+_LEAST_GAIN: Final = 1 / 16
+_GREATEST_GAIN: Final = 4.0
+_FASTER: Final = 1.5
 # Sign-certainty factors of inner solves, and the set changes after which the strict one applies.
 _SIGN_CERTAINTY: Final = 1.0
 _STRICT_SIGN_CERTAINTY: Final = 30.0
@@ -65,6 +69,8 @@ class _Round:
     history: tuple[tuple[Array, Array, Array], ...] = ()
     """Traction, missed traction and wall pressure of earlier rounds on the same contact."""
     progress: Progress = field(default_factory=Progress)
+    gain: float = 1.0
+    """Factor on the estimated shift of the fronts."""
 
     @property
     def contact(self) -> Mask:
@@ -87,7 +93,8 @@ class _Round:
         load = 0.0
         if self.problem.prescribed == "force":
             load = self.depth * self.problem.value / self.problem.grid.cell_area
-        return round((elastic + bound - load) / (law.work_of_adhesion() * max(acts.sum(), 1)), 8)
+        unit = law.work_of_adhesion() * (int(np.count_nonzero(acts)) or 1)
+        return round((elastic + bound - load) / unit, 8)
 
     @property
     def scale(self) -> float:
@@ -138,14 +145,15 @@ class Adhesion(ScaledSolver):
         contact, law = state.contact, problem.law
         assert law
         strength = law.strength()
-        following = traction + missed + _front_shift(state, missed)
+        following = traction + missed + state.gain * _front_shift(state, missed)
         following = np.clip(following, -strength, 0.0, where=~contact, out=following)
         following[contact] = -strength
         # The contact takes up what the change of the tractions off it lifts.
         change = np.where(contact, wall, traction - following)
         wall = state.on_contact.transferred(change)
         wall[~contact] = 0.0
-        return self._closed(problem, state.on_contact, wall, following, state)
+        after = self._closed(problem, state.on_contact, wall, following, state)
+        return replace(after, gain=_gain(state, after))
 
     def residual(self, problem: Problem, state: _Round) -> float:
         """Return the largest of gap, penetration and missed traction, each relative."""
@@ -269,7 +277,9 @@ def _finished(
     # On another contact, earlier rounds obey other equations.
     if np.array_equal(contact, before.contact) and _is_convex(before, state):
         history = (*before.history, (before.traction, before.missed, before.wall))[-_MEMORY:]
-    return replace(state, history=history, progress=before.progress.after(state.residual, state.energy))
+    return replace(
+        state, history=history, progress=before.progress.after(state.residual, state.energy)
+    )
 
 
 def _is_convex(before: _Round, after: _Round) -> bool:
@@ -280,6 +290,18 @@ def _is_convex(before: _Round, after: _Round) -> bool:
     """
     step, change = after.traction - before.traction, after.missed - before.missed
     return float((step * change)[~after.contact].sum()) < 0
+
+
+def _gain(before: _Round, after: _Round) -> float:
+    """Return the factor on the next shift of the fronts, from where this round should have ended.
+
+    The missed tractions along the step fall linearly with its length on a smooth front, to 0 at the
+    length at which the energy is least.
+    """
+    step = after.traction - before.traction
+    one, other = (float((step * part.missed).sum()) for part in (before, after))
+    best = one / (one - other) if other < one and one > 0 else 2.0
+    return float(np.clip(before.gain * np.clip(best, 0.5, _FASTER), _LEAST_GAIN, _GREATEST_GAIN))
 
 
 def _touching(problem: Problem) -> Mask:
@@ -365,4 +387,4 @@ def _slope(values: Array, dx: float, dy: float) -> Array:
     for axis, width in ((0, dx), (1, dy)):
         if values.shape[axis] > 1:
             slopes += np.square(np.gradient(values, width, axis=axis))
-    return np.sqrt(slopes)
+    return np.asarray(np.sqrt(slopes))
