@@ -165,18 +165,18 @@ def fit(
         print_fits(result.rows)
     else:
         print_fit(result)
-    files: list[Path] = []
+    written: list[Path] = []
     if isinstance(result, ManyFits):
-        files += result.files
+        written += result.files
         if result.resumed:
             typer.echo(f"{result.resumed} of {len(sources)} fits were done before", err=json)
     elif directory is not None:
-        files.append(result.save(directory / f"{name}.json"))
-        files.append(save_figure(result, directory / f"{name}.png"))
+        written.append(result.save(directory / f"{name}.json"))
+        written.append(save_figure(result, directory / f"{name}.png"))
     if report:
         page = (directory or Path()) / f"{name}.html"
-        files.append(save_report(result, page, title))
-    for path in files:
+        written.append(save_report(result, page, title))
+    for path in written:
         typer.echo(f"wrote {path}", err=json)
     if isinstance(result, ManyFits) and result.failed:
         typer.echo(f"{result.failed} of {len(sources)} curves could not be fitted", err=True)

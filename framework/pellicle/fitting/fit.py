@@ -170,7 +170,6 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
         messages=(
             *problem.curve.messages,
             *single.messages,
-            *(check.message for check in single.failed_checks),
             *profile.messages,
             *check_plausible(likelihood, best),
             *undecided,

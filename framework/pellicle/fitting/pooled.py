@@ -231,7 +231,6 @@ def _fit_pool(
                 messages=(
                     *problem.curve.messages,
                     *single.messages,
-                    *(check.message for check in single.failed_checks),
                     *check_plausible(member, part),
                 ),
             )

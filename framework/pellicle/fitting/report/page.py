@@ -64,13 +64,13 @@ def save_report(fit: Fit | PooledFit | ManyFits, path: Path, title: str) -> Path
 
 def _fit(fit: Fit | PooledFit) -> tuple[list[Block], list[Block]]:
     """Return results and inputs of a fit or a pooled fit."""
-    notices = [Notice(_sentence(fit.comparison), good=not fit.doubt)]
-    if isinstance(fit, PooledFit):
-        notices.append(Notice(_sentence(fit.agreement), good=fit.agree))
-    results = [*notices, *_warnings(fit.notes), _estimates(fit)]
-    if isinstance(fit, PooledFit):
-        return [*results, _curves(fit)], [_inputs([curve.model for curve in fit.curves])]
-    return results, [_inputs([fit.model()]), _data(fit)]
+    results: list[Block] = [Notice(_sentence(fit.comparison), good=not fit.doubt)]
+    if isinstance(fit, Fit):
+        results += [*_warnings(fit.notes), _estimates(fit)]
+        return results, [_inputs([fit.model()]), _data(fit)]
+    results.append(Notice(_sentence(fit.agreement), good=fit.agree))
+    results += [*_warnings(fit.notes), _estimates(fit), _curves(fit)]
+    return results, [_inputs([curve.model for curve in fit.curves])]
 
 
 def _many(rows: Sequence[Row]) -> tuple[list[Block], list[Block]]:

@@ -52,7 +52,7 @@ class SingleFit:
     """Source of the noise estimate."""
     failed_checks: tuple[FailedCheck, ...]
     messages: tuple[str, ...]
-    """Further warnings."""
+    """Warnings, among them those of the checks."""
 
 
 def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
@@ -100,7 +100,7 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
         noise.freedom,
         source,
         (*failed, *shape),
-        (*messages, *notes),
+        (*messages, *notes, *(check.message for check in (*failed, *shape))),
     )
 
 
