@@ -14,14 +14,8 @@ import numpy as np
 
 import pellicle as pl
 from pellicle.components import HasForceCurve
-from pellicle.fitting.models.force_model import (
-    CONTACT_POINT,
-    MODULUS,
-    OFFSET,
-    SLOPE,
-    TENSION,
-    tension_model,
-)
+from pellicle.fitting.models.force_model import tension_model
+from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from pellicle.fitting.statistics.likelihood import Likelihood
 
 NOISE, DEPTH, BEFORE = 0.005, 0.3, 0.3

@@ -180,7 +180,7 @@ def outcomes(kind: Kind, curves: int, seed: int) -> Iterator[Outcome]:
             force,
             indenter="paraboloid",
             radius=RADIUS,
-            baseline=kind.baseline,  # type: ignore[arg-type]
+            baseline=kind.baseline,
         )
         codes = tuple(check.code for check in fit.failed_checks)
         yield Outcome(fit.tension.low is not None, codes)

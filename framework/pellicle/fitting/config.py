@@ -15,7 +15,7 @@ from pydantic import (
     model_validator,
 )
 
-from pellicle.components import Component, Executor, HasForceCurve, Indenter
+from pellicle.components import Executor, HasForceCurve, Indenter
 from pellicle.config.component_field import FromRegistry
 from pellicle.config.study import DEFAULT_EXECUTOR
 from pellicle.errors import ConfigError, shown
@@ -30,15 +30,12 @@ from pellicle.units import PoissonsRatio, Quantity
 from .curves.columns import Calibration
 from .curves.curve import LARGEST, Segment
 from .curves.readers import Curves, Source, expanded, gather
-from .models.force_model import CONTACT_POINT, MODULUS, TENSION
-from .models.simulation import GRID_POINTS
+from .models.force_model import ForceModel, described, tension_model
+from .models.simulation import GRID_POINTS, Simulation
 from .models.solid import DEFAULT_KERNEL, Solid, solid
+from .parameters import CONTACT_POINT, MODULUS, TENSION
 
 Baseline = Literal["none", "offset", "slope"]
-IndenterLike = str | Mapping[str, Any] | Indenter | HasForceCurve
-"""An indenter, its table, or its type; or anything that has a force curve."""
-ExecutorLike = str | Mapping[str, Any] | Executor
-"""An executor, its table, or its type."""
 
 FIXABLE = {parameter.name: parameter for parameter in (CONTACT_POINT, MODULUS, TENSION)}
 """Parameters that can be fixed, by their names."""
@@ -94,18 +91,11 @@ def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
     return data | {"cache": folder / cache} if isinstance(cache, str) else data
 
 
-def _as_json(indenter: object) -> dict[str, Any]:
-    """Return an indenter as JSON data."""
-    if isinstance(indenter, Component):
-        return indenter.model_dump(mode="json", exclude_none=True)
-    return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
-
-
 class FitConfig(FromFile, Calibration):
     """Configuration of a fit: curves, indenter, solid, and options.
 
-    The keyword arguments of `fit`, `fit_many` and `fit_pooled`, the options of ``pellicle fit`` and
-    the keys of a TOML file have the names of these fields.
+    The options of `fit`, `fit_many`, `fit_pooled` and ``pellicle fit``, and the keys of a TOML file
+    have the names of these fields.
     """
 
     curves: Annotated[
@@ -116,11 +106,11 @@ class FitConfig(FromFile, Calibration):
     indenter: Annotated[
         Indenter | HasForceCurve | dict[str, Any],
         PlainValidator(_indenter, json_schema_input_type=dict[str, Any] | str),
-        PlainSerializer(_as_json),
+        PlainSerializer(described),
         Field(description="the indenter: its type and fields"),
     ]
     poissons_ratio: PoissonsRatio | None = Field(
-        None, description="of the solid, to get Young's modulus as well"
+        None, description="of the solid, to get Young's modulus as well, or if the kernel needs it"
     )
     kernel: Annotated[
         dict[str, Any] | None,
@@ -130,10 +120,10 @@ class FitConfig(FromFile, Calibration):
     fix: Annotated[
         dict[str, float],
         BeforeValidator(_fixed),
-        Field(description="parameters that are not fitted, with their values"),
+        Field(description=f"values of parameters that are not fitted: {', '.join(FIXABLE)}"),
     ] = Field(default_factory=dict)
     baseline: Baseline = Field(
-        "none", description="part of the force before contact that is fitted"
+        "none", description="force before contact that is fitted: offset, or offset and slope"
     )
     segment: Segment = Field("approach", description="the pass that is fitted")
     per_file: Annotated[
@@ -247,8 +237,16 @@ class FitConfig(FromFile, Calibration):
             self.curves if curves is None else curves, self.segment, self.calibration, self.per_file
         )
 
-    def indenter_with(self, fields: Mapping[str, Any]) -> Indenter | HasForceCurve:
-        """Return the indenter with the fields of one curve in place of its own."""
+    def force_model(self, fields: Mapping[str, Any]) -> ForceModel | Simulation:
+        """Return the model of the force on the indenter, or what has to be simulated to get one.
+
+        ``fields`` are those of the indenter that one curve alone has.
+
+        Raises
+        ------
+        ConfigError
+            The indenter cannot have these fields, or needs others, or allows no kernel.
+        """
         indenter: Any = self.indenter
         if fields and not isinstance(indenter, (Indenter, Mapping)):
             raise ConfigError(
@@ -256,20 +254,15 @@ class FitConfig(FromFile, Calibration):
             )
         for name, value in fields.items():
             indenter = replaced(indenter, name, value)
-        if isinstance(indenter, HasForceCurve):
-            return indenter
-        try:
-            return registry().make(Indenter, indenter)
-        except ConfigError as error:
-            raise error.within("indenter") from None
-
-    def solid_under(self, indenter: Indenter | HasForceCurve) -> Solid | None:
-        """Return the solid to simulate; None if there is no kernel and none is needed."""
-        if self._solid is None:
-            closed = isinstance(indenter, HasForceCurve)
-            return None if closed else solid(DEFAULT_KERNEL, self.poissons_ratio)
+        if not isinstance(indenter, HasForceCurve):
+            try:
+                indenter = registry().make(Indenter, indenter)
+            except ConfigError as error:
+                raise error.within("indenter") from None
+        if self._solid is None and isinstance(indenter, HasForceCurve):
+            return tension_model(indenter)
         if not isinstance(indenter, Indenter):
             raise ConfigError(
                 "cannot be given with a force curve, which includes its solid", "kernel"
             )
-        return self._solid
+        return Simulation(indenter, self._solid or solid(DEFAULT_KERNEL, self.poissons_ratio))

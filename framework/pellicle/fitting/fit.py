@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -13,13 +13,13 @@ from numpy.typing import ArrayLike
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError
 
-from .config import Baseline, ExecutorLike, FitConfig, IndenterLike
-from .curves.curve import Curve, Segment
+from .config import FitConfig
+from .curves.curve import Curve
 from .curves.readers import Source, fields_of_files
-from .models.force_model import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
+from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .result import FitResult, doubt_of_tension, status_line
-from .statistics.checks import fit_single
+from .statistics.checks import check_plausible, fit_single
 from .statistics.design import advice, undecided
 from .statistics.initial_guess import initial_guesses
 from .statistics.likelihood import Likelihood, Minimum, best_minimum
@@ -72,19 +72,9 @@ def fit(
     force: ArrayLike | None = None,
     *,
     depth: ArrayLike | None = None,
-    indenter: IndenterLike | None = None,
-    kernel: str | Mapping[str, Any] | None = None,
-    poissons_ratio: float | None = None,
-    fix: Mapping[str, Any] | None = None,
-    baseline: Baseline | None = None,
-    segment: Segment | None = None,
-    spring_constant: float | str | None = None,
-    cache: str | Path | None = None,
-    executor: ExecutorLike | None = None,
-    grid_points: int | None = None,
     config: FitConfig | str | Path | None = None,
     progress: bool = False,
-    **fields: Any,
+    **options: Any,
 ) -> Fit:
     """Fit reduced modulus, tension and contact point to one measured curve.
 
@@ -100,35 +90,18 @@ def fit(
     ----------
     position, force
         Position of the indenter [m], growing into the solid, and force [N], both of shape (n,).
+        With the option ``spring_constant`` [N/m], position is that of the cantilever's base less
+        its deflection, so that the noise of the deflection is in both.
     depth
         Depth [m] instead of position: the contact point is then fixed at 0.
-    indenter, **fields
-        An indenter, its table, or its type with the fields that the type needs:
-        ``indenter="paraboloid", radius="5 um"``; or anything that has a force curve.
-    kernel
-        Type or table of the kernel, without the modulus and the tension that are fitted.
-    poissons_ratio
-        ν, to give Young's modulus as well; also used by a kernel that needs one and has none.
-    fix
-        Values of parameters that are not fitted, e.g. ``{"tension": 0}``: reduced_modulus,
-        tension, contact_point.
-    baseline
-        Part of the force before contact that is fitted: ``"none"`` (the default), its ``"offset"``,
-        or offset and ``"slope"``.
-    segment
-        The pass of a curve that is fitted: ``"approach"`` (the default) or ``"retract"``.
-    spring_constant
-        Spring constant of the cantilever [N/m], if position is that of its base less its
-        deflection: the noise of the deflection is then in both position and force, which the fit
-        accounts for.
-    cache, executor, grid_points
-        Options of a study: the folder that keeps it (the user's cache folder), the executor of its
-        runs (``"serial"``), and the cells of each grid along x and y (64).
     config
-        A configuration or its TOML file; the other arguments, if given, replace its values.
-        Without position and force, the curve that it names is fitted.
+        A configuration or its TOML file.  Without position and force, the curve that it names is
+        fitted.
     progress
         Show the progress of a study and of the fit on a terminal.
+    **options
+        Fields of `FitConfig`, which replace those of ``config``, and fields of the indenter:
+        ``indenter="paraboloid", radius="5 um", fix={"tension": 0}``.
 
     Raises
     ------
@@ -137,20 +110,7 @@ def fit(
     ConvergenceError, StorageError
         A study failed, or its folder cannot be used.
     """
-    config = FitConfig.merged(
-        config,
-        indenter=indenter,
-        kernel=kernel,
-        poissons_ratio=poissons_ratio,
-        fix=fix,
-        baseline=baseline,
-        segment=segment,
-        spring_constant=spring_constant,
-        cache=cache,
-        executor=executor,
-        grid_points=grid_points,
-        **fields,
-    )
+    config = FitConfig.merged(config, **options)
     if position is None and depth is None and force is None and config.curves:
         sources = config.sources()
         if len(sources) > 1:
@@ -211,7 +171,7 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
             *single.messages,
             *(check.message for check in single.failed_checks),
             *profile.messages,
-            *problem.check_plausible(point.value, modulus.value, tension.value),
+            *check_plausible(likelihood, best),
             *undecided(modulus, tension, likelihood, best),
         ),
         parameters=best,

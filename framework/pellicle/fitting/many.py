@@ -6,7 +6,6 @@ import csv
 import hashlib
 import json
 import pickle
-from collections.abc import Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -23,10 +22,11 @@ from pellicle.results import storage
 from pellicle.results.variables import header
 from pellicle.runs.progress import StudyProgress
 
-from .config import Baseline, ExecutorLike, FitConfig, IndenterLike
-from .curves.curve import Segment
+from .config import FitConfig
 from .curves.readers import Curves, Source
 from .fit import fit_problem
+from .models.force_model import ClosedFormModel
+from .models.simulation import Simulation
 from .problem import FitProblem, problems
 from .result import write_json
 
@@ -81,19 +81,10 @@ class ManyFits(NamedTuple):
 def fit_many(
     curves: Curves | None = None,
     *,
-    indenter: IndenterLike | None = None,
-    kernel: str | Mapping[str, Any] | None = None,
-    poissons_ratio: float | None = None,
-    fix: Mapping[str, Any] | None = None,
-    baseline: Baseline | None = None,
-    segment: Segment | None = None,
-    cache: str | Path | None = None,
-    grid_points: int | None = None,
-    executor: ExecutorLike | None = None,
     config: FitConfig | str | Path | None = None,
     directory: str | Path | None = None,
     progress: bool = True,
-    **fields: Any,
+    **options: Any,
 ) -> xr.Dataset:
     """Fit each of many curves on its own and return a table with a row for each.
 
@@ -106,20 +97,16 @@ def fit_many(
         table that lists files, with a header such as ``file,radius [um]``; several of these; or
         position [m] and force [N] of each curve by its name, ``{"first": (position, force)}``.
         Those of the configuration if not given.
-    indenter, kernel, poissons_ratio, fix, baseline, segment, cache, grid_points, config
-        As for `fit`.
-    executor
-        Executor of the fits and of the runs of a study that they need: ``"serial"`` (the default),
-        ``"processes"``, ``"dask"``, a table such as ``{"type": "processes", "workers": 2}``, or an
-        executor.
+    config
+        A configuration or its TOML file.
     directory
         Folder for the table, as ``fits.h5``, ``fits.csv`` and ``fits.json``, and a file for each
         curve in ``curves``. A fit that it contains already is not repeated.
     progress
         Show a bar on a terminal; without one, a line for each curve.
-    **fields
-        Fields of the indenter, and spring_constant and sensitivity if the files lack force or
-        deflection; a list has a value for each file: ``radius=["5 um", "20 um"]``.
+    **options
+        As for `fit`.  A list for a field of the indenter, for spring_constant or for sensitivity
+        has a value for each file: ``radius=["5 um", "20 um"]``.
 
     Returns
     -------
@@ -134,19 +121,7 @@ def fit_many(
     StorageError
         The folder cannot be used.
     """
-    config = FitConfig.merged(
-        config,
-        indenter=indenter,
-        kernel=kernel,
-        poissons_ratio=poissons_ratio,
-        fix=fix,
-        baseline=baseline,
-        segment=segment,
-        cache=cache,
-        grid_points=grid_points,
-        executor=executor,
-        **fields,
-    )
+    config = FitConfig.merged(config, **options)
     folder = None if directory is None else Path(directory)
     return table(fit_sources(config, config.sources(curves), folder, progress=progress).rows)
 
@@ -209,9 +184,15 @@ def _path(directory: Path | None, problem: FitProblem, grid_points: int) -> Path
 
 def _identity(problem: FitProblem, grid_points: int) -> str:
     """Return a hash that is equal for problems with equal results."""
-    curve, kernel = problem.curve, problem.solid and problem.solid.kernel
+    curve, model, kernel = problem.curve, problem.model, None
     digest = hashlib.sha256(version("pellicle").encode())
-    for part in (problem.indenter, kernel):
+    indenter: object = model
+    if isinstance(model, Simulation):
+        indenter, kernel = model.indenter, model.solid.kernel
+    elif isinstance(model, ClosedFormModel):
+        indenter = model.indenter
+    for part in (indenter, kernel):
+        # Two pickles of equal components may differ.
         if isinstance(part, Component):
             digest.update(part.model_dump_json().encode())
         else:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar
@@ -12,13 +12,12 @@ from scipy.special import bdtrc, chdtrc
 
 from pellicle.errors import ConfigError, PellicleError
 
-from .config import Baseline, ExecutorLike, FitConfig, IndenterLike
-from .curves.curve import Segment
+from .config import FitConfig
 from .curves.readers import Curves, Source
-from .models.force_model import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
+from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .result import FitResult, doubt_of_tension, interval_text, status_line
-from .statistics.checks import SingleFit, check_pooled_shape, fit_single
+from .statistics.checks import SingleFit, check_plausible, check_pooled_shape, fit_single
 from .statistics.design import percent
 from .statistics.likelihood import best_minimum
 from .statistics.noise import FailedCheck
@@ -135,19 +134,9 @@ class PooledFit(FitResult):
 def fit_pooled(
     curves: Curves | None = None,
     *,
-    indenter: IndenterLike | None = None,
-    kernel: str | Mapping[str, Any] | None = None,
-    poissons_ratio: float | None = None,
-    fix: Mapping[str, Any] | None = None,
-    baseline: Baseline | None = None,
-    segment: Segment | None = None,
-    cache: str | Path | None = None,
-    executor: ExecutorLike | None = None,
-    grid_points: int | None = None,
     config: FitConfig | str | Path | None = None,
     progress: bool = False,
-    contact_points: bool | None = None,
-    **fields: Any,
+    **options: Any,
 ) -> PooledFit:
     """Fit one reduced modulus and one tension to several curves together.
 
@@ -158,18 +147,14 @@ def fit_pooled(
     ----------
     curves
         As for `fit_many`.
-    indenter, kernel, poissons_ratio, baseline, segment, cache, executor, grid_points, config
-        As for `fit`.
-    fix
-        Values of shared parameters that are not fitted: reduced_modulus, tension.
+    config
+        A configuration or its TOML file.
     progress
         Show the progress of studies and of the fit on a terminal.
-    contact_points
-        Whether to determine the interval of each contact point too. Each interval needs searches
-        over the parameters of all curves, so the time grows with the square of their number.
-    **fields
-        Fields of the indenter and, if needed by files, spring_constant and sensitivity; a list has
-        a value for each file: ``radius=["5 um", "20 um"]``.
+    **options
+        As for `fit_many`, but a contact point cannot be fixed.  ``contact_points=True`` determines
+        the interval of each contact point too.  Each needs searches over the parameters of all
+        curves, so the time grows with the square of their number.
 
     Raises
     ------
@@ -178,21 +163,7 @@ def fit_pooled(
     StorageError
         A folder cannot be read.
     """
-    config = FitConfig.merged(
-        config,
-        indenter=indenter,
-        kernel=kernel,
-        poissons_ratio=poissons_ratio,
-        fix=fix,
-        baseline=baseline,
-        segment=segment,
-        cache=cache,
-        executor=executor,
-        grid_points=grid_points,
-        pool=True,
-        contact_points=contact_points,
-        **fields,
-    )
+    config = FitConfig.merged(config, pool=True, **options)
     return pool_sources(config, config.sources(curves), progress=progress)
 
 
@@ -261,7 +232,7 @@ def _fit_pool(
                     *problem.curve.messages,
                     *single.messages,
                     *(check.message for check in single.failed_checks),
-                    *problem.check_plausible(point.value, modulus.value, tension.value),
+                    *check_plausible(member, part),
                 ),
             )
         )

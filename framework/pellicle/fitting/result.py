@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 from pellicle.files import atomic_write
 
 from .config import FitConfig
-from .models.force_model import Coordinates
+from .parameters import Coordinates
 from .statistics.noise import FailedCheck
 from .statistics.profile import CONFIDENCE, Estimate
 

@@ -9,15 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pellicle.fitting.models.force_model import (
-    CONTACT_POINT,
-    OFFSET,
-    SLOPE,
-    ForceModel,
-    ModelForce,
-    Parameter,
-    Values,
-)
+from pellicle.fitting.models.force_model import ForceModel, ModelForce
+from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Parameter, Values
 from pellicle.fitting.statistics.initial_guess import initial_guesses
 from pellicle.fitting.statistics.likelihood import Likelihood, best_minimum
 from pellicle.fitting.statistics.pooled_likelihood import Pool

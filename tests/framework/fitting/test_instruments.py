@@ -13,17 +13,9 @@ import pellicle as pl
 from pellicle.fitting.curves.columns import Calibration
 from pellicle.fitting.curves.curve import Curve
 from pellicle.fitting.curves.readers import read
-from pellicle.fitting.models.force_model import (
-    CONTACT_POINT,
-    OFFSET,
-    SLOPE,
-    TENSION,
-    Coordinates,
-    tension_model,
-)
-from pellicle.fitting.models.force_model import (
-    MODULUS as REDUCED_MODULUS,
-)
+from pellicle.fitting.models.force_model import tension_model
+from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates
+from pellicle.fitting.parameters import MODULUS as REDUCED_MODULUS
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.framework.fitting import instruments

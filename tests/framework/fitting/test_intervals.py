@@ -10,13 +10,7 @@ import numpy as np
 import pytest
 
 from pellicle.arrays import Array
-from pellicle.fitting.models.force_model import (
-    CONTACT_POINT,
-    MODULUS,
-    OFFSET,
-    Coordinates,
-    Parameter,
-)
+from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, Coordinates, Parameter
 from pellicle.fitting.statistics.likelihood import ChiSquared, Minimum, Range
 from pellicle.fitting.statistics.profile import (
     ImprovedMinimum,

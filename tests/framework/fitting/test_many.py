@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.fitting.many import fit_sources
+from pellicle.fitting.models.force_model import tension_model
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 Array = NDArray[np.float64]
@@ -176,7 +177,8 @@ def test_simulated_once_here(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def simulate(indenter: pl.Indenter, solid: object, deepest: float, **settings: Any) -> Any:
         requests.append(settings["executor"])
-        return indenter
+        assert isinstance(indenter, pl.HasForceCurve)
+        return tension_model(indenter)
 
     monkeypatch.setattr("pellicle.fitting.problem.simulate", simulate)
     curves = {str(seed): curve(seed) for seed in range(2)}

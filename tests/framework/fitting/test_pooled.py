@@ -17,16 +17,9 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.fitting.models import simulation
-from pellicle.fitting.models.force_model import (
-    CONTACT_POINT,
-    MODULUS,
-    OFFSET,
-    SLOPE,
-    TENSION,
-    Coordinates,
-    tension_model,
-)
+from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.models.interpolated import SimulatedCurve
+from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates
 from pellicle.fitting.report.page import save_report
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.pooled_likelihood import Pool

@@ -12,15 +12,8 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 import pellicle as pl
-from pellicle.fitting.models.force_model import (
-    CONTACT_POINT,
-    MODULUS,
-    OFFSET,
-    SLOPE,
-    TENSION,
-    Parameter,
-    tension_model,
-)
+from pellicle.fitting.models.force_model import tension_model
+from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Parameter
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.flat_punch import FlatPunch

@@ -8,63 +8,16 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple, Protocol
-
-import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import Component, ForceCurve, HasForceCurve
 from pellicle.components.calls import force_curve_of
+from pellicle.fitting.parameters import MODULUS, TENSION, Parameter, Values
 
 _LENGTHS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0)
 """Elastocapillary lengths s of the initial guesses, over the measured range of positions."""
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A quantity that a fit determines, or that the user fixes."""
-
-    name: str
-    unit: str
-    """SI unit; m, N or N/m unless `logarithmic`, since a curve sets the scale of these only."""
-    minimum: float = -np.inf
-    """Least allowed value, which the best value may equal."""
-    logarithmic: bool = False
-    """Whether the fit varies the natural logarithm, as for a modulus of unknown magnitude."""
-    shared: bool = False
-    """Whether all curves of a pooled fit have the same value."""
-    curve: int = 0
-    """Index of the curve in a pooled fit; 0 if shared."""
-
-    def of_curve(self, index: int) -> Parameter:
-        """Return the parameter of one curve of a pooled fit."""
-        return self if self.shared else replace(self, curve=index)
-
-    def coordinate(self, value: float) -> float:
-        """Return the coordinate that the fit varies: the value, or its natural logarithm."""
-        return float(np.log(value)) if self.logarithmic else value
-
-    def value(self, coordinate: float) -> float:
-        """Return the value at a coordinate."""
-        return float(np.exp(coordinate)) if self.logarithmic else coordinate
-
-
-Values = Mapping[Parameter, float]
-"""Values of parameters, each in its unit."""
-Coordinates = dict[Parameter, float]
-"""What a fit varies: the value of each parameter, or its natural logarithm if `logarithmic`."""
-
-CONTACT_POINT = Parameter("contact_point", "m")
-"""Position of first touch."""
-MODULUS = Parameter("reduced_modulus", "Pa", logarithmic=True, shared=True)
-"""E*."""
-TENSION = Parameter("tension", "N/m", minimum=0.0, shared=True)
-"""τ₀."""
-OFFSET = Parameter("offset", "N")
-"""Force of the baseline at the first position."""
-SLOPE = Parameter("slope", "N/m")
-"""Slope of the baseline."""
 
 
 class ModelForce(NamedTuple):
@@ -164,9 +117,14 @@ class ClosedFormModel(TensionModel):
 
     def description(self) -> dict[str, Any]:
         """Return the indenter as JSON data."""
-        if isinstance(self.indenter, Component):
-            return {"indenter": self.indenter.model_dump(mode="json", exclude_none=True)}
-        return {"indenter": {"type": type(self.indenter).__name__}}
+        return {"indenter": described(self.indenter)}
+
+
+def described(indenter: object) -> dict[str, Any]:
+    """Return an indenter, or the fields of one, as JSON data."""
+    if isinstance(indenter, Component):
+        return indenter.model_dump(mode="json", exclude_none=True)
+    return dict(indenter) if isinstance(indenter, Mapping) else {"type": type(indenter).__name__}
 
 
 def tension_model(curve: HasForceCurve) -> TensionModel:

@@ -13,7 +13,7 @@ from scipy.interpolate import RectBivariateSpline
 from pellicle.arrays import Array
 from pellicle.components import ForceCurve, Indenter
 
-from .force_model import TensionModel
+from .force_model import TensionModel, described
 
 SCALE = 0.1
 """Ratio of s to contact width at which the spacing of nodes turns from uniform to logarithmic."""
@@ -94,7 +94,7 @@ class SimulatedCurve(TensionModel):
     def description(self) -> dict[str, Any]:
         """Return indenter, kernel and accuracy as JSON data."""
         return {
-            "indenter": self.indenter.model_dump(mode="json", exclude_none=True),
+            "indenter": described(self.indenter),
             "kernel": dict(self.kernel),
             "accuracy": self.accuracy,
         }

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import platformdirs
@@ -43,6 +43,13 @@ _CELLS = 129
 _CLOSE = 0.95
 """Least width of the indenter over that of the sampled domain."""
 _WIDEST = 1e9
+
+
+class Simulation(NamedTuple):
+    """An indenter and a solid whose force curve has to be simulated before a fit."""
+
+    indenter: Indenter
+    solid: Solid
 
 
 def simulate(

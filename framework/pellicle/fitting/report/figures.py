@@ -12,14 +12,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.fitting.fit import Fit
-from pellicle.fitting.models.force_model import (
-    MODULUS,
-    OFFSET,
-    SLOPE,
-    TENSION,
-    Coordinates,
-    Parameter,
-)
+from pellicle.fitting.parameters import MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.profile import Estimate

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from pellicle.arrays import Array
-from pellicle.fitting.models.force_model import SLOPE
+from pellicle.fitting.parameters import SLOPE
 
 from .noise import (
     CHANCE,

@@ -8,15 +8,11 @@ import numpy as np
 from scipy.special import chdtri, fdtrc
 
 from pellicle.arrays import Array
-from pellicle.components import HasForceCurve, IsShallowLimit
+from pellicle.components import Component, HasForceCurve, IsShallowLimit
 from pellicle.errors import ConfigError, ConvergenceError
-from pellicle.fitting.models.force_model import (
-    CONTACT_POINT,
-    MODULUS,
-    TENSION,
-    ClosedFormModel,
-    Coordinates,
-)
+from pellicle.fitting.models.force_model import ClosedFormModel
+from pellicle.fitting.models.solid import lengths
+from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 
 from .baseline_checks import check_baseline, falling_baseline
 from .initial_guess import initial_guesses
@@ -44,6 +40,10 @@ SHALLOW = 0.1
 """Depth over radius beyond which a paraboloid differs from the sphere that it approximates."""
 _ALIKE = 10.8
 """Δχ² below which another shape describes a curve as well (by chance exceeded in 0.1 %)."""
+_PLAUSIBLE_DEPTH = (1e-3, 1.0)
+"""Depth over radius."""
+_PLAUSIBLE_MODULUS = (1.0, 1e12)
+_PLAUSIBLE_TENSION = 10.0
 
 
 @dataclass(frozen=True)
@@ -111,6 +111,38 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
         (*failed, *shape),
         (*messages, *notes),
     )
+
+
+def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str]:
+    """Return warnings of implausible results, such as a wrong unit or radius causes.
+
+    Raises
+    ------
+    ConfigError
+        The depth is beyond that to which the force model holds.
+    """
+    messages = []
+    modulus, tension = MODULUS.value(parameters[MODULUS]), parameters[TENSION]
+    depth = float(likelihood.depth(parameters)[-1])
+    limit = likelihood.force_model.depth_limit
+    if depth > limit:
+        raise ConfigError(
+            f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at {limit:.3g} "
+            "m; is the radius right? If so, leave out the deepest part",
+            "indenter",
+        )
+    shape = getattr(likelihood.force_model, "indenter", None)
+    radius = next(iter(lengths(shape)), None) if isinstance(shape, Component) else None
+    if radius is not None and not _PLAUSIBLE_DEPTH[0] <= depth / radius <= _PLAUSIBLE_DEPTH[1]:
+        messages.append(
+            f"the depth of {depth:.3g} m is {depth / radius:.3g} times the radius of {radius:.3g} "
+            "m: are radius and units right?"
+        )
+    if not _PLAUSIBLE_MODULUS[0] <= modulus <= _PLAUSIBLE_MODULUS[1]:
+        messages.append(f"a modulus of {modulus:.3g} Pa is not plausible: are the units right?")
+    if tension > _PLAUSIBLE_TENSION:
+        messages.append(f"a tension of {tension:.3g} N/m is not plausible: are the units right?")
+    return messages
 
 
 def _spikes(residuals: Residuals) -> list[FailedCheck]:

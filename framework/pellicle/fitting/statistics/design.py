@@ -7,13 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pellicle.fitting.models.force_model import (
-    CONTACT_POINT,
-    MODULUS,
-    TENSION,
-    ClosedFormModel,
-    Coordinates,
-)
+from pellicle.fitting.models.force_model import ClosedFormModel
+from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 
 from .likelihood import Likelihood
 from .profile import Estimate

@@ -5,13 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.fitting.models.force_model import (
-    CONTACT_POINT,
-    OFFSET,
-    SLOPE,
-    Coordinates,
-    Values,
-)
+from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, Values
 
 from .likelihood import Likelihood
 

@@ -13,14 +13,8 @@ from scipy.optimize import least_squares
 
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
-from pellicle.fitting.models.force_model import (
-    CONTACT_POINT,
-    OFFSET,
-    SLOPE,
-    Coordinates,
-    ForceModel,
-    Parameter,
-)
+from pellicle.fitting.models.force_model import ForceModel
+from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, Parameter
 
 REACH = np.log(100.0)
 """Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""

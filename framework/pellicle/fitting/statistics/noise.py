@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import fdtrc
 
 from pellicle.arrays import Array, Mask
-from pellicle.fitting.models.force_model import OFFSET, SLOPE, Coordinates, Parameter
+from pellicle.fitting.parameters import OFFSET, SLOPE, Coordinates, Parameter
 
 from .likelihood import Likelihood
 

@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.fitting.models.force_model import MODULUS, TENSION, Coordinates, Parameter
+from pellicle.fitting.parameters import MODULUS, TENSION, Coordinates, Parameter
 
 from .initial_guess import GUESSES
 from .likelihood import ChiSquared, Likelihood, Minimum, Range, least

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from scipy.special import stdtrit
 
 from pellicle.errors import ConvergenceError
-from pellicle.fitting.models.force_model import MODULUS, TENSION, Coordinates, Parameter
+from pellicle.fitting.parameters import MODULUS, TENSION, Coordinates, Parameter
 
 from .likelihood import REACH, ChiSquared, Minimum, least
 

@@ -1,0 +1,54 @@
+"""Parameters of fits: those that every curve has, and those of a solid under tension."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A quantity that a fit determines, or that the user fixes."""
+
+    name: str
+    unit: str
+    """SI unit; m, N or N/m unless `logarithmic`, since a curve sets the scale of these only."""
+    minimum: float = -np.inf
+    """Least allowed value, which the best value may equal."""
+    logarithmic: bool = False
+    """Whether the fit varies the natural logarithm, as for a modulus of unknown magnitude."""
+    shared: bool = False
+    """Whether all curves of a pooled fit have the same value."""
+    curve: int = 0
+    """Index of the curve in a pooled fit; 0 if shared."""
+
+    def of_curve(self, index: int) -> Parameter:
+        """Return the parameter of one curve of a pooled fit."""
+        return self if self.shared else replace(self, curve=index)
+
+    def coordinate(self, value: float) -> float:
+        """Return the coordinate that the fit varies: the value, or its natural logarithm."""
+        return float(np.log(value)) if self.logarithmic else value
+
+    def value(self, coordinate: float) -> float:
+        """Return the value at a coordinate."""
+        return float(np.exp(coordinate)) if self.logarithmic else coordinate
+
+
+Values = Mapping[Parameter, float]
+"""Values of parameters, each in its unit."""
+Coordinates = dict[Parameter, float]
+"""What a fit varies: the value of each parameter, or its natural logarithm if `logarithmic`."""
+
+CONTACT_POINT = Parameter("contact_point", "m")
+"""Position of first touch."""
+MODULUS = Parameter("reduced_modulus", "Pa", logarithmic=True, shared=True)
+"""E*."""
+TENSION = Parameter("tension", "N/m", minimum=0.0, shared=True)
+"""τ₀."""
+OFFSET = Parameter("offset", "N")
+"""Force of the baseline at the first position."""
+SLOPE = Parameter("slope", "N/m")
+"""Slope of the baseline."""
