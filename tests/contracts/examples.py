@@ -28,6 +28,13 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
             "poissons_ratio": 0.3,
             "thickness": "0.1 mm",
         },
+        "layered": {
+            "layers": [
+                {"youngs_modulus": "1 MPa", "poissons_ratio": 0.3, "thickness": "5 um"},
+                {"reduced_modulus": "10 kPa", "poissons_ratio": 0.5, "thickness": "0.1 mm"},
+            ],
+            "substrate": {"youngs_modulus": "100 kPa", "poissons_ratio": 0.4},
+        },
         "winkler": {"foundation": "100 Pa/um"},
         "coated": {
             "tension": "0.2 N/m",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from typing import Protocol, runtime_checkable
 
 from pellicle.arrays import Array
 
 
 @runtime_checkable
-class HasAbelTransform(Protocol):
+class HasAbelTransform(Hashable, Protocol):
     """A smooth-edged indenter of revolution; optional for an indenter component.
 
     For a profile f(r) ≤ 0 [m], 0 at the apex, the transform is

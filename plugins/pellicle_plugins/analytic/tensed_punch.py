@@ -38,8 +38,8 @@ class TensedPunch:
     """Part of the force that the rim carries as a line load [N]; 0 without tension."""
 
 
-def _unit(ratio: float, level: int) -> tuple[float, float]:
-    """Return P and the ring force over E* a δ at s/a = ratio."""
+def unit_forces(ratio: float, level: int) -> tuple[float, float]:
+    """Return P and the ring force over E* a δ at s/a = ratio, zero included, on a mesh level."""
     if not ratio:
         return 2.0, 0.0
     order, finest = LEVELS[level]
@@ -86,9 +86,9 @@ def punch(
     not_negative(tension=tension)
     quantity, value = given(depth=depth, force=force)
     ratio = without_negligible(2 * tension / reduced_modulus / radius)
-    levels = [_unit(ratio, level) for level in (0, 1)]
+    levels = [unit_forces(ratio, level) for level in (0, 1)]
     if not _agree(*levels):
-        levels.append(_unit(ratio, 2))
+        levels.append(unit_forces(ratio, 2))
         if not _agree(*levels[1:]):
             raise ConvergenceError(f"the punch at s/a = {ratio:g} does not converge: {levels}")
     stiffness, ring = (value * reduced_modulus * radius for value in levels[-1])
