@@ -85,7 +85,7 @@ class AdhesiveCurve(TableFigure):
     work_of_adhesion: Annotated[
         float,
         Quantity("J/m**2", above=0),
-        Field(description="energy per area that separates indenter and solid"),
+        Field(description="energy per area that separates indenter and solid [J/m**2]"),
     ]
 
     @property
