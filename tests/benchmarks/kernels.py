@@ -26,9 +26,9 @@ def layer(base: str, nu: float, thickness: float) -> dict[str, Any]:
 
 
 def layers(*solids: tuple[float, float, float]) -> dict[str, Any]:
-    """Return layers of E* over that of the module, ν, thickness over L on glass, 10⁶ times as stiff.
+    """Return layers on glass, each as E* over the modulus of the module, ν, thickness over L.
 
-    They are given from the surface down.
+    They are given from the surface down; glass is 10⁶ times as stiff as the module says.
     """
     stack = [
         {"reduced_modulus": e * MODULUS, "poissons_ratio": nu, "thickness": h * LENGTH}

@@ -203,7 +203,7 @@ def test_fig9_solves_nothing_in_the_folder_of_fig8(rough: Path) -> None:
 
 def test_layers_a_stiff_film_counts_at_small_depths(tmp_path: Path) -> None:
     """Under the stiffest film the apparent modulus has a minimum, without one it only rises."""
-    depths = 'loading.depth=["0.5 um", "1.6 um", "10 um"]'
+    depths = 'loading.depth=["0.8 um", "1.6 um", "10 um"]'
     run("layers.toml", tmp_path, "grid.points=96", "grid.size='0.4 mm'", depths)
     path = tmp_path / "study-curves.csv"
     soft, stiff = (
