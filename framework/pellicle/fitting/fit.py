@@ -20,7 +20,7 @@ from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .result import FitResult, doubt_of_tension, status_line
 from .statistics.checks import check_plausible, fit_single
-from .statistics.design import advice, undecided
+from .statistics.design import advice
 from .statistics.initial_guess import initial_guesses
 from .statistics.likelihood import Likelihood, Minimum, best_minimum
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
@@ -158,28 +158,28 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
         report,
     )
     best = profile.best.parameters
-    point, modulus, tension = map(profile.estimate, (CONTACT_POINT, MODULUS, TENSION))
+    modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
+    words, undecided = advice(likelihood, best, modulus, tension)
     return Fit(
         reduced_modulus=modulus,
         tension=tension,
         poissons_ratio=problem.poissons_ratio,
         chi_squared=profile.best.chi_squared,
         chi_squared_without_tension=profile.without_tension.chi_squared,
-        advice=advice(likelihood, best, modulus, tension),
+        advice=words,
         messages=(
             *problem.curve.messages,
             *single.messages,
-            *(check.message for check in single.failed_checks),
             *profile.messages,
             *check_plausible(likelihood, best),
-            *undecided(modulus, tension, likelihood, best),
+            *undecided,
         ),
         parameters=best,
         parameters_without_tension=profile.without_tension.parameters,
         rise=threshold,
         failed_checks=single.failed_checks,
         doubt=doubt_of_tension(single.failed_checks),
-        contact_point=point,
+        contact_point=profile.estimate(CONTACT_POINT),
         offset=profile.estimate(OFFSET),
         slope=profile.estimate(SLOPE),
         noise=likelihood.noise,

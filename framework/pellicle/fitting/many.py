@@ -77,6 +77,10 @@ class ManyFits(NamedTuple):
         """Number of curves that could not be fitted."""
         return sum(row["status"].startswith(FAILED) for row in self.rows)
 
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fits as JSON data."""
+        return {"curves": self.rows}
+
 
 def fit_many(
     curves: Curves | None = None,
