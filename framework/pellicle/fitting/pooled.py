@@ -17,7 +17,7 @@ from .curves.readers import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .result import FitResult, doubt_of_tension, interval_text, status_line
-from .statistics.checks import SingleFit, check_plausible, check_pooled_shape, fit_single
+from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
 from .statistics.design import pooled_advice
 from .statistics.likelihood import best_minimum
 from .statistics.noise import FailedCheck
@@ -211,8 +211,8 @@ def _fit_pool(
     profile = profile_likelihood(pool, start, threshold, parameters, pool.without_tension, report)
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = []
-    for index, part in enumerate(pool.parts(profile.best.parameters)):
-        (problem, single), member, minimum = singles[index], pool.members[index], own[index]
+    for index, (member, part) in enumerate(pool.curves(profile.best.parameters)):
+        (problem, single), minimum = singles[index], own[index]
         point = profile.estimate(points[index])
         curves.append(
             PooledCurve(
@@ -235,7 +235,7 @@ def _fit_pool(
                 ),
             )
         )
-    shapes = tuple(check_pooled_shape(pool, profile.best))
+    _, shapes = check_shape(pool, profile.best)
     advice, undecided = pooled_advice(modulus, tension)
     return PooledFit(
         reduced_modulus=modulus,
@@ -248,7 +248,7 @@ def _fit_pool(
         parameters=profile.best.parameters,
         parameters_without_tension=profile.without_tension.parameters,
         rise=threshold,
-        failed_checks=shapes,
+        failed_checks=tuple(shapes),
         doubt=_doubt(curves) or doubt_of_tension(shapes),
         curves=tuple(curves),
         agreement=_agreement(curves, excess, degrees, factor),

@@ -35,7 +35,7 @@ class SurfaceCompliance(NamedTuple):
         """Return the same compliance in units that are smaller by the factor ``ratio``."""
         shear, coupling, normal, determinant = self
         return SurfaceCompliance(
-            ratio * shear, ratio * coupling, ratio * normal, ratio**2 * determinant
+            ratio * shear, ratio * coupling, ratio * normal, ratio * ratio * determinant
         )
 
 

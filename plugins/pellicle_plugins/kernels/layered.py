@@ -81,7 +81,7 @@ class Layered(Kernel):
 
     def _compliance(self, q: Array) -> Array:
         if self.substrate == "rigid":
-            surface, modulus = RIGID, 1.0
+            surface, modulus = RIGID, self.layers[-1].contact_modulus
         else:
             surface = half_space(self.substrate.coupling_ratio)
             modulus = self.substrate.contact_modulus

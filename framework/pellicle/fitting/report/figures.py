@@ -119,7 +119,7 @@ def curve(fit: Fit, axes: Axes) -> None:
 
 def curves(fit: PooledFit, axes: Axes) -> None:
     """Draw data and model of each curve of a pool, depth and force relative to their maxima."""
-    for number, (member, parameters) in enumerate(_members(fit)):
+    for number, (member, parameters) in enumerate(fit.pool.curves(fit.parameters)):
         baseline = parameters[OFFSET] + parameters[SLOPE] * (member.position - member.position[0])
         model = member.model(parameters) - baseline
         largest = float(np.max(np.abs(model)))
@@ -142,7 +142,7 @@ def residuals(fit: Fit | PooledFit, axes: Axes) -> None:
         label = "depth / largest depth"
         lines = [
             (f"C{number}", _relative_depth(*part), *part)
-            for number, part in enumerate(_members(fit))
+            for number, part in enumerate(fit.pool.curves(fit.parameters))
         ]
     else:
         length, name = axis_unit(fit.likelihood.position, "m")
@@ -279,11 +279,6 @@ def _estimates(rows: Sequence[Row], figure: FigureBase) -> None:
         lower.set_xticks(range(1, len(rows) + 1), names, rotation=45, ha="right", fontsize="small")
     else:
         lower.set_xlabel("curve")
-
-
-def _members(fit: PooledFit) -> list[tuple[Likelihood, Coordinates]]:
-    """Return likelihood and parameters of each curve of a pool."""
-    return list(zip(fit.pool.members, fit.pool.parts(fit.parameters), strict=True))
 
 
 def _relative_depth(member: Likelihood, parameters: Coordinates) -> Array:

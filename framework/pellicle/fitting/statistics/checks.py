@@ -93,7 +93,7 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
         source += f"; checks that fail: {', '.join(check.code for check in failed)}"
     scaled = minimum.chi_squared * (likelihood.noise / noise.deviation) ** 2
     likelihood = replace(likelihood, noise=noise.deviation)
-    notes, shape = _check_shape(likelihood, minimum._replace(chi_squared=scaled))
+    notes, shape = check_shape(likelihood, minimum._replace(chi_squared=scaled))
     return SingleFit(
         likelihood,
         minimum.parameters,
@@ -211,41 +211,43 @@ def _misfit(code: str, finding: str, residuals: Residuals) -> FailedCheck:
     )
 
 
-def _whole_shape(
-    likelihood: Likelihood, parameters: Coordinates
-) -> tuple[IsShallowLimit, HasForceCurve] | None:
-    """Return the indenter and the shape it approximates, if the depth is too large for it.
+def check_shape(
+    chi_squared: Likelihood | Pool, best: Minimum
+) -> tuple[list[str], list[FailedCheck]]:
+    """Return the effect of whole shapes in words, as a failed check if they replace the tension.
 
-    None if the depth exceeds the limit of that shape, too.
+    They are those that the indenters of curves too deep for them approximate.  The check fails if
+    they describe the curves without tension as well as their shallow limits do with a tension that
+    they need.
     """
-    model = likelihood.force_model
-    if not isinstance(model, ClosedFormModel) or not isinstance(model.indenter, IsShallowLimit):
-        return None
-    depth = float(likelihood.depth(parameters)[-1])
-    shape = model.indenter.whole_shape()
-    if SHALLOW * model.indenter.radius < depth <= shape.depth_limit:
-        return model.indenter, shape
-    return None
-
-
-def _check_shape(likelihood: Likelihood, best: Minimum) -> tuple[list[str], list[FailedCheck]]:
-    """Return the effect of the whole shape in words, as a failed check if it replaces the tension.
-
-    The check fails if the whole shape describes the curve without tension as well as its shallow
-    limit does with a tension that it needs.
-    """
-    shapes = _whole_shape(likelihood, best.parameters)
-    if shapes is None:
+    deep: list[tuple[float, IsShallowLimit, HasForceCurve]] = []
+    models = []
+    for member, part in chi_squared.curves(best.parameters):
+        model, depth = member.force_model, float(member.depth(part)[-1])
+        limit = model.indenter if isinstance(model, ClosedFormModel) else None
+        if isinstance(limit, IsShallowLimit) and depth > SHALLOW * limit.radius:
+            shape = limit.whole_shape()
+            if depth <= shape.depth_limit:
+                model = ClosedFormModel(shape)
+                deep.append((depth / limit.radius, limit, shape))
+        models.append(model)
+    if not deep:
         return [], []
-    limit, shape = shapes
-    other = replace(likelihood, force_model=ClosedFormModel(shape))
+    other = chi_squared.with_models(models)
     try:
         minimum = other.minimise(best.parameters)
-        fails = _needs_no_tension(other, minimum, likelihood, best)
+        fails = _needs_no_tension(other, minimum, chi_squared, best)
     except ConvergenceError:
         return [], []
-    share = float(likelihood.depth(best.parameters)[-1]) / limit.radius
-    name, whole = (getattr(form, "type", type(form).__name__) for form in shapes)
+    if isinstance(chi_squared, Pool):
+        words = (
+            f"{len(deep)} of {len(models)} curves go deeper than {SHALLOW:g} of the radius, and "
+            "the shapes that their indenters approximate describe the curves equally well without "
+            "tension"
+        )
+        return [], [FailedCheck("shape", words)] if fails else []
+    ((share, *shapes),) = deep
+    name, whole = (getattr(shape, "type", type(shape).__name__) for shape in shapes)
     words = (
         f"the depth is {share:.2g} of the radius, and beyond {SHALLOW:g} of it a {name} differs "
         f"from the {whole} that it approximates: with indenter {whole!r} the reduced modulus is "
@@ -257,28 +259,6 @@ def _check_shape(likelihood: Likelihood, best: Minimum) -> tuple[list[str], list
     return [], [
         FailedCheck("shape", f"{words}; it describes the curve equally well without tension")
     ]
-
-
-def check_pooled_shape(pool: Pool, best: Minimum) -> list[FailedCheck]:
-    """Return a failed check if the whole shapes replace the tension of several curves."""
-    members, count = [], 0
-    for member, part in zip(pool.members, pool.parts(best.parameters), strict=True):
-        shapes = _whole_shape(member, part)
-        model = member.force_model if shapes is None else ClosedFormModel(shapes[1])
-        members.append(replace(member, force_model=model))
-        count += shapes is not None
-    if not count:
-        return []
-    other = Pool(tuple(members), pool.free)
-    try:
-        fails = _needs_no_tension(other, other.minimise(best.parameters), pool, best)
-    except ConvergenceError:
-        return []
-    text = (
-        f"{count} of {len(members)} curves go deeper than {SHALLOW:g} of the radius, and the "
-        "shapes that their indenters approximate describe the curves equally well without tension"
-    )
-    return [FailedCheck("shape", text)] if fails else []
 
 
 def _needs_no_tension(
