@@ -171,7 +171,7 @@ def _kind(annotation: Any) -> str:
     if origin is Literal:
         return " or ".join(f'"{value}"' for value in inner)
     if origin in (Union, types.UnionType):
-        return _kind(next(kind for kind in inner if kind is not type(None)))
+        return " or ".join(dict.fromkeys(_kind(kind) for kind in inner if kind is not type(None)))
     if origin is tuple:
         kinds = {_kind(kind) for kind in inner if kind is not Ellipsis}
         return f"list of {' and '.join(sorted(kinds))}"

@@ -39,6 +39,14 @@ LAYERS = {
     "coated: bonded_layer, ν = 0.5": pl.kernel(
         "coated", tension=TENSION, substrate=pl.kernel("bonded_layer", **SOFT)
     ),
+    "layered: film 0.1 h, 100 E*, on ν = 0.5": pl.kernel(
+        "layered",
+        layers=[
+            {"reduced_modulus": 100 * MODULUS, "poissons_ratio": 0.3, "thickness": LENGTH / 10},
+            SOFT,
+        ],
+        substrate="rigid",
+    ),
     "winkler, k = E*/h": pl.kernel("winkler", foundation=MODULUS / LENGTH),
 }
 

@@ -25,6 +25,19 @@ def layer(base: str, nu: float, thickness: float) -> dict[str, Any]:
     return SOLID | {"type": base, "poissons_ratio": nu, "thickness": thickness * LENGTH}
 
 
+def layers(*solids: tuple[float, float, float]) -> dict[str, Any]:
+    """Return layers on glass, each as E* over the modulus of the module, ν, thickness over L.
+
+    They are given from the surface down; glass is 10⁶ times as stiff as the module says.
+    """
+    stack = [
+        {"reduced_modulus": e * MODULUS, "poissons_ratio": nu, "thickness": h * LENGTH}
+        for e, nu, h in solids
+    ]
+    glass = {"reduced_modulus": 1e6 * MODULUS, "poissons_ratio": 0.2}
+    return {"type": "layered", "layers": stack, "substrate": glass}
+
+
 def bending(length: float) -> float:
     """Return B for which a wave of q = 1/(length L) feels skin and solid alike."""
     return MODULUS / 2 * (length * LENGTH) ** 3
@@ -53,6 +66,12 @@ KERNELS: dict[str, dict[str, Any]] = {
     "`bonded_layer`, ν = 0.5, h = 0.2 L": layer("bonded_layer", 0.5, 0.2),
     "`frictionless_layer`, h = 0.02 L": layer("frictionless_layer", 0.3, 0.02),
     "`frictionless_layer`, h = 0.2 L": layer("frictionless_layer", 0.3, 0.2),
+    "`layered`: 1, 10, 0.1 E\\*, h = 0.02, 0.05, 0.2 L on glass": layers(
+        (1.0, 0.5, 0.02), (10.0, 0.3, 0.05), (0.1, 0.45, 0.2)
+    ),
+    "`layered`: 100, 1, 0.1 E\\*, h = 0.01, 0.1, 0.2 L on glass": layers(
+        (100.0, 0.3, 0.01), (1.0, 0.5, 0.1), (0.1, 0.45, 0.2)
+    ),
     "`winkler`": SPRINGS,
     "`coated` `winkler`, τ₀ = 0.1 N/m": coated(SPRINGS, tension=0.1),
     "`coated` layer, ν = 0.3, h = 0.02 L, τ₀ = 1 N/m": coated(

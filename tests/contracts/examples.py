@@ -28,6 +28,13 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
             "poissons_ratio": 0.3,
             "thickness": "0.1 mm",
         },
+        "layered": {
+            "layers": [
+                {"youngs_modulus": "1 MPa", "poissons_ratio": 0.3, "thickness": "5 um"},
+                {"reduced_modulus": "10 kPa", "poissons_ratio": 0.5, "thickness": "0.1 mm"},
+            ],
+            "substrate": {"youngs_modulus": "100 kPa", "poissons_ratio": 0.4},
+        },
         "winkler": {"foundation": "100 Pa/um"},
         "coated": {
             "tension": "0.2 N/m",
@@ -116,6 +123,7 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
         "distributions": {"bins": 10, "log": ["y"]},
         "spectrum": {"by": "step", "label": "{depth * 1e6} µm"},
         "vtk": {},
+        "adhesive_curve": {"work_of_adhesion": "50 mJ/m^2"},
     },
     # The address of dask is that of the fixture dask_address.
     "executor": {

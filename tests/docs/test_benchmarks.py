@@ -12,7 +12,7 @@ BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 SCRIPTS = {
     "fit_rivals.py": (["1"], 11),
     "cost.py": (["--cases", "rough", "punch", "--points", "32"], 2 * 3),
-    "kernels.py": (["--cases", "rough", "--points", "32"], 18),
+    "kernels.py": (["--cases", "rough", "--points", "32"], 20),
     "next_step.py": (["--cases", "rough", "--points", "32", "--repeats", "1"], 3 * 2),
 }
 

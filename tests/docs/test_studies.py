@@ -199,3 +199,17 @@ def test_fig9_a_fraction_needs_more_force_with_tension(rough: Path) -> None:
 def test_fig9_solves_nothing_in_the_folder_of_fig8(rough: Path) -> None:
     """Both studies have the same runs: there is one file for each of eight."""
     assert len(list((rough / "runs").glob("*.h5"))) == 8
+
+
+def test_layers_a_stiff_film_counts_at_small_depths(tmp_path: Path) -> None:
+    """Under the stiffest film the apparent modulus has a minimum, without one it only rises."""
+    depths = 'loading.depth=["0.8 um", "1.6 um", "10 um"]'
+    run("layers.toml", tmp_path, "grid.points=96", "grid.size='0.4 mm'", depths)
+    path = tmp_path / "study-curves.csv"
+    soft, stiff = (
+        column(drawn(path, curve=f"film of {modulus} MPa"), "y") for modulus in ("0.01", "10")
+    )
+    assert (np.diff(soft) > 0).all()
+    assert (soft > 40 / 3).all()
+    assert stiff[1] < stiff[0] < stiff[2]
+    assert (stiff > 1.5 * soft).all()

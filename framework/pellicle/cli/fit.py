@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,7 +17,6 @@ from .printing import print_json
 
 if TYPE_CHECKING:
     from pellicle.fitting.fit import Fit
-    from pellicle.fitting.many import ManyFits
     from pellicle.fitting.pooled import PooledFit
 
 
@@ -114,8 +113,10 @@ def fit(
     """
     from pellicle.fitting.config import FitConfig
     from pellicle.fitting.fit import fit_source
-    from pellicle.fitting.many import fit_sources
+    from pellicle.fitting.many import ManyFits, fit_sources
     from pellicle.fitting.pooled import pool_sources
+    from pellicle.fitting.report.figures import save_figure
+    from pellicle.fitting.report.page import save_report
 
     configs = [path for path in files if path.suffix.lower() == ".toml"]
     if len(configs) > 1:
@@ -142,71 +143,43 @@ def fit(
         grid_points=grid_points,
         cache=cache,
     )
-    progress, destination = sys.stderr.isatty(), _Destination(directory, report, json)
-    sources = config.sources()
+    progress, sources = sys.stderr.isatty(), config.sources()
+    result: Fit | PooledFit | ManyFits
     if config.pool:
-        pooled = pool_sources(config, sources, progress=progress)
-        _write(pooled, "pool", "Pooled fit", destination)
+        result = pool_sources(config, sources, progress=progress)
+        name, title = "pool", "Pooled fit"
     elif [source.name for source in sources] == [str(config.curves[0])]:
-        stem = config.curves[0].stem
-        _write(fit_source(config, sources[0], progress=progress), f"{stem}-fit", stem, destination)
+        result = fit_source(config, sources[0], progress=progress)
+        name, title = f"{config.curves[0].stem}-fit", config.curves[0].stem
     else:
+        name, title = "fits", f"Fits of {len(sources)} curves"
         try:
-            fits = fit_sources(config, sources, directory, progress=True)
+            result = fit_sources(config, sources, directory, progress=True)
         except KeyboardInterrupt:
             hint = f"; finished fits are in {directory}, and the same command continues"
             typer.echo(f"interrupted{hint if directory else ''}", err=True)
             raise typer.Exit(INTERRUPTED) from None
-        _write_table(fits, destination)
-
-
-class _Destination(NamedTuple):
-    """The output folder, whether to write a page, and whether to print JSON."""
-
-    directory: Path | None
-    report: bool
-    json: bool
-
-    def page(self, name: str) -> Path:
-        return (self.directory or Path()) / f"{name}.html"
-
-
-def _write(fit: Fit | PooledFit, name: str, title: str, destination: _Destination) -> None:
-    """Print a fit and write its files."""
-    from pellicle.fitting.report.figures import save_figure
-    from pellicle.fitting.report.page import save_report
-
-    if destination.json:
-        print_json(fit.to_dict())
+    if json:
+        print_json(result.to_dict())
+    elif isinstance(result, ManyFits):
+        print_fits(result.rows)
     else:
-        print_fit(fit)
-    files = []
-    if destination.directory is not None:
-        files.append(fit.save(destination.directory / f"{name}.json"))
-        files.append(save_figure(fit, destination.directory / f"{name}.png"))
-    if destination.report:
-        files.append(save_report(fit, destination.page(name), title))
-    for path in files:
-        typer.echo(f"wrote {path}", err=destination.json)
-
-
-def _write_table(fits: ManyFits, destination: _Destination) -> None:
-    """Print many fits and write their page."""
-    from pellicle.fitting.report.page import save_report
-
-    count, files = len(fits.rows), list(fits.files)
-    if destination.json:
-        print_json({"curves": fits.rows})
-    else:
-        print_fits(fits.rows)
-    if fits.resumed:
-        typer.echo(f"{fits.resumed} of {count} fits were done before", err=destination.json)
-    if destination.report:
-        files.append(save_report(fits.rows, destination.page("fits"), f"Fits of {count} curves"))
-    for path in files:
-        typer.echo(f"wrote {path}", err=destination.json)
-    if fits.failed:
-        typer.echo(f"{fits.failed} of {count} curves could not be fitted", err=True)
+        print_fit(result)
+    written: list[Path] = []
+    if isinstance(result, ManyFits):
+        written += result.files
+        if result.resumed:
+            typer.echo(f"{result.resumed} of {len(sources)} fits were done before", err=json)
+    elif directory is not None:
+        written.append(result.save(directory / f"{name}.json"))
+        written.append(save_figure(result, directory / f"{name}.png"))
+    if report:
+        page = (directory or Path()) / f"{name}.html"
+        written.append(save_report(result, page, title))
+    for path in written:
+        typer.echo(f"wrote {path}", err=json)
+    if isinstance(result, ManyFits) and result.failed:
+        typer.echo(f"{result.failed} of {len(sources)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
 

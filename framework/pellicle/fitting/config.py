@@ -226,16 +226,10 @@ class FitConfig(FromFile, Calibration):
         """Return the whole configuration as JSON data, defaults included, in SI."""
         return self.model_dump(mode="json", exclude_none=True, fallback=str)
 
-    @property
-    def calibration(self) -> Calibration:
-        """Spring constant and sensitivity."""
-        return Calibration(spring_constant=self.spring_constant, sensitivity=self.sensitivity)
-
     def sources(self, curves: Curves | None = None) -> list[Source]:
         """Return ``curves``, or those of the configuration if None, as read from their files."""
-        return gather(
-            self.curves if curves is None else curves, self.segment, self.calibration, self.per_file
-        )
+        chosen = self.curves if curves is None else curves
+        return gather(chosen, self.segment, self, self.per_file)
 
     def force_model(self, fields: Mapping[str, Any]) -> ForceModel | Simulation:
         """Return the model of the force on the indenter, or what has to be simulated to get one.

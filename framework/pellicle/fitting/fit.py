@@ -6,21 +6,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from numpy.typing import ArrayLike
 
-from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError
 
 from .config import FitConfig
 from .curves.curve import Curve
-from .curves.readers import Source, fields_of_files
+from .curves.readers import Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .result import FitResult, doubt_of_tension, status_line
 from .statistics.checks import check_plausible, fit_single
-from .statistics.design import advice, undecided
+from .statistics.design import advice
 from .statistics.initial_guess import initial_guesses
 from .statistics.likelihood import Likelihood, Minimum, best_minimum
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
@@ -111,24 +110,21 @@ def fit(
         A study failed, or its folder cannot be used.
     """
     config = FitConfig.merged(config, **options)
-    if position is None and depth is None and force is None and config.curves:
-        sources = config.sources()
-        if len(sources) > 1:
-            raise ConfigError(f"names {len(sources)} curves; use fit_many or fit_pooled", "curves")
-        return fit_source(config, sources[0], progress=progress)
-    if (position is None) == (depth is None):
-        raise ConfigError("give either position or depth")
-    if force is None:
-        raise ConfigError("is missing; give the force [N] at each position", "force")
-    # `clean` checks the arrays.
-    curve = Curve(
-        cast("Array", position if depth is None else depth),
-        cast("Array", force),
-        depth is not None,
-        stiffness=config.spring_constant,
-    )
-    (own,) = fields_of_files(config.per_file, 1)
-    return fit_source(config, Source("", curve, own), progress=progress)
+    curves = None
+    if not (position is depth is force is None and config.curves):
+        positions = [values for values in (position, depth) if values is not None]
+        if len(positions) != 1:
+            raise ConfigError("give either position or depth")
+        if force is None:
+            raise ConfigError("is missing; give the force [N] at each position", "force")
+        curves = {"": (positions[0], force)}
+    source, *others = config.sources(curves)
+    if others:
+        count = 1 + len(others)
+        raise ConfigError(f"names {count} curves; use fit_many or fit_pooled", "curves")
+    if depth is not None and isinstance(source.curve, Curve):
+        source = source._replace(curve=replace(source.curve, is_depth=True))
+    return fit_source(config, source, progress=progress)
 
 
 def fit_source(config: FitConfig, source: Source, *, progress: bool) -> Fit:
@@ -158,28 +154,28 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
         report,
     )
     best = profile.best.parameters
-    point, modulus, tension = map(profile.estimate, (CONTACT_POINT, MODULUS, TENSION))
+    modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
+    words, undecided = advice(likelihood, best, modulus, tension)
     return Fit(
         reduced_modulus=modulus,
         tension=tension,
         poissons_ratio=problem.poissons_ratio,
         chi_squared=profile.best.chi_squared,
         chi_squared_without_tension=profile.without_tension.chi_squared,
-        advice=advice(likelihood, best, modulus, tension),
+        advice=words,
         messages=(
             *problem.curve.messages,
             *single.messages,
-            *(check.message for check in single.failed_checks),
             *profile.messages,
             *check_plausible(likelihood, best),
-            *undecided(modulus, tension, likelihood, best),
+            *undecided,
         ),
         parameters=best,
         parameters_without_tension=profile.without_tension.parameters,
         rise=threshold,
         failed_checks=single.failed_checks,
         doubt=doubt_of_tension(single.failed_checks),
-        contact_point=point,
+        contact_point=profile.estimate(CONTACT_POINT),
         offset=profile.estimate(OFFSET),
         slope=profile.estimate(SLOPE),
         noise=likelihood.noise,

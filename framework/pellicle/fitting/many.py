@@ -6,6 +6,7 @@ import csv
 import hashlib
 import json
 import pickle
+from collections.abc import Iterable, Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -25,8 +26,6 @@ from pellicle.runs.progress import StudyProgress
 from .config import FitConfig
 from .curves.readers import Curves, Source
 from .fit import fit_problem
-from .models.force_model import ClosedFormModel
-from .models.simulation import Simulation
 from .problem import FitProblem, problems
 from .result import write_json
 
@@ -36,7 +35,8 @@ if TYPE_CHECKING:
 FITTED = "fitted"
 FAILED = "failed: "
 _NOT_RUN = "not run"
-_ENDS = ("low", "high", "bound")
+_WITHOUT_EFFECT = {"curves", "per_file", "pool", "contact_points", "executor", "cache"}
+"""Fields of a configuration that do not change the fit of a curve."""
 _BYTES_PER_POINT = 2000
 """Memory of a fit, approximately."""
 
@@ -76,6 +76,10 @@ class ManyFits(NamedTuple):
     def failed(self) -> int:
         """Number of curves that could not be fitted."""
         return sum(row["status"].startswith(FAILED) for row in self.rows)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fits as JSON data."""
+        return {"curves": self.rows}
 
 
 def fit_many(
@@ -141,10 +145,13 @@ def fit_sources(
         try:
             if isinstance(problem, PellicleError):
                 raise problem
-            path = _path(directory, problem, config.grid_points)
-            if (earlier := _read(path)) is not None:
-                rows[number] |= earlier | {"status": FITTED}
-                continue
+            path = None
+            if directory is not None:
+                name = f"{_identity(config, sources[number], problem)[:16]}.json"
+                path = directory / "curves" / name
+                if (earlier := _read(path)) is not None:
+                    rows[number] |= earlier | {"status": FITTED}
+                    continue
             tasks.append(FitTask(number, problem.simulated(config, progress=progress), path))
         except PellicleError as error:
             rows[number]["status"] = _failure(error, sources[number])
@@ -175,40 +182,21 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     return fit_problem(task.problem).to_dict()
 
 
-def _path(directory: Path | None, problem: FitProblem, grid_points: int) -> Path | None:
-    """Return the file that keeps a fit."""
-    if directory is None:
-        return None
-    return directory / "curves" / f"{_identity(problem, grid_points)[:16]}.json"
-
-
-def _identity(problem: FitProblem, grid_points: int) -> str:
-    """Return a hash that is equal for problems with equal results."""
-    curve, model, kernel = problem.curve, problem.model, None
-    digest = hashlib.sha256(version("pellicle").encode())
-    indenter: object = model
-    if isinstance(model, Simulation):
-        indenter, kernel = model.indenter, model.solid.kernel
-    elif isinstance(model, ClosedFormModel):
-        indenter = model.indenter
-    for part in (indenter, kernel):
-        # Two pickles of equal components may differ.
-        if isinstance(part, Component):
-            digest.update(part.model_dump_json().encode())
-        else:
-            digest.update(pickle.dumps(part))
-    fixed = {parameter.name: value for parameter, value in problem.fixed.items()}
-    options = fixed, problem.poissons_ratio, grid_points if kernel else None
-    digest.update(repr((options, curve.messages, curve.stiffness)).encode())
+def _identity(config: FitConfig, source: Source, problem: FitProblem) -> str:
+    """Return a hash that is equal for fits with equal results."""
+    options = config.model_dump(mode="json", exclude=_WITHOUT_EFFECT, fallback=str)
+    curve = problem.curve
+    of_curve = (dict(source.fields), curve.is_depth, curve.stiffness, curve.messages)
+    digest = hashlib.sha256(repr((version("pellicle"), options, of_curve)).encode())
+    if not isinstance(config.indenter, (Component, Mapping)):
+        digest.update(pickle.dumps(config.indenter))
     for values in (curve.position, curve.force):
         digest.update(values.tobytes())
     return digest.hexdigest()
 
 
-def _read(path: Path | None) -> Row | None:
+def _read(path: Path) -> Row | None:
     """Return the fit that a file stores; None if it stores none."""
-    if path is None:
-        return None
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -227,13 +215,13 @@ def table(rows: list[Row]) -> xr.Dataset:
     """Return rows as a dataset over ``curve``; NaN where there is no number."""
     import xarray as xr
 
-    def texts(values: list[str]) -> tuple[str, Any]:
-        return "curve", np.array(values, dtype=object)
+    def texts(values: Iterable[str]) -> tuple[str, Any]:
+        return "curve", np.array(list(values), dtype=object)
 
-    def numbers(values: list[float | None], unit: str = "1") -> tuple[str, Any, dict[str, str]]:
-        return "curve", np.array(values, dtype=float), {"units": unit}
+    def numbers(values: Iterable[float | None], unit: str = "1") -> tuple[str, Any, dict[str, str]]:
+        return "curve", np.array(list(values), dtype=float), {"units": unit}
 
-    columns: dict[str, Any] = {"status": texts([row["status"] for row in rows])}
+    columns: dict[str, Any] = {"status": texts(row["status"] for row in rows)}
     units = {
         name: value["unit"]
         for row in rows
@@ -241,21 +229,21 @@ def table(rows: list[Row]) -> xr.Dataset:
         if isinstance(value, dict) and "unit" in value
     }
     for name, unit in units.items():
-        for key in ("value", *_ENDS):
-            column = numbers([row.get(name, {}).get(key) for row in rows], unit)
-            if key == "value" or np.isfinite(column[1]).any():
-                columns[name if key == "value" else f"{name}_{key}"] = column
+        columns[name] = numbers((row.get(name, {}).get("value") for row in rows), unit)
+        for end in ("low", "high", "bound"):
+            column = numbers((row.get(name, {}).get(end) for row in rows), unit)
+            if np.isfinite(column[1]).any():
+                columns[f"{name}_{end}"] = column
     for name in ("points", "chi_squared", "tension_needed"):
-        columns[name] = numbers([row.get(name) for row in rows])
+        columns[name] = numbers(row.get(name) for row in rows)
     for name in ("delta_chi_squared", "delta_aic"):
-        columns[name] = numbers([row.get("without_tension", {}).get(name) for row in rows])
+        columns[name] = numbers(row.get("without_tension", {}).get(name) for row in rows)
     for name in ("comparison", "advice"):
-        columns[name] = texts([row.get(name, "") for row in rows])
-    columns["failed_checks"] = texts(
-        ["; ".join(check["code"] for check in row.get("failed_checks", ())) for row in rows]
-    )
-    columns["messages"] = texts(["; ".join(row.get("messages", ())) for row in rows])
-    return xr.Dataset(columns, {"curve": texts([row["curve"] for row in rows])})
+        columns[name] = texts(row.get(name, "") for row in rows)
+    checks = [[check["code"] for check in row.get("failed_checks", ())] for row in rows]
+    columns["failed_checks"] = texts(map("; ".join, checks))
+    columns["messages"] = texts("; ".join(row.get("messages", ())) for row in rows)
+    return xr.Dataset(columns, {"curve": texts(row["curve"] for row in rows)})
 
 
 def _write(rows: list[Row], config: FitConfig, directory: Path) -> tuple[Path, ...]:

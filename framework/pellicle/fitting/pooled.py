@@ -17,8 +17,8 @@ from .curves.readers import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .result import FitResult, doubt_of_tension, interval_text, status_line
-from .statistics.checks import SingleFit, check_plausible, check_pooled_shape, fit_single
-from .statistics.design import percent
+from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
+from .statistics.design import pooled_advice
 from .statistics.likelihood import best_minimum
 from .statistics.noise import FailedCheck
 from .statistics.pooled_likelihood import Pool
@@ -66,7 +66,7 @@ class PooledCurve:
         """Return the curve as JSON data."""
         return vars(self) | {
             "contact_point": self.contact_point.to_dict(),
-            "failed_checks": [check.to_dict() for check in self.failed_checks],
+            "failed_checks": [check._asdict() for check in self.failed_checks],
             "messages": list(self.messages),
         }
 
@@ -211,8 +211,8 @@ def _fit_pool(
     profile = profile_likelihood(pool, start, threshold, parameters, pool.without_tension, report)
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = []
-    for index, part in enumerate(pool.parts(profile.best.parameters)):
-        (problem, single), member, minimum = singles[index], pool.members[index], own[index]
+    for index, (member, part) in enumerate(pool.curves(profile.best.parameters)):
+        (problem, single), minimum = singles[index], own[index]
         point = profile.estimate(points[index])
         curves.append(
             PooledCurve(
@@ -231,28 +231,24 @@ def _fit_pool(
                 messages=(
                     *problem.curve.messages,
                     *single.messages,
-                    *(check.message for check in single.failed_checks),
                     *check_plausible(member, part),
                 ),
             )
         )
-    shapes = tuple(check_pooled_shape(pool, profile.best))
+    _, shapes = check_shape(pool, profile.best)
+    advice, undecided = pooled_advice(modulus, tension)
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,
         poissons_ratio=singles[0][0].poissons_ratio,
         chi_squared=profile.best.chi_squared,
         chi_squared_without_tension=profile.without_tension.chi_squared,
-        advice=_advice(modulus, tension),
-        messages=(
-            *(check.message for check in shapes),
-            *profile.messages,
-            *_undecided(modulus, tension),
-        ),
+        advice=advice,
+        messages=(*(check.message for check in shapes), *profile.messages, *undecided),
         parameters=profile.best.parameters,
         parameters_without_tension=profile.without_tension.parameters,
         rise=threshold,
-        failed_checks=shapes,
+        failed_checks=tuple(shapes),
         doubt=_doubt(curves) or doubt_of_tension(shapes),
         curves=tuple(curves),
         agreement=_agreement(curves, excess, degrees, factor),
@@ -287,30 +283,3 @@ def _doubt(curves: Sequence[PooledCurve]) -> str:
     more = ", …" if len(failing) > _NAMED else ""
     reason = doubt_of_tension([check for curve in failing for check in _failures(curve)])
     return f"{reason}; {len(failing)} of {len(curves)} curves fail it: {names}{more}"
-
-
-def _advice(modulus: Estimate, tension: Estimate) -> str:
-    """Return the bounds of modulus and tension in words, if they are fitted."""
-    bounds = [
-        f"± {percent(estimate.bound / estimate.value)} of the {name}"
-        for name, estimate in (("modulus", modulus), ("tension", tension))
-        if not estimate.held and estimate.value and np.isfinite(estimate.bound)
-    ]
-    if not bounds:
-        return ""
-    return (
-        f"no unbiased fit of these curves could beat {' and '.join(bounds)} (Cramér–Rao bound, "
-        "one standard deviation)"
-    )
-
-
-def _undecided(modulus: Estimate, tension: Estimate) -> tuple[str, ...]:
-    """Return what an open interval means, if one is open."""
-    if modulus.held or tension.held:
-        return ()
-    if None not in (modulus.low, modulus.high, tension.high):
-        return ()
-    return (
-        "the curves together cannot tell modulus and tension apart: an interval is open, and its "
-        "value is one of many; add curves of another radius or range",
-    )

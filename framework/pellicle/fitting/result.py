@@ -134,7 +134,7 @@ class FitResult:
             "tension_needed": self.tension_needed,
             "comparison": self.comparison,
             "advice": self.advice,
-            "failed_checks": [check.to_dict() for check in self.failed_checks],
+            "failed_checks": [check._asdict() for check in self.failed_checks],
             "messages": list(self.messages),
         }
         if self.config is not None:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import factorial
-from typing import Final, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -13,10 +12,7 @@ from pellicle.arrays import Array
 from pellicle.components import Kernel
 
 from .elastic_layer import ElasticLayer
-
-# sinh y − y = y³/6 Σ c_k y^2k, to double precision for y below the split.
-_SPLIT: Final = 2.0
-_COEFFICIENTS: Final = [6 / factorial(2 * k + 3) for k in range(12)]
+from .hyperbolic import scaled_sinh_rest
 
 
 class BondedLayer(ElasticLayer):
@@ -38,19 +34,9 @@ class BondedLayer(ElasticLayer):
         """
         nu, y = self.poissons_ratio, self._twice_depth(q)
         kappa, decay = 3 - 4 * nu, np.exp(-y)
-        numerator = kappa * _scaled_excess(y) + 2 * (1 - 2 * nu) * y * decay
+        numerator = kappa * scaled_sinh_rest(y) + 2 * (1 - 2 * nu) * y * decay
         denominator = kappa * (1 + decay**2) / 2 + (y**2 / 2 + 5 - 12 * nu + 8 * nu**2) * decay
         return 2 / (self.contact_modulus * q) * (numerator / denominator)
-
-
-def _scaled_excess(y: Array) -> Array:
-    """Return (sinh y − y) e^{−y} for y > 0 without cancellation."""
-    small = np.minimum(y, _SPLIT)
-    series = np.zeros_like(y)
-    for coefficient in reversed(_COEFFICIENTS):
-        series = series * small**2 + coefficient
-    near = small**3 / 6 * series * np.exp(-small)
-    return np.where(y < _SPLIT, near, -np.expm1(-2 * y) / 2 - y * np.exp(-y))
 
 
 @hookimpl

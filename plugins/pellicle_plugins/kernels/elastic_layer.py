@@ -22,13 +22,11 @@ class ElasticLayer(IsotropicSolid):
     thickness: Annotated[Length, Field(description="thickness h of the layer [m]")]
 
     def mean_compliance(self) -> float:
-        """Return h/M [m/Pa], M = E*(1 − ν)²/(1 − 2ν): uniaxial strain; 0 for ν = ½.
+        """Return h/M [m/Pa], M the P-wave modulus: uniaxial strain; 0 for ν = ½.
 
         A layer that fills a periodic domain cannot flow sideways, whatever its base.
-        M = E(1 − ν)/((1 + ν)(1 − 2ν)) is the P-wave modulus (Johnson 1985, eq. 5.69).
         """
-        nu = self.poissons_ratio
-        return self.thickness * (1 - 2 * nu) / (self.contact_modulus * (1 - nu) ** 2)
+        return self.thickness * self.uniaxial_compliance
 
     def _twice_depth(self, q: Array) -> Array:
         """Return 2qh, limited to `_DEEP` so that exp does not underflow."""

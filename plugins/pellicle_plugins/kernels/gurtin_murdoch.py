@@ -38,8 +38,7 @@ class GurtinMurdoch(Skin, IsotropicSolid):
         elasticity.
         """
         eta = 2 * self.surface_stiffness * q / self.contact_modulus
-        g = (1 - 2 * self.poissons_ratio) / (2 * (1 - self.poissons_ratio))
-        hindered = (1 + eta) / (1 + (1 - g**2) * eta)
+        hindered = (1 + eta) / (1 + (1 - self.coupling_ratio**2) * eta)
         return 1 / (self.contact_modulus * q / 2 * hindered + self.skin_stiffness(q))
 
 

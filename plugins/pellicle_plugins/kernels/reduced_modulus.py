@@ -1,4 +1,4 @@
-"""The elastic constants of kernels whose compliance depends on E* alone."""
+"""The elastic modulus of a solid, and kernels whose compliance depends on E* alone."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from typing import Annotated, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from pellicle.components import Kernel
+from pellicle.model import Model
 from pellicle.units import Modulus, PoissonsRatio
 
 
-class ElasticSolid(Kernel):
-    """A kernel whose solid is given by E*, or by E and ν; E* = E/(1 − ν²)."""
+class ElasticModulus(Model):
+    """The modulus of a solid: E*, or E and ν; E* = E/(1 − ν²)."""
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -57,3 +58,7 @@ class ElasticSolid(Kernel):
                 "reduced_modulus alone, or youngs_modulus and poissons_ratio"
             )
         return self
+
+
+class ElasticSolid(ElasticModulus, Kernel):
+    """A kernel whose solid is given by E*, or by E and ν."""

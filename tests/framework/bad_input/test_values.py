@@ -27,7 +27,7 @@ KEYS_AND_TYPES = {
         "corrections.0.type='yastrebo'",
         ["corrections.0.type: 'yastrebo' is not a correction", "did you mean 'yastrebov'?"],
     ),
-    "no type": ("kernel={}", ["kernel: has no type", "half_space, tensed_membrane"]),
+    "no type": ("kernel={}", ["kernel: has no type", "half_space", "tensed_membrane"]),
     "type is no text": ("kernel.type=1", ["kernel.type: 1 is not a kernel", "half_space"]),
     "choice": (
         "grid.boundary='perodic'",
@@ -150,6 +150,11 @@ def test_forces_and_pressures_that_make_no_sense(
         (
             "indenter={type='self_affine',rms_height=1,hurst=1.1,cutoff_wavelength=1}",
             ["indenter.hurst: 1.1 is not allowed", "≥ 0 and ≤ 1"],
+        ),
+        (
+            "kernel={type='layered',substrate='rigid',"
+            "layers=[{youngs_modulus=1,poissons_ratio=0.5,thickness='0 um'}]}",
+            ["kernel.layers.0.thickness: '0 um' is not allowed", "> 0 m", "'10 um'"],
         ),
         (f"grid.size={'9' * 400}", ["grid.size: 999", "is not finite"]),
     ],

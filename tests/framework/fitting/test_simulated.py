@@ -166,6 +166,7 @@ def test_simulated_curve_is_an_indenter(exact_nodes: SimulatedCurve) -> None:
         ({"type": "tensed_membrane", "tension": 1}, "kernel.tension: is determined by the fit"),
         ({"type": "coated", "substrate": LAYER}, "kernel.substrate.poissons_ratio: is missing"),
         ({"type": "bendy"}, "'bendy' is not a kernel"),
+        ({"type": "layered", "layers": [{}]}, "'layered' has no field reduced_modulus"),
         (
             {"type": "coated", "substrate": LAYER | {"youngs_modulus": 1e3}},
             "kernel.substrate.youngs_modulus: is determined by the fit",

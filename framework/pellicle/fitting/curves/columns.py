@@ -33,8 +33,8 @@ Sensitivity = Annotated[float, Quantity("m/V", above=0)]
 """Deflection of a cantilever over the signal of its detector [m/V]."""
 
 
-class Column(NamedTuple):
-    """Values of shape (n,) and their unit as text."""
+class Channel(NamedTuple):
+    """Values of a column, of shape (n,), and their unit as text."""
 
     unit: str
     values: Array
@@ -62,12 +62,12 @@ class Calibration(Model):
         return self.spring_constant
 
 
-def is_curve(columns: Mapping[str, Column]) -> bool:
+def is_curve(columns: Mapping[str, Channel]) -> bool:
     """Return whether the columns hold a force or deflection, and a position of some kind."""
     return bool(_SIGNALS & columns.keys()) and bool(_POSITIONS.keys() & columns.keys())
 
 
-def from_columns(columns: Mapping[str, Column], calibration: Calibration) -> Curve:
+def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Curve:
     """Return the curve that columns with names from `NAMES` hold.
 
     Force is ``force``, or the spring constant times ``deflection``, which may be in volts if the
@@ -118,7 +118,7 @@ def _spring_constant_for(name: str, calibration: Calibration) -> float:
         ) from None
 
 
-def _deflection(column: Column, calibration: Calibration) -> Array:
+def _deflection(column: Channel, calibration: Calibration) -> Array:
     if column.unit not in _VOLTS:
         return _factor("deflection", column.unit) * column.values
     if calibration.sensitivity is None:

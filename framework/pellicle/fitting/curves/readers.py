@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
@@ -17,7 +17,7 @@ from pellicle.errors import ConfigError, PellicleError, StorageError, shown
 from pellicle.files import read_text
 
 from . import afm
-from .columns import EXAMPLE, NAMES, Calibration, Column, from_columns, is_curve
+from .columns import EXAMPLE, NAMES, Calibration, Channel, from_columns, is_curve
 from .curve import Curve
 
 if TYPE_CHECKING:
@@ -71,27 +71,34 @@ def gather(
     StorageError
         A folder or a list of files cannot be read.
     """
+    arrays = curves if isinstance(curves, Mapping) else {}
     if isinstance(curves, Mapping):
-        files: list[tuple[Any, dict[str, Any]]] = [(name, {}) for name in curves]
+        files: list[tuple[Any, dict[str, str]]] = [(name, {}) for name in curves]
     else:
         paths = [curves] if isinstance(curves, (str, Path)) else curves
         files = [file for text in paths for path in expanded(text) for file in _files(path)]
     if not files:
         raise ConfigError("holds no curve; give files, or a folder of them", "curves")
+    for name, values in per_file.items():
+        if len(values) != len(files):
+            raise ConfigError(
+                f"{len(values)} values for {len(files)} files; give one, or one for each file in "
+                "order",
+                name,
+            )
     sources = []
-    for (file, listed), values in zip(files, fields_of_files(per_file, len(files)), strict=True):
-        fields = values | listed
-        settings = {name: fields.pop(name) for name in Calibration.model_fields if name in fields}
+    for number, (file, listed) in enumerate(files):
+        fields = {name: values[number] for name, values in per_file.items()} | listed
+        names = Calibration.model_fields
+        settings = {name: getattr(calibration, name) for name in names}
+        settings |= {name: fields.pop(name) for name in names if name in fields}
+        contents: Mapping[str, Curve | PellicleError]
         try:
-            own = Calibration(**calibration.model_dump() | settings)
-            if isinstance(curves, Mapping):
-                position, force = curves[file]
+            own = Calibration(**settings)
+            if file in arrays:
                 # `clean` checks the arrays.
-                contents: dict[str, Curve | PellicleError] = {
-                    "": Curve(
-                        cast("Array", position), cast("Array", force), stiffness=own.spring_constant
-                    )
-                }
+                position, force = (cast("Array", values) for values in arrays[file])
+                contents = {"": Curve(position, force, stiffness=own.spring_constant)}
             else:
                 contents = read(file, own, segment)
         except PellicleError as error:
@@ -99,17 +106,6 @@ def gather(
         for label, curve in contents.items():
             sources.append(Source(f"{file}:{label}" if label else str(file), curve, fields))
     return sources
-
-
-def fields_of_files(per_file: Mapping[str, Sequence[Any]], count: int) -> list[dict[str, Any]]:
-    """Return the fields of each file."""
-    for name, values in per_file.items():
-        if len(values) != count:
-            raise ConfigError(
-                f"{len(values)} values for {count} files; give one, or one for each file in order",
-                name,
-            )
-    return [{name: values[n] for name, values in per_file.items()} for n in range(count)]
 
 
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
@@ -127,7 +123,11 @@ def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
 
 
 def _files(path: Path) -> list[tuple[Path, dict[str, str]]]:
-    """Return the files that a path stands for, each with its fields in a list of files."""
+    """Return the files that a path stands for, each with its fields in a list of files.
+
+    A list of files is a table with a header such as ``file,radius [um]``; its values get their
+    units, and empty cells are left out.
+    """
     if path.is_dir():
         files = sorted(
             file
@@ -137,11 +137,20 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str]]]:
         if not files:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
         return [(file, {}) for file in files]
-    if not path.is_file() or (rows := manifest(path)) is None:
+    cells = _cells(path) if path.suffix.lower() in _TEXT and path.is_file() else None
+    if cells is None or _FILE not in [name for name, _ in cells.heads]:
         return [(path, {})]
-    if not all(_FILE in row for row in rows):
-        raise ConfigError(f"{path}: has a row without a file; name one in each row")
-    return [(path.parent / row.pop(_FILE), row) for row in rows]
+    listed = []
+    for row in cells.rows:
+        fields = {
+            name: f"{cell.strip()} {unit}".strip()
+            for (name, unit), cell in zip(cells.heads, row, strict=False)
+            if cell.strip()
+        }
+        if _FILE not in fields:
+            raise ConfigError(f"{path}: has a row without a file; name one in each row")
+        listed.append((path.parent / fields.pop(_FILE), fields))
+    return listed
 
 
 def read(
@@ -166,7 +175,8 @@ def read(
     calibration, suffix = calibration or Calibration(), path.suffix.lower()
     if suffix in afm.SUFFIXES:
         return afm.read(path, calibration, segment)
-    tables = _hdf5(path) if suffix in _HDF5 else _table(path)
+    cells = None if suffix in _HDF5 else _cells(path)
+    tables = _hdf5(path) if suffix in _HDF5 else _table(path, cells) if cells else {}
     hint = ""
     if not any(map(is_curve, tables.values())):
         try:
@@ -174,8 +184,9 @@ def read(
         except StorageError:
             # Only afmformats can recognise the file of an instrument.
             hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
-            if tables and suffix not in _HDF5:
-                hint = f"; its first line is {_first_cells(path)}{hint}"
+            if cells is not None:
+                first = ", ".join(shown(name) for name, _ in cells.heads[:_MANY])
+                hint = f"; its first line is {first}{hint}"
     if not tables:
         raise StorageError(
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
@@ -191,65 +202,26 @@ def read(
     return curves
 
 
-def manifest(path: Path) -> list[dict[str, str]] | None:
-    """Return the rows of a table that lists files, values with their units; None if it is not one.
+class _Cells(NamedTuple):
+    """The cells of a table as texts."""
 
-    Its header is such as ``file,radius [um]``; empty cells are left out.
-    """
-    if path.suffix.lower() not in _TEXT or (cells := _cells(path)) is None:
-        return None
-    heads, rows, _ = cells
-    if _FILE not in [name for name, _ in heads]:
-        return None
-    return [
-        {
-            name: f"{cell.strip()} {unit}".strip()
-            for (name, unit), cell in zip(heads, row, strict=False)
-            if cell.strip()
-        }
-        for row in rows
-    ]
+    heads: list[tuple[str, str]]
+    """Name and unit of each column."""
+    rows: list[list[str]]
+    comma: bool
+    """Whether the decimal separator is a comma."""
+
+    def numbers(self, rows: list[list[str]], index: int) -> Array:
+        """Return a column of some rows; NaN where a cell is missing or holds no number."""
+        values = np.full(len(rows), np.nan)
+        for number, row in enumerate(rows):
+            with suppress(ValueError, IndexError):
+                values[number] = float(row[index].replace(",", ".") if self.comma else row[index])
+        return values
 
 
-def _table(path: Path) -> dict[str, Mapping[str, Column]]:
-    """Return the known columns of each curve of a table; nothing if the file is not text."""
-    cells = _cells(path)
-    if cells is None:
-        return {}
-    heads, rows, number = cells
-    names = [name for name, _ in heads]
-    indices = {name: index for index, name in enumerate(names) if name in NAMES}
-    for name in indices:
-        if names.count(name) > 1:
-            raise ConfigError(
-                f"{path}: has several columns {name}: give one curve to a file, tell curves apart "
-                f"by a column {_LABEL}, or name the others differently"
-            )
-    curves: dict[str, list[list[str]]] = {"": rows}
-    if _LABEL in names and indices:
-        curves = {}
-        label = names.index(_LABEL)
-        for row in rows:
-            curves.setdefault(row[label].strip() if label < len(row) else "", []).append(row)
-    return {
-        label: {
-            name: Column(heads[index][1], np.array([number(row, index) for row in own]))
-            for name, index in indices.items()
-        }
-        for label, own in curves.items()
-    }
-
-
-def _first_cells(path: Path) -> str:
-    heads, _, _ = _cells(path) or ([], [], None)
-    return ", ".join(shown(name) for name, _ in heads[:_MANY])
-
-
-Number = Callable[[list[str], int], float]
-
-
-def _cells(path: Path) -> tuple[list[tuple[str, str]], list[list[str]], Number] | None:
-    """Return name and unit of each column, the rows below, and the reader of numbers."""
+def _cells(path: Path) -> _Cells | None:
+    """Return the cells of a table; None if the file is not text."""
     try:
         text = read_text(path)
     except OSError as error:
@@ -265,26 +237,41 @@ def _cells(path: Path) -> tuple[list[tuple[str, str]], list[list[str]], Number] 
     except csv.Error:
         # A cell is longer than any number.
         return None
+    heads = []
+    for head in first:
+        match = _HEADER.fullmatch(head.strip())
+        name, unit = match.groups(default="") if match else (head, "")
+        heads.append((name.rstrip().lower() if match else head.lower(), unit.strip()))
     # Tables separated by semicolons come from systems whose decimal separator is the comma.
-    comma = separator == ";"
-
-    def number(row: list[str], index: int) -> float:
-        try:
-            return float(row[index].replace(",", ".") if comma else row[index])
-        except (ValueError, IndexError):
-            return float("nan")
-
-    return [_head(head) for head in first], rows, number
+    return _Cells(heads, rows, separator == ";")
 
 
-def _head(text: str) -> tuple[str, str]:
-    match = _HEADER.fullmatch(text.strip())
-    if match is None:
-        return text.lower(), ""
-    return match[1].rstrip().lower(), (match[2] or "").strip()
+def _table(path: Path, cells: _Cells) -> dict[str, Mapping[str, Channel]]:
+    """Return the known columns of each curve of a table."""
+    names = [name for name, _ in cells.heads]
+    indices = {name: index for index, name in enumerate(names) if name in NAMES}
+    for name in indices:
+        if names.count(name) > 1:
+            raise ConfigError(
+                f"{path}: has several columns {name}: give one curve to a file, tell curves apart "
+                f"by a column {_LABEL}, or name the others differently"
+            )
+    curves: dict[str, list[list[str]]] = {"": cells.rows}
+    if _LABEL in names and indices:
+        curves = {}
+        label = names.index(_LABEL)
+        for row in cells.rows:
+            curves.setdefault(row[label].strip() if label < len(row) else "", []).append(row)
+    return {
+        label: {
+            name: Channel(cells.heads[index][1], cells.numbers(rows, index))
+            for name, index in indices.items()
+        }
+        for label, rows in curves.items()
+    }
 
 
-def _hdf5(path: Path) -> dict[str, Mapping[str, Column]]:
+def _hdf5(path: Path) -> dict[str, Mapping[str, Channel]]:
     import h5py
 
     try:
@@ -303,7 +290,7 @@ def _hdf5(path: Path) -> dict[str, Mapping[str, Column]]:
     return {name: columns for name, columns in groups.items() if columns} or {"": {}}
 
 
-def _datasets(group: h5py.Group) -> dict[str, Column]:
+def _datasets(group: h5py.Group) -> dict[str, Channel]:
     """Return the known columns that are datasets of a group."""
     import h5py
 
@@ -313,5 +300,5 @@ def _datasets(group: h5py.Group) -> dict[str, Column]:
         if isinstance(dataset, h5py.Dataset) and dataset.ndim == 1:
             unit = dataset.attrs.get("units", "")
             unit = unit.decode() if isinstance(unit, bytes) else str(unit)
-            columns[name] = Column(unit, np.asarray(dataset, dtype=float))
+            columns[name] = Channel(unit, np.asarray(dataset, dtype=float))
     return columns

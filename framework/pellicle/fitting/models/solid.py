@@ -74,7 +74,8 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
 def _field(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:
     """Return path and definition of the first field ``name`` in a kernel or a kernel inside it."""
     for path, inner, _ in [("", table, None), *walk(table)]:
-        if isinstance(inner, Mapping):
+        # A table without a type is not a component, such as one of the layers of a kernel.
+        if isinstance(inner, Mapping) and (not path or "type" in inner):
             fields = registry().find("kernel", inner.get("type")).model_fields
             if name in fields:
                 return f"{path}.{name}".lstrip("."), fields[name]

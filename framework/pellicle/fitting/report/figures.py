@@ -6,12 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.fitting.fit import Fit
+from pellicle.fitting.many import ManyFits, Row
 from pellicle.fitting.parameters import MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.statistics.likelihood import Likelihood
@@ -22,9 +23,6 @@ from pellicle.units import axis_unit
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
-
-Rows = Sequence[dict[str, Any]]
-"""The table of many fits: one dictionary for each curve."""
 
 SIZE = (5.2, 4.6)
 """Width and height of a panel [inch]."""
@@ -53,10 +51,10 @@ class Panel(NamedTuple):
     caption: str
 
 
-def panels(fit: Fit | PooledFit | Rows) -> list[Panel]:
-    """Return the panels of a fit, of a pooled fit, or of the table of many fits.
+def panels(fit: Fit | PooledFit | ManyFits) -> list[Panel]:
+    """Return the panels of a fit, of a pooled fit, or of many fits.
 
-    The likelihood map needs a fitted modulus and tension, a table at least one fitted curve.
+    The likelihood map needs a fitted modulus and tension; many fits need a fitted curve.
     """
     if isinstance(fit, Fit):
         caption = "Data, fit, and the fit without tension; below, the residuals of both."
@@ -74,10 +72,10 @@ def panels(fit: Fit | PooledFit | Rows) -> list[Panel]:
             Panel(partial(_with_residuals, fit), data),
             Panel(partial(_profiles, fit), profiles),
         ]
-    if not any(name in row for name in ("reduced_modulus", "tension") for row in fit):
+    if not any("tension" in row for row in fit.rows):
         return []
     caption = "A bar is the interval: down to 0, or up to a triangle, where an end is open."
-    return [Panel(partial(_estimates, fit), caption)]
+    return [Panel(partial(_estimates, fit.rows), caption)]
 
 
 def save_figure(fit: Fit | PooledFit, path: Path) -> Path:
@@ -121,7 +119,7 @@ def curve(fit: Fit, axes: Axes) -> None:
 
 def curves(fit: PooledFit, axes: Axes) -> None:
     """Draw data and model of each curve of a pool, depth and force relative to their maxima."""
-    for number, (member, parameters) in enumerate(_members(fit)):
+    for number, (member, parameters) in enumerate(fit.pool.curves(fit.parameters)):
         baseline = parameters[OFFSET] + parameters[SLOPE] * (member.position - member.position[0])
         model = member.model(parameters) - baseline
         largest = float(np.max(np.abs(model)))
@@ -144,7 +142,7 @@ def residuals(fit: Fit | PooledFit, axes: Axes) -> None:
         label = "depth / largest depth"
         lines = [
             (f"C{number}", _relative_depth(*part), *part)
-            for number, part in enumerate(_members(fit))
+            for number, part in enumerate(fit.pool.curves(fit.parameters))
         ]
     else:
         length, name = axis_unit(fit.likelihood.position, "m")
@@ -232,7 +230,7 @@ def profile(fit: PooledFit, parameter: Parameter, axes: Axes) -> None:
     axes.set(xlabel=label, ylabel="Δχ²", ylim=(0, 3 * fit.rise))
 
 
-def estimates(rows: Rows, name: str, axes: Axes) -> None:
+def estimates(rows: Sequence[Row], name: str, axes: Axes) -> None:
     """Draw a parameter of each fitted curve with its interval.
 
     A bar with an open end reaches down to 0, or up to a triangle at the top.
@@ -272,7 +270,7 @@ def _profiles(fit: PooledFit, figure: FigureBase) -> None:
         profile(fit, which, figure.add_subplot(len(free), 1, number))
 
 
-def _estimates(rows: Rows, figure: FigureBase) -> None:
+def _estimates(rows: Sequence[Row], figure: FigureBase) -> None:
     upper, lower = figure.subplots(2, 1, sharex=True)
     estimates(rows, "reduced_modulus", upper)
     estimates(rows, "tension", lower)
@@ -281,11 +279,6 @@ def _estimates(rows: Rows, figure: FigureBase) -> None:
         lower.set_xticks(range(1, len(rows) + 1), names, rotation=45, ha="right", fontsize="small")
     else:
         lower.set_xlabel("curve")
-
-
-def _members(fit: PooledFit) -> list[tuple[Likelihood, Coordinates]]:
-    """Return likelihood and parameters of each curve of a pool."""
-    return list(zip(fit.pool.members, fit.pool.parts(fit.parameters), strict=True))
 
 
 def _relative_depth(member: Likelihood, parameters: Coordinates) -> Array:

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from pellicle.config.describe import inputs
-from pellicle.files import atomic_write, storage_errors
+from pellicle.files import atomic_write
 from pellicle.fitting.fit import Fit
-from pellicle.fitting.many import FITTED
+from pellicle.fitting.many import FITTED, ManyFits, Row
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.result import as_json
 from pellicle.fitting.statistics.profile import CONFIDENCE
@@ -22,7 +22,7 @@ from pellicle.report.page import page as render
 from pellicle.report.plotting import svg
 from pellicle.units import axis_unit
 
-from .figures import SIZE, Rows, panels
+from .figures import SIZE, panels
 
 _LISTED = 8
 """Values of an input that are listed side by side."""
@@ -33,8 +33,8 @@ _MEANINGS = {
 }
 
 
-def save_report(fit: Fit | PooledFit | Rows, path: Path, title: str) -> Path:
-    """Write the page of a fit, a pooled fit or a table of many fits, and return its path.
+def save_report(fit: Fit | PooledFit | ManyFits, path: Path, title: str) -> Path:
+    """Write the page of a fit, a pooled fit or many fits, and return its path.
 
     The page is one file that loads nothing.
 
@@ -43,43 +43,37 @@ def save_report(fit: Fit | PooledFit | Rows, path: Path, title: str) -> Path:
     StorageError
         The file cannot be written.
     """
-    advice: list[Block] = []
-    content: dict[str, Any] = {"curves": fit}
-    if isinstance(fit, (Fit, PooledFit)):
-        kind, content, (results, input_blocks) = "Fit", fit.to_dict(), _fit(fit)
-        advice = [Text(_sentence(fit.advice))] if fit.advice else []
-    else:
-        kind, (results, input_blocks) = "Fits", _many(fit)
+    results, fields = _many(fit.rows) if isinstance(fit, ManyFits) else _fit(fit)
+    advice = "" if isinstance(fit, ManyFits) else fit.advice
     figures = [Picture(svg(p.draw, SIZE), p.caption, p.caption) for p in panels(fit)]
+    content = as_json(fit.to_dict())
     sections = [
         Section("Result", results),
         Section("Figures", figures),
-        Section("More informative experiments", advice),
-        Section("Inputs", input_blocks),
-        Section("As JSON", [Code(as_json(content), "All numbers, in SI.", f"{path.stem}.json")]),
+        Section("More informative experiments", [Text(_sentence(advice))] if advice else []),
+        Section("Inputs", fields),
+        Section("As JSON", [Code(content, "All numbers, in SI.", f"{path.stem}.json")]),
     ]
     now = datetime.now(UTC).isoformat(" ", timespec="seconds").replace("+00:00", " UTC")
+    kind = "Fits" if isinstance(fit, ManyFits) else "Fit"
     text = render(title, sections, f"{kind} of pellicle {version('pellicle')}, {now}")
-    with storage_errors(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with atomic_write(path) as part:
-            part.write_text(text, encoding="utf-8")
+    with atomic_write(path) as part:
+        part.write_text(text, encoding="utf-8")
     return path
 
 
 def _fit(fit: Fit | PooledFit) -> tuple[list[Block], list[Block]]:
     """Return results and inputs of a fit or a pooled fit."""
     results: list[Block] = [Notice(_sentence(fit.comparison), good=not fit.doubt)]
-    if isinstance(fit, PooledFit):
-        own = [f"{curve.name}: {message}" for curve in fit.curves for message in curve.messages]
-        results.append(Notice(_sentence(fit.agreement), good=fit.agree))
-        results += [*_warnings([*fit.messages, *own]), _estimates(fit), _curves(fit)]
-        return results, [_inputs([curve.model for curve in fit.curves])]
-    results += [*_warnings(fit.messages), _estimates(fit)]
-    return results, [_inputs([fit.model()]), _data(fit)]
+    if isinstance(fit, Fit):
+        results += [*_warnings(fit.notes), _estimates(fit)]
+        return results, [_inputs([fit.model()]), _data(fit)]
+    results.append(Notice(_sentence(fit.agreement), good=fit.agree))
+    results += [*_warnings(fit.notes), _estimates(fit), _curves(fit)]
+    return results, [_inputs([curve.model for curve in fit.curves])]
 
 
-def _many(rows: Rows) -> tuple[list[Block], list[Block]]:
+def _many(rows: Sequence[Row]) -> tuple[list[Block], list[Block]]:
     """Return results and inputs of a table of many fits."""
     failed = [f"{row['curve']}: {row['status']}" for row in rows if row["status"] != FITTED]
     summary = f"{len(rows) - len(failed)} of {len(rows)} curves were fitted."
@@ -129,11 +123,8 @@ def _data(fit: Fit) -> Table:
         ["χ² of the fit", f"{fit.chi_squared:.5g}"],
         ["χ² without tension", f"{fit.chi_squared_without_tension:.5g}"],
     ]
-    return Table(
-        "Noise and residuals of the curve.",
-        [Column(n, words=True) for n in ("what", "value")],
-        rows,
-    )
+    columns = [Column(head, words=True) for head in ("what", "value")]
+    return Table("Noise and residuals of the curve.", columns, rows)
 
 
 def _curves(fit: PooledFit) -> Table:

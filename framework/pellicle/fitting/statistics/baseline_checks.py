@@ -10,12 +10,11 @@ from pellicle.fitting.parameters import SLOPE
 
 from .noise import (
     CHANCE,
-    BinnedNoise,
     FailedCheck,
+    Noise,
     NoiseEstimate,
     Residuals,
     binned_noise,
-    independent_freedom,
     neighbour_noise,
 )
 
@@ -41,17 +40,25 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     line = np.column_stack([np.ones(points), travel / travel[-1]])
     # The force as measured, since a fitted slope of the baseline absorbs part of a dip.
     measured = residuals.likelihood.force[before]
-    depth, window, drop = _deepest_dip(measured, line[:, :1], independent)
-    if abs(_slope(measured, line)[0]) > abs(depth) * independent:
+    slope, change = _slope(measured, line)
+    messages: tuple[str, ...] = ()
+    if SLOPE in residuals.baseline and ndtr(slope / independent.deviation) < CHANCE:
+        messages = (
+            f"the baseline falls by {-change:.3g} N towards contact: drift does that, but so does "
+            "attraction of long range, which bends a curve as tension does; check whether it falls "
+            "as steeply further out",
+        )
+    depth, window, drop = _deepest_dip(measured, line[:, :1], independent.deviation)
+    if abs(slope) > abs(depth) * independent.deviation:
         # A line explains more than a dip, so the dip has to be significant beside the line.
-        depth, window, drop = _deepest_dip(measured, line, independent)
+        depth, window, drop = _deepest_dip(measured, line, independent.deviation)
     # A dip may begin before its window.
     far = max(points - 2 * window, points // 4) if depth < _DEEPEST else points
     slow = _slow_noise(force[:far], line[:far], independent)
-    noise_of_sums = independent if slow is None else max(slow.noise, independent)
+    noise_of_sums = independent if slow is None else max(slow, independent)
     failed: list[FailedCheck] = []
     trend = line
-    if depth * independent < _DEEPEST * noise_of_sums:
+    if depth * independent.deviation < _DEEPEST * noise_of_sums.deviation:
         trend = np.column_stack([line, _last(window, points)])
         message = (
             f"the force dips by {drop:.3g} N below its baseline over the last {window} points "
@@ -62,7 +69,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
         failed.append(FailedCheck("adhesion", message))
     else:
         far = points
-    failed += _drift_or_offset(residuals, force[:far], line[:far], noise_of_sums)
+    failed += _drift_or_offset(residuals, force[:far], line[:far], noise_of_sums.deviation)
     if slow is not None:
         message = (
             f"the noise before contact is correlated: {far} points carry as much information as "
@@ -76,34 +83,15 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
             "values between them are not known; measure with a finer range of the detector"
         )
         failed.append(FailedCheck("steps", message))
-    remainder = force - trend @ np.linalg.lstsq(trend, force, rcond=None)[0]
-    freedom = points - trend.shape[1]
-    noise = max(float(np.sqrt(np.sum(remainder**2) / freedom)), residuals.floor)
+    noise = _scatter(force, trend)
+    noise = noise._replace(deviation=max(noise.deviation, residuals.floor))
     if failed:
         bins = np.zeros((residuals.force.size, _BINS))
         bins[before] = _equal_bins(points)
         sums = residuals.binned(bins)
-        if sums is not None and sums.noise > noise:
-            return NoiseEstimate(sums.noise, sums.freedom, tuple(failed), slow)
-    return NoiseEstimate(noise, freedom, tuple(failed), slow)
-
-
-def falling_baseline(residuals: Residuals) -> tuple[str, ...]:
-    """Return a warning if a fitted baseline falls towards contact, as attraction would cause."""
-    if SLOPE not in residuals.baseline:
-        return ()
-    before = residuals.before
-    force, travel = residuals.likelihood.force[before], residuals.likelihood.travel[before]
-    line = np.column_stack([np.ones(force.size), travel / travel[-1]])
-    slope, steepness = _slope(force, line)
-    if ndtr(slope / residuals.independent_noise(before)) >= CHANCE:
-        return ()
-    change = slope * steepness * float(np.ptp(line[:, 1]))
-    return (
-        f"the baseline falls by {-change:.3g} N towards contact: drift does that, but so does "
-        "attraction of long range, which bends a curve as tension does; check whether it falls as "
-        "steeply further out",
-    )
+        if sums is not None and sums.deviation > noise.deviation:
+            noise = sums
+    return NoiseEstimate(noise, tuple(failed), slow, messages)
 
 
 def _deepest_dip(force: Array, baseline: Array, noise: float) -> tuple[float, int, float]:
@@ -127,29 +115,30 @@ def _deepest_dip(force: Array, baseline: Array, noise: float) -> tuple[float, in
     return deepest, width, drop
 
 
-def _slow_noise(force: Array, line: Array, independent: float) -> BinnedNoise | None:
+def _slow_noise(force: Array, line: Array, independent: Noise) -> Noise | None:
     """Return the noise about a line if it exceeds that from differences of neighbours, else None.
 
     Sums over bins reveal slow noise best; the scatter of the points reveals smoothed data.
     """
-    points = force.size
-    remainder = force - line @ np.linalg.lstsq(line, force, rcond=None)[0]
-    scatter = BinnedNoise(float(np.sqrt(np.sum(remainder**2) / (points - 2))), points - 2)
-    slow = [
-        noise
-        for noise in (scatter, binned_noise(force, line, _equal_bins(points)))
-        if noise is not None and noise.exceeds(independent, independent_freedom(points))
-    ]
-    return max(slow, default=None, key=lambda noise: noise.noise)
+    estimates = (_scatter(force, line), binned_noise(force, line, _equal_bins(force.size)))
+    return max((noise for noise in estimates if noise and noise.exceeds(independent)), default=None)
+
+
+def _scatter(force: Array, trend: Array) -> Noise:
+    """Return the noise about a trend, whose terms are the columns of ``trend``."""
+    remainder = force - trend @ np.linalg.lstsq(trend, force, rcond=None)[0]
+    freedom = force.size - trend.shape[1]
+    return Noise(float(np.sqrt(np.sum(remainder**2) / freedom)), freedom)
 
 
 def _slope(force: Array, line: Array) -> tuple[float, float]:
     """Return the slope of the force in units whose standard error is the noise of one point.
 
-    The second value is the slope of one such unit.
+    The second value is the change of the force [N] that this slope makes over the points.
     """
     basis, triangle = np.linalg.qr(line)
-    return float(basis[:, 1] @ force), 1 / float(triangle[1, 1])
+    slope = float(basis[:, 1] @ force)
+    return slope, slope * (1 / float(triangle[1, 1])) * float(np.ptp(line[:, 1]))
 
 
 def _last(window: int, points: int) -> Array:
@@ -167,9 +156,8 @@ def _drift_or_offset(
     residuals: Residuals, force: Array, line: Array, noise: float
 ) -> list[FailedCheck]:
     """Return a failed check if the force before contact is neither fitted nor constant and 0."""
-    slope, steepness = _slope(force, line)
+    slope, change = _slope(force, line)
     if SLOPE not in residuals.baseline and 2 * ndtr(-abs(slope) / noise) < CHANCE:
-        change = slope * steepness * float(np.ptp(line[:, 1]))
         message = (
             f"the force drifts by {change:.3g} N before contact, and modulus and tension are "
             "biased by its drift in contact; fit the baseline too, with baseline 'slope'"

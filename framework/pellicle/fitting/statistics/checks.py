@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import chdtri, fdtrc
+from scipy.special import chdtri
 
 from pellicle.arrays import Array
 from pellicle.components import Component, HasForceCurve, IsShallowLimit
@@ -14,17 +14,10 @@ from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.models.solid import lengths
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 
-from .baseline_checks import check_baseline, falling_baseline
+from .baseline_checks import check_baseline
 from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
-from .noise import (
-    CHANCE,
-    BinnedNoise,
-    FailedCheck,
-    NoiseEstimate,
-    Residuals,
-    independent_freedom,
-)
+from .noise import FailedCheck, Noise, NoiseEstimate, Residuals
 from .pooled_likelihood import Pool
 from .profile import CONFIDENCE
 
@@ -59,7 +52,7 @@ class SingleFit:
     """Source of the noise estimate."""
     failed_checks: tuple[FailedCheck, ...]
     messages: tuple[str, ...]
-    """Further warnings."""
+    """Warnings, among them those of the checks."""
 
 
 def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
@@ -84,32 +77,30 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
     minimum = best_minimum(likelihood, guesses)
     residuals = Residuals.of(likelihood, minimum.parameters)
     count = int(residuals.before.sum())
-    messages: tuple[str, ...] = ()
     if count < _QUIET:
-        source = "residuals of the fit"
-        messages = (
+        source, before = "residuals of the fit", None
+        messages: tuple[str, ...] = (
             f"only {count} points lie before contact, so the noise is taken from the residuals of "
             "the fit, and drift or adhesion before contact cannot be detected; start further out, "
             "or fit the baseline too if the force out there is not 0",
         )
-        estimate = _check_whole(residuals)
     else:
-        source = f"{count} points before contact"
-        messages = falling_baseline(residuals)
-        estimate = _check_contact(residuals, check_baseline(residuals))
-    failed = (*_spikes(residuals), *estimate.failed)
+        source, before = f"{count} points before contact", check_baseline(residuals)
+        messages = before.messages
+    noise, in_contact, *_ = _check_contact(residuals, before)
+    failed = (*_spikes(residuals), *in_contact)
     if failed:
         source += f"; checks that fail: {', '.join(check.code for check in failed)}"
-    scaled = minimum.chi_squared * (likelihood.noise / estimate.noise) ** 2
-    likelihood = replace(likelihood, noise=estimate.noise)
-    notes, shape = _check_shape(likelihood, minimum._replace(chi_squared=scaled))
+    scaled = minimum.chi_squared * (likelihood.noise / noise.deviation) ** 2
+    likelihood = replace(likelihood, noise=noise.deviation)
+    notes, shape = check_shape(likelihood, minimum._replace(chi_squared=scaled))
     return SingleFit(
         likelihood,
         minimum.parameters,
-        estimate.freedom,
+        noise.freedom,
         source,
         (*failed, *shape),
-        (*messages, *notes),
+        (*messages, *notes, *(check.message for check in (*failed, *shape))),
     )
 
 
@@ -166,51 +157,39 @@ def _spikes(residuals: Residuals) -> list[FailedCheck]:
     return [FailedCheck("spikes", message)]
 
 
-def _check_whole(residuals: Residuals) -> NoiseEstimate:
-    """Return the noise of a curve that has too few points before contact."""
-    points = residuals.force.size
-    freedom = points - len(residuals.likelihood.free)
-    noise = max(float(np.sqrt(np.sum(residuals.force**2) / freedom)), residuals.floor)
-    independent = residuals.independent_noise(np.ones(points, dtype=bool))
+def _check_contact(residuals: Residuals, before: NoiseEstimate | None) -> NoiseEstimate:
+    """Return the noise, widened by the checks that residuals in contact fail.
+
+    ``before`` is the noise before contact; without one, all residuals give the noise.
+    """
+    points = np.full(residuals.force.size, True) if before is None else ~residuals.before
+    # The points before contact determine the baseline.
+    known = () if before is None else residuals.baseline
+    freedom = max(int(points.sum()) - len(residuals.likelihood.free) + len(known), 1)
+    scatter = Noise(float(np.sqrt(np.sum(residuals.force[points] ** 2) / freedom)), freedom)
+    if before is None:
+        before = NoiseEstimate(Noise(max(scatter.deviation, residuals.floor), freedom), ())
+    noise, failed, slow = before.noise, list(before.failed), before.slow
+    if scatter.exceeds(noise):
+        ratio = scatter.deviation / noise.deviation
+        finding = f"the residuals are {ratio:.2g} times the noise before contact"
+        failed.append(_misfit("misfit", finding, residuals))
+        noise = Noise(scatter.deviation, min(noise.freedom, freedom))
     sums = residuals.binned(_contact_bins(residuals))
-    if sums is None or not sums.exceeds(independent, independent_freedom(points)):
-        return NoiseEstimate(noise, freedom, ())
-    failed = (_pattern(residuals, sums, independent),)
-    if sums.noise <= noise:
-        return NoiseEstimate(noise, freedom, failed)
-    return NoiseEstimate(sums.noise, sums.freedom, failed)
-
-
-def _check_contact(residuals: Residuals, before: NoiseEstimate) -> NoiseEstimate:
-    """Return the noise before contact, widened by the checks that residuals in contact fail."""
-    contact = ~residuals.before
-    count = int(contact.sum())
-    freedom_contact = max(count - len(residuals.likelihood.free) + len(residuals.baseline), 1)
-    scatter = float(np.sqrt(np.sum(residuals.force[contact] ** 2) / freedom_contact))
-    noise, freedom, failed = before.noise, before.freedom, list(before.failed)
-    if scatter > noise and fdtrc(freedom_contact, freedom, (scatter / noise) ** 2) < CHANCE:
-        failed.append(
-            _misfit(
-                "misfit",
-                f"the residuals are {scatter / noise:.2g} times the noise before contact",
-                residuals,
+    if sums is not None:
+        independent = residuals.independent_noise(points)
+        usual = independent if slow is None else slow
+        usual = Noise(max(usual.deviation, independent.deviation), usual.freedom)
+        if wrong := sums.exceeds(usual):
+            finding = (
+                "the residuals follow a pattern, with sums "
+                f"{np.sqrt(sums.excess(independent)):.2g} times those of independent noise"
             )
-        )
-        noise, freedom = scatter, min(freedom, freedom_contact)
-    sums = residuals.binned(_contact_bins(residuals))
-    if sums is None:
-        return NoiseEstimate(noise, freedom, tuple(failed))
-    independent = residuals.independent_noise(contact)
-    if before.slow is None:
-        wrong = sums.exceeds(independent, independent_freedom(count))
-    else:
-        wrong = sums.exceeds(max(before.slow.noise, independent), before.slow.freedom)
-    if wrong:
-        failed.append(_pattern(residuals, sums, independent))
-    # Noise slower than the bins before contact appears in the wider bins in contact.
-    if (wrong or before.slow is not None) and sums.noise > noise:
-        noise, freedom = sums.noise, sums.freedom
-    return NoiseEstimate(noise, freedom, tuple(failed))
+            failed.append(_misfit("pattern", finding, residuals))
+        # Noise slower than the bins before contact appears in the wider bins in contact.
+        if (wrong or slow is not None) and sums.deviation > noise.deviation:
+            noise = sums
+    return NoiseEstimate(noise, tuple(failed))
 
 
 def _contact_bins(residuals: Residuals) -> Array:
@@ -219,14 +198,6 @@ def _contact_bins(residuals: Residuals) -> Array:
     index = np.digitize(share, _DEPTHS[1:-1])
     index[residuals.before] = -1
     return np.where(index[:, None] == np.arange(len(_DEPTHS) - 1), 1.0, 0.0)
-
-
-def _pattern(residuals: Residuals, sums: BinnedNoise, independent: float) -> FailedCheck:
-    factor = np.sqrt(sums.excess(independent))
-    finding = (
-        f"the residuals follow a pattern, with sums {factor:.2g} times those of independent noise"
-    )
-    return _misfit("pattern", finding, residuals)
 
 
 def _misfit(code: str, finding: str, residuals: Residuals) -> FailedCheck:
@@ -240,41 +211,43 @@ def _misfit(code: str, finding: str, residuals: Residuals) -> FailedCheck:
     )
 
 
-def _whole_shape(
-    likelihood: Likelihood, parameters: Coordinates
-) -> tuple[IsShallowLimit, HasForceCurve] | None:
-    """Return the indenter and the shape it approximates, if the depth is too large for it.
+def check_shape(
+    chi_squared: Likelihood | Pool, best: Minimum
+) -> tuple[list[str], list[FailedCheck]]:
+    """Return the effect of whole shapes in words, as a failed check if they replace the tension.
 
-    None if the depth exceeds the limit of that shape, too.
+    They are those that the indenters of curves too deep for them approximate.  The check fails if
+    they describe the curves without tension as well as their shallow limits do with a tension that
+    they need.
     """
-    model = likelihood.force_model
-    if not isinstance(model, ClosedFormModel) or not isinstance(model.indenter, IsShallowLimit):
-        return None
-    depth = float(likelihood.depth(parameters)[-1])
-    shape = model.indenter.whole_shape()
-    if SHALLOW * model.indenter.radius < depth <= shape.depth_limit:
-        return model.indenter, shape
-    return None
-
-
-def _check_shape(likelihood: Likelihood, best: Minimum) -> tuple[list[str], list[FailedCheck]]:
-    """Return the effect of the whole shape in words, as a failed check if it replaces the tension.
-
-    The check fails if the whole shape describes the curve without tension as well as its shallow
-    limit does with a tension that it needs.
-    """
-    shapes = _whole_shape(likelihood, best.parameters)
-    if shapes is None:
+    deep: list[tuple[float, IsShallowLimit, HasForceCurve]] = []
+    models = []
+    for member, part in chi_squared.curves(best.parameters):
+        model, depth = member.force_model, float(member.depth(part)[-1])
+        limit = model.indenter if isinstance(model, ClosedFormModel) else None
+        if isinstance(limit, IsShallowLimit) and depth > SHALLOW * limit.radius:
+            shape = limit.whole_shape()
+            if depth <= shape.depth_limit:
+                model = ClosedFormModel(shape)
+                deep.append((depth / limit.radius, limit, shape))
+        models.append(model)
+    if not deep:
         return [], []
-    limit, shape = shapes
-    other = replace(likelihood, force_model=ClosedFormModel(shape))
+    other = chi_squared.with_models(models)
     try:
         minimum = other.minimise(best.parameters)
-        fails = _needs_no_tension(other, minimum, likelihood, best)
+        fails = _needs_no_tension(other, minimum, chi_squared, best)
     except ConvergenceError:
         return [], []
-    share = float(likelihood.depth(best.parameters)[-1]) / limit.radius
-    name, whole = (getattr(form, "type", type(form).__name__) for form in shapes)
+    if isinstance(chi_squared, Pool):
+        words = (
+            f"{len(deep)} of {len(models)} curves go deeper than {SHALLOW:g} of the radius, and "
+            "the shapes that their indenters approximate describe the curves equally well without "
+            "tension"
+        )
+        return [], [FailedCheck("shape", words)] if fails else []
+    ((share, *shapes),) = deep
+    name, whole = (getattr(shape, "type", type(shape).__name__) for shape in shapes)
     words = (
         f"the depth is {share:.2g} of the radius, and beyond {SHALLOW:g} of it a {name} differs "
         f"from the {whole} that it approximates: with indenter {whole!r} the reduced modulus is "
@@ -286,28 +259,6 @@ def _check_shape(likelihood: Likelihood, best: Minimum) -> tuple[list[str], list
     return [], [
         FailedCheck("shape", f"{words}; it describes the curve equally well without tension")
     ]
-
-
-def check_pooled_shape(pool: Pool, best: Minimum) -> list[FailedCheck]:
-    """Return a failed check if the whole shapes replace the tension of several curves."""
-    members, count = [], 0
-    for member, part in zip(pool.members, pool.parts(best.parameters), strict=True):
-        shapes = _whole_shape(member, part)
-        model = member.force_model if shapes is None else ClosedFormModel(shapes[1])
-        members.append(replace(member, force_model=model))
-        count += shapes is not None
-    if not count:
-        return []
-    other = Pool(tuple(members), pool.free)
-    try:
-        fails = _needs_no_tension(other, other.minimise(best.parameters), pool, best)
-    except ConvergenceError:
-        return []
-    text = (
-        f"{count} of {len(members)} curves go deeper than {SHALLOW:g} of the radius, and the "
-        "shapes that their indenters approximate describe the curves equally well without tension"
-    )
-    return [FailedCheck("shape", text)] if fails else []
 
 
 def _needs_no_tension(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -37,68 +38,91 @@ class _Design(NamedTuple):
 
 def advice(
     likelihood: Likelihood, parameters: Coordinates, modulus: Estimate, tension: Estimate
-) -> str:
-    """Return the bounds of modulus and tension, and which experiment would tighten them.
+) -> tuple[str, list[str]]:
+    """Return the bounds of modulus and tension, which experiment would tighten them, and warnings.
 
-    Empty if one of the two is fixed.  If the curve shows no tension, the bounds are those at a
-    tension that it could just miss.
+    Both are empty if one of the two is fixed.  If the curve shows no tension, the bounds are those
+    at a tension that it could just miss.  The warning says why an interval is open.
     """
-    if not {MODULUS, TENSION} <= set(likelihood.free):
-        return ""
+    if modulus.held or tension.held:
+        return "", []
+    supposed = _with_tension(likelihood, parameters, tension)
+    now, others = _designs(likelihood, supposed)
     if tension.value and not np.isfinite([modulus.bound, tension.bound]).all():
-        return (
+        words = (
             "the force is so far from linear in modulus and tension that no bound (Cramér–Rao) of "
             "their errors holds; the intervals do"
         )
-    supposed = _with_tension(likelihood, parameters, tension)
-    text = _advice(likelihood, supposed)
-    if tension.value == supposed[TENSION]:
-        return text
-    return f"for a tension of {supposed[TENSION]:.2g} N/m: {text}"
-
-
-def undecided(
-    modulus: Estimate, tension: Estimate, likelihood: Likelihood, parameters: Coordinates
-) -> list[str]:
-    """Return why an interval is open, in words."""
-    if modulus.held or tension.held or None not in (modulus.low, modulus.high, tension.high):
-        return []
+    else:
+        condition = f"for a tension of {supposed[TENSION]:.2g} N/m: "
+        shares = {"modulus": now.modulus, "tension": now.tension}
+        words = (
+            f"{condition if supposed[TENSION] != tension.value else ''}"
+            f"{_bounds('this curve', shares)}; {_better(now, others)}"
+        )
+    if not _is_open(modulus, tension):
+        return words, []
     which = "modulus" if modulus.low is None or modulus.high is None else "tension"
-    text = (
+    warning = (
         f"the curve cannot tell modulus and tension apart: the interval of the {which} is open, "
         "and its value is one of many"
     )
-    now, others = _designs(likelihood, _with_tension(likelihood, parameters, tension))
     if min(design.worse for design in (now, *others)) < _USELESS:
         length = 2 * tension.value / modulus.value
         shallow = length > float(likelihood.depth(parameters)[-1])
-        text += f"; the curve is too {'shallow' if shallow else 'deep'}"
-    return [text]
+        warning += f"; the curve is too {'shallow' if shallow else 'deep'}"
+    return words, [warning]
 
 
-def percent(share: float) -> str:
-    """Return a share as a percentage for messages."""
-    return f"{100 * share:.2g} %" if share < 10 else "more than 1000 %"
-
-
-def _advice(likelihood: Likelihood, parameters: Coordinates) -> str:
-    now, others = _designs(likelihood, parameters)
-    reached = (
-        f"no unbiased fit of this curve could beat ± {percent(now.modulus)} of the modulus and "
-        f"± {percent(now.tension)} of the tension (Cramér–Rao bound, one standard deviation)"
-    )
+def _better(now: _Design, others: Sequence[_Design]) -> str:
+    """Return which experiment would be more informative."""
     if min(design.worse for design in (now, *others)) >= _USELESS:
         return (
-            f"{reached}; with this indenter no other radius or range would tell them apart: fix "
-            "one of them, or press with another shape"
+            "with this indenter no other radius or range would tell them apart: fix one of them, "
+            "or press with another shape"
         )
     if not others or not others[0].worse * _GAIN < now.worse:
-        return f"{reached}; more points or less noise would help, another radius or range hardly"
+        return "more points or less noise would help, another radius or range hardly"
     best = others[0]
     return (
-        f"{reached}; {best.words} at the same noise relative to the largest force would bring "
-        f"± {percent(best.modulus)} and ± {percent(best.tension)}"
+        f"{best.words} at the same noise relative to the largest force would bring "
+        f"± {_percent(best.modulus)} and ± {_percent(best.tension)}"
     )
+
+
+def pooled_advice(modulus: Estimate, tension: Estimate) -> tuple[str, list[str]]:
+    """Return the bounds of what several curves share, and a warning if an interval is open."""
+    shares = {
+        name: estimate.bound / estimate.value
+        for name, estimate in (("modulus", modulus), ("tension", tension))
+        if not estimate.held and estimate.value and np.isfinite(estimate.bound)
+    }
+    words = _bounds("these curves", shares) if shares else ""
+    if not _is_open(modulus, tension):
+        return words, []
+    return words, [
+        "the curves together cannot tell modulus and tension apart: an interval is open, and its "
+        "value is one of many; add curves of another radius or range"
+    ]
+
+
+def _is_open(modulus: Estimate, tension: Estimate) -> bool:
+    """Return whether both are fitted, and one has an interval that does not end."""
+    held = modulus.held or tension.held
+    return not held and None in (modulus.low, modulus.high, tension.high)
+
+
+def _bounds(subject: str, shares: Mapping[str, float]) -> str:
+    """Return relative Cramér–Rao bounds by the name of the parameter in words."""
+    bounds = [f"± {_percent(share)} of the {name}" for name, share in shares.items()]
+    return (
+        f"no unbiased fit of {subject} could beat {' and '.join(bounds)} (Cramér–Rao bound, one "
+        "standard deviation)"
+    )
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2g} %" if share < 10 else "more than 1000 %"
 
 
 def _designs(likelihood: Likelihood, parameters: Coordinates) -> tuple[_Design, list[_Design]]:

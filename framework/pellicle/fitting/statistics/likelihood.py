@@ -276,10 +276,19 @@ class Likelihood(ChiSquared):
             SLOPE: Range(height / span, -steepest, steepest),
         }
 
+    def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
+        """Return the likelihood and the coordinates of the one curve."""
+        return [(self, parameters)]
+
+    def with_models(self, models: Sequence[ForceModel]) -> Likelihood:
+        """Return the same with another force model."""
+        (model,) = models
+        return replace(self, force_model=model)
+
     def coarse(self) -> Likelihood | None:
         """Return the same with the force model of a coarser grid, if there is one."""
         coarse = self.force_model.coarse
-        return None if coarse is None else replace(self, force_model=coarse)
+        return None if coarse is None else self.with_models([coarse])
 
     def depth(self, parameters: Coordinates) -> Array:
         """Return the position relative to the contact point [m]."""

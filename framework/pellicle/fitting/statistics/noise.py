@@ -38,38 +38,36 @@ class FailedCheck(NamedTuple):
         """Whether it contradicts the model (so that no tension is shown) or only the noise."""
         return self.code not in _OF_NOISE
 
-    def to_dict(self) -> dict[str, str]:
-        """Return JSON data."""
-        return self._asdict()
 
+class Noise(NamedTuple):
+    """An estimate of the noise; of two, that with the larger deviation is the greater."""
 
-class BinnedNoise(NamedTuple):
-    """Noise estimated from sums over bins of points."""
-
-    noise: float
-    """Standard deviation of a point [N], if noise is independent."""
-    freedom: int
+    deviation: float
+    """Standard deviation of the force [N]; from sums over bins, that if noise is independent."""
+    freedom: float
     """Degrees of freedom."""
 
-    def excess(self, noise: float) -> float:
-        """Return the variance of the sums over that of independent noise [N]."""
-        return (self.noise / noise) ** 2
+    def excess(self, other: Noise) -> float:
+        """Return the variance over that of ``other``."""
+        return (self.deviation / other.deviation) ** 2
 
-    def exceeds(self, noise: float, freedom: float) -> bool:
-        """Return whether an F-test rejects noise [N] known with ``freedom`` degrees of freedom."""
-        return bool(fdtrc(self.freedom, freedom, self.excess(noise)) < CHANCE)
+    def exceeds(self, other: Noise) -> bool:
+        """Return whether an F-test rejects that both are of the same noise."""
+        if self <= other:
+            return False
+        return bool(fdtrc(self.freedom, other.freedom, self.excess(other)) < CHANCE)
 
 
 class NoiseEstimate(NamedTuple):
     """Noise of all or of some points, and the checks that they fail."""
 
-    noise: float
-    """Standard deviation of the force [N], widened by the failed checks."""
-    freedom: float
-    """Degrees of freedom."""
+    noise: Noise
+    """Widened by the failed checks."""
     failed: tuple[FailedCheck, ...]
-    slow: BinnedNoise | None = None
+    slow: Noise | None = None
     """Noise before contact from sums over bins, where it exceeds that of independent points."""
+    messages: tuple[str, ...] = ()
+    """Further warnings."""
 
 
 class Residuals(NamedTuple):
@@ -115,26 +113,21 @@ class Residuals(NamedTuple):
         """The fitted parameters of the baseline."""
         return tuple(p for p in (OFFSET, SLOPE) if p in self.likelihood.free)
 
-    def independent_noise(self, points: Mask) -> float:
-        """Return the noise [N] of some points, from differences of neighbours."""
-        return max(neighbour_noise(self.force[points]), self.floor)
+    def independent_noise(self, points: Mask) -> Noise:
+        """Return the noise of some points, from differences of neighbours.
 
-    def binned(self, bins: Array) -> BinnedNoise | None:
+        It has two thirds as many degrees of freedom as there are points (von Neumann et al. 1941).
+        """
+        force = self.force[points]
+        return Noise(max(neighbour_noise(force), self.floor), 2 * force.size / 3)
+
+    def binned(self, bins: Array) -> Noise | None:
         """Return the noise from sums over bins; a column of ``bins`` is 1 at its points, else 0."""
         return binned_noise(self.force, self.jacobian, bins)
 
 
-def independent_freedom(points: int) -> float:
-    """Return the degrees of freedom of `neighbour_noise`."""
-    return 2 * points / 3
-
-
 def neighbour_noise(values: Array) -> float:
-    """Return the standard deviation of independent noise, from the differences of neighbours.
-
-    Drift and slow noise do not contribute.  The estimate has two thirds as many degrees of freedom
-    as there are values (von Neumann et al. 1941).
-    """
+    """Return the standard deviation of noise from differences of neighbours, without drift."""
     return float(np.sqrt(np.mean(np.diff(values) ** 2) / 2))
 
 
@@ -150,7 +143,7 @@ def resolution(values: Array) -> float:
     return step if np.all(np.abs(counts - np.round(counts)) < _OFF_STEP) else 0.0
 
 
-def binned_noise(residuals: Array, jacobian: Array, bins: Array) -> BinnedNoise | None:
+def binned_noise(residuals: Array, jacobian: Array, bins: Array) -> Noise | None:
     """Return the noise from sums of residuals over bins; None if no bin is left.
 
     ``bins`` has a column for each bin, 1 at its points and 0 elsewhere.  Residuals of a fit are
@@ -166,4 +159,4 @@ def binned_noise(residuals: Array, jacobian: Array, bins: Array) -> BinnedNoise 
     sums = basis.T @ (residuals - span @ (span.T @ residuals))
     if not sums.size:
         return None
-    return BinnedNoise(float(np.sqrt(np.mean(sums**2))), sums.size)
+    return Noise(float(np.sqrt(np.mean(sums**2))), sums.size)

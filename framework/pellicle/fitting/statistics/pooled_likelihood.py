@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.fitting.models.force_model import ForceModel
 from pellicle.fitting.parameters import MODULUS, TENSION, Coordinates, Parameter
 
 from .initial_guess import GUESSES
@@ -48,6 +49,15 @@ class Pool(ChiSquared):
         """The parameters of the first curve, then those of the others that are not shared."""
         return tuple(dict.fromkeys(p for own in self._own for p in own.values()))
 
+    def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
+        """Return likelihood and coordinates of each curve."""
+        return list(zip(self.members, self.parts(parameters), strict=True))
+
+    def with_models(self, models: Sequence[ForceModel]) -> Pool:
+        """Return the same with another force model for each curve."""
+        pairs = zip(self.members, models, strict=True)
+        return Pool(tuple(member.with_models([model]) for member, model in pairs), self.free)
+
     @property
     def shared(self) -> list[Parameter]:
         """The parameters that all curves have in common."""
@@ -74,11 +84,10 @@ class Pool(ChiSquared):
 
     def coarse(self) -> Pool | None:
         """Return the same with force models of coarser grids, if there are any."""
-        coarse = [member.coarse() for member in self.members]
-        if not any(coarse):
+        models = [member.force_model for member in self.members]
+        if not any(model.coarse for model in models):
             return None
-        pairs = zip(coarse, self.members, strict=True)
-        return Pool(tuple(coarser or member for coarser, member in pairs), self.free)
+        return self.with_models([model.coarse or model for model in models])
 
     def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return a QR-compressed residual vector, six entries per curve, and its Jacobian.
@@ -88,7 +97,7 @@ class Pool(ChiSquared):
         columns, so that a hundred curves fit into memory.
         """
         triangles = []
-        for member, part in zip(self.members, self.parts(parameters), strict=True):
+        for member, part in self.curves(parameters):
             residuals, jacobian = member.linearised(part)
             matrix = np.column_stack([jacobian, residuals])
             triangles.append(np.asarray(np.linalg.qr(matrix, mode="r")))
@@ -116,17 +125,10 @@ class Pool(ChiSquared):
     def without_tension(self, best: Minimum) -> Minimum:
         """Return the minimum of χ² without tension, from ``best`` and from the single fits."""
         fixed = (TENSION,)
-        parts = [part | {TENSION: 0.0} for part in self.parts(best.parameters)]
-        single = [
-            member.minimise(part, fixed).parameters
-            for member, part in zip(self.members, parts, strict=True)
-        ]
-        return least(
-            [
-                self.minimise(self.joined(parts), fixed),
-                self._minimise(single, self._median(single), fixed),
-            ]
-        )
+        start = best.parameters | {TENSION: 0.0}
+        single = [member.minimise(part, fixed).parameters for member, part in self.curves(start)]
+        shared = self.minimise(start, fixed)
+        return least([shared, self._minimise(single, self._median(single), fixed)])
 
     def _median(self, parts: Sequence[Coordinates]) -> Coordinates:
         return {p: float(np.median([part[p] for part in parts])) for p in self.shared}

@@ -187,20 +187,15 @@ def confidence_interval(
     ImprovedMinimum
         The profile falls below ``best``.
     """
-    lowest, highest = _search_limits(likelihood, best.parameters, parameter)
-    return (
-        _end(likelihood, best, parameter, lowest, threshold),
-        _end(likelihood, best, parameter, highest, threshold),
-    )
-
-
-def _search_limits(
-    likelihood: ChiSquared, best: Coordinates, parameter: Parameter
-) -> tuple[float, float]:
-    value, (scale, low, high) = best[parameter], likelihood.ranges[parameter]
+    value, (scale, low, high) = best.parameters[parameter], likelihood.ranges[parameter]
     if parameter.logarithmic:
-        return value - REACH, value + REACH
-    return low, float(np.exp(REACH)) * max(value, scale) if np.isinf(high) else high
+        low, high = value - REACH, value + REACH
+    elif np.isinf(high):
+        high = float(np.exp(REACH)) * max(value, scale)
+    return (
+        _end(likelihood, best, parameter, low, threshold),
+        _end(likelihood, best, parameter, high, threshold),
+    )
 
 
 def _end(

@@ -1,0 +1,145 @@
+"""The table of a layered kernel: units, paths of nested fields, messages, studies, schema."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+
+import pellicle as pl
+
+TOML = """
+[grid]
+points = 16
+size = "0.4 mm"
+[kernel]
+type = "layered"
+layers = [
+    { youngs_modulus = "1 MPa", poissons_ratio = 0.3, thickness = "5 um" },
+    { reduced_modulus = "10 kPa", poissons_ratio = 0.5, thickness = "0.1 mm" },
+]
+substrate = { youngs_modulus = "3 kPa", poissons_ratio = 0.4 }
+[indenter]
+type = "paraboloid"
+radius = "1 mm"
+[loading]
+depth = "10 um"
+"""
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    """Return the file of a run on two layers."""
+    path = tmp_path / "layers.toml"
+    path.write_text(TOML, encoding="utf-8")
+    return path
+
+
+def changed(file: Path, *changes: str) -> dict[str, Any]:
+    """Return the table of the kernel after changes as by ``--set``."""
+    table: dict[str, Any] = pl.Run.from_toml(file, changes).kernel.model_dump(exclude_none=True)
+    return table
+
+
+def test_nested_values_are_in_si(file: Path) -> None:
+    """Units are converted in layers and substrate; either modulus may be given."""
+    first, second = changed(file)["layers"]
+    assert first == {"youngs_modulus": 1e6, "poissons_ratio": 0.3, "thickness": 5e-6}
+    assert second == {"reduced_modulus": 1e4, "poissons_ratio": 0.5, "thickness": 1e-4}
+    assert changed(file)["substrate"] == {"youngs_modulus": 3e3, "poissons_ratio": 0.4}
+
+
+def test_nested_fields_can_be_set(file: Path) -> None:
+    """Layers count from 0, and the substrate can be replaced as a whole."""
+    assert changed(file, 'kernel.layers.1.thickness="2 mm"')["layers"][1]["thickness"] == 2e-3
+    assert changed(file, 'kernel.substrate.youngs_modulus="1 GPa"')["substrate"] == {
+        "youngs_modulus": 1e9,
+        "poissons_ratio": 0.4,
+    }
+    assert changed(file, "kernel.substrate=rigid")["substrate"] == "rigid"
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ("layers.1.thickness=0", "kernel.layers.1.thickness: 0 is not allowed; give a value > 0 m"),
+        ("layers.0.thickness='-1 um'", "kernel.layers.0.thickness: '-1 um' is not allowed"),
+        ("layers.0.thickness='1 kPa'", "kernel.layers.0.thickness: '1 kPa' measures"),
+        ("layers.0.thickness=inf", "kernel.layers.0.thickness: inf is not finite"),
+        ("layers.0.youngs_modulus='inf Pa'", "kernel.layers.0.youngs_modulus: 'inf Pa' is not"),
+        ("layers.0.youngs_modulus=nan", "kernel.layers.0.youngs_modulus: nan is not finite"),
+        ("layers.0.youngs_modulus=0", "kernel.layers.0.youngs_modulus: 0 is not allowed"),
+        ("layers.0.poissons_ratio=0.51", "kernel.layers.0.poissons_ratio: 0.51 is not allowed"),
+        ("layers.1.poissons_ratio=-1", "kernel.layers.1.poissons_ratio: -1 is not allowed"),
+        ("layers.0.modulus=1", "kernel.layers.0.modulus: is not a field here; did you mean"),
+        ("layers.0.reduced_modulus=1", "kernel.layers.0: two moduli; give exactly one"),
+        ("layers.0={poissons_ratio=0.5,thickness=1}", "kernel.layers.0: no modulus; give"),
+        ("layers.0={youngs_modulus=1,poissons_ratio=0}", "kernel.layers.0.thickness: is missing"),
+        ("layers.2.thickness=1", "kernel.layers has no entry 2; give one of its 2"),
+        ("layers=[]", "kernel.layers: [] is not allowed; give a list of 1 or more"),
+        ("layers={}", "kernel.layers: {} is not allowed; give a list"),
+        ("layers=[3]", "kernel.layers.0: 3 is not allowed; give a table"),
+        ("substrate='stiff'", "kernel.substrate: 'stiff' is not allowed; give \"rigid\", or a"),
+        ("substrate=1", 'kernel.substrate: 1 is not allowed; give "rigid"'),
+        ("substrate={}", "kernel.substrate.poissons_ratio: is missing"),
+        ("substrate.thickness=1", "kernel.substrate.thickness: is not a field here"),
+        ("substrate.poissons_ratio=0.6", "kernel.substrate.poissons_ratio: 0.6 is not allowed"),
+        ("substrat='rigid'", "kernel.substrat: is not a field here; did you mean 'substrate'?"),
+    ],
+)
+def test_a_message_names_the_nested_field(file: Path, change: str, words: str) -> None:
+    """What cannot be used is named with its whole path, the values allowed and the remedy."""
+    with pytest.raises(pl.ConfigError) as caught:
+        changed(file, f"kernel.{change}")
+    assert words in str(caught.value)
+
+
+def test_every_problem_is_named_at_once() -> None:
+    """Two wrong layers and a wrong substrate are three messages."""
+    layers = [{"youngs_modulus": -1, "poissons_ratio": 0.5, "thickness": 0}, {"thickness": "x"}]
+    with pytest.raises(pl.ConfigError) as caught:
+        pl.kernel("layered", layers=layers, substrate={"poissons_ratio": 2, "youngs_modulus": 1})
+    assert [problem.field for problem in caught.value.problems] == [
+        "layers.0.youngs_modulus",
+        "layers.0.thickness",
+        "layers.1.poissons_ratio",
+        "layers.1.thickness",
+        "substrate.poissons_ratio",
+    ]
+
+
+def test_a_study_varies_a_nested_field(file: Path) -> None:
+    """An axis may be a field of one layer, which the run then may leave out."""
+    data = tomllib.loads(TOML)
+    del data["kernel"]["layers"][0]["thickness"]
+    axis = {"kernel.layers.0.thickness": ["1 um", "10 um"]}
+    study = data | {"study": {"vary": axis}}
+    tables = [point.run.kernel.model_dump() for point in pl.Study.from_mapping(study).points]
+    assert [table["layers"][0]["thickness"] for table in tables] == [1e-6, 1e-5]
+    schema = Draft202012Validator(pl.schema())
+    schema.validate(study)
+    assert not schema.is_valid(data)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "valid"),
+    [
+        ("substrate", "rigid", True),
+        ("substrate", "stiff", False),
+        ("substrate", {"reduced_modulus": "1 kPa", "poissons_ratio": 0.2}, True),
+        ("substrate", {"reduced_modulus": "1 kPa"}, False),
+        ("layers", [], False),
+        ("layers", [{"youngs_modulus": 1, "poissons_ratio": 0.1, "thickness": 0}], False),
+        ("layers", [{"youngs_modulus": 1, "poissons_ratio": 0.1, "thickness": 1, "q": 1}], False),
+        ("layers", [{"youngs_modulus": 1, "poissons_ratio": 0.1, "thickness": 1}], True),
+    ],
+)
+def test_the_schema_knows_the_nested_table(path: str, value: Any, valid: bool) -> None:
+    """An editor marks what a run refuses."""
+    data = copy.deepcopy(tomllib.loads(TOML))
+    data["kernel"][path] = value
+    assert Draft202012Validator(pl.schema()).is_valid(data) == valid
