@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -208,7 +209,8 @@ def _fit_pool(
     threshold = factor * chi_squared_threshold(sum(single.freedom for _, single in singles))
     points = [CONTACT_POINT.of_curve(index) for index in range(len(singles))]
     parameters = [*shared, *(p for p in points if contact_points and p in pool.free)]
-    profile = profile_likelihood(pool, start, threshold, parameters, pool.without_tension, report)
+    without = partial(pool.without_in_all, TENSION)
+    profile = profile_likelihood(pool, start, threshold, parameters, without, report)
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = []
     for index, (member, part) in enumerate(pool.curves(profile.best.parameters)):

@@ -43,13 +43,12 @@ class Channel(NamedTuple):
 class Calibration(Model):
     """Converts the signal of a cantilever to force and deflection; None if not given."""
 
-    spring_constant: Annotated[
-        SpringConstant | None, Field(description="of the cantilever, to subtract its bending")
-    ] = None
-    sensitivity: Annotated[
-        Sensitivity | None,
-        Field(description="deflection of the cantilever over the signal of its detector"),
-    ] = None
+    spring_constant: SpringConstant | None = Field(
+        None, description="of the cantilever, to subtract its bending"
+    )
+    sensitivity: Sensitivity | None = Field(
+        None, description="deflection of the cantilever over the signal of its detector"
+    )
 
     def required_spring_constant(self) -> float:
         """Return the spring constant [N/m]."""
