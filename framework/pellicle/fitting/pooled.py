@@ -148,11 +148,9 @@ def fit_pooled(
     ----------
     curves
         As for `fit_many`.
-    config
-        A configuration or its TOML file.
     progress
         Show the progress of studies and of the fit on a terminal.
-    **options
+    config, **options
         As for `fit_many`, but a contact point cannot be fixed.  ``contact_points=True`` determines
         the interval of each contact point too.  Each needs searches over the parameters of all
         curves, so the time grows with the square of their number.
