@@ -18,9 +18,8 @@ from pellicle.units import Length
 from .elastic_constants import ElasticConstants
 from .layer_recursion import RIGID, half_space, on_layer
 
-_BLOCK: Final = (
-    8192  # wavenumbers treated at once, so that some thirty temporaries stay in the cache
-)
+# Wavenumbers treated at once, so that some thirty temporaries stay in the cache.
+_BLOCK: Final = 8192
 
 
 class Layer(ElasticConstants):
@@ -81,7 +80,7 @@ class Layered(Kernel):
 
     def _compliance(self, q: Array) -> Array:
         if self.substrate == "rigid":
-            surface, modulus = RIGID, 1.0
+            surface, modulus = RIGID, self.layers[-1].contact_modulus
         else:
             surface = half_space(self.substrate.coupling_ratio)
             modulus = self.substrate.contact_modulus
