@@ -117,6 +117,7 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
         "distributions": {"bins": 10, "log": ["y"]},
         "spectrum": {"by": "step", "label": "{depth * 1e6} µm"},
         "vtk": {},
+        "adhesive_curve": {"work_of_adhesion": "50 mJ/m^2"},
     },
     # The address of dask is that of the fixture dask_address.
     "executor": {

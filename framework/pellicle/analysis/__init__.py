@@ -1,4 +1,4 @@
-"""Analysis of contact: functions of the fields of one load step and of their grid.
+"""Analysis of contact: functions of the fields of one load step and of their grid, or of a path.
 
 Fields are arrays of the grid's shape (nx, ny), such as ``result.dataset["contact"][-1]``; the grid
 is ``result.grid``. On a free boundary there is no contact beyond the domain; on a periodic one
@@ -7,6 +7,7 @@ opposite edges are neighbours.
 
 from __future__ import annotations
 
+from .adhesive_curve import AdhesiveContact, AdhesiveCurve, adhesive_curve
 from .distribution import Distribution, distribution
 from .ellipse import Ellipse, ellipse
 from .extrapolation import Extrapolation, extrapolate
@@ -15,11 +16,14 @@ from .perimeter import perimeter
 from .spectrum import Spectrum, spectrum
 
 __all__ = [
+    "AdhesiveContact",
+    "AdhesiveCurve",
     "Distribution",
     "Ellipse",
     "Extrapolation",
     "Patches",
     "Spectrum",
+    "adhesive_curve",
     "coordination",
     "distribution",
     "ellipse",

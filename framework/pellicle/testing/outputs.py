@@ -55,7 +55,7 @@ def _run() -> Run:
         "grid": {"points": [16, 12], "size": ["0.4 mm", "0.3 mm"]},
         "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
         "indenter": {"type": "paraboloid", "radius": "1 mm"},
-        "loading": {"depth": ["5 um", "10 um"]},
+        "loading": {"depth": ["5 um", "10 um"], "stiffness": True},
         "corrections": [{"type": "yastrebov"}],
     }
     return Run(**configuration)

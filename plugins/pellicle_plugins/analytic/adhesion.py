@@ -17,11 +17,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import exp, inf, log, pi, sqrt
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pellicle.analysis import AdhesiveContact
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 
@@ -33,17 +33,6 @@ from .tensed_punch import punch
 _STEP = 0.5
 _END = 1e-6
 """Share of the profile's radius that stays free of contact."""
-
-
-class Equilibrium(NamedTuple):
-    """An adhesive contact in equilibrium; numbers, or arrays of one shape."""
-
-    contact_radius: Array
-    """a [m]."""
-    depth: Array
-    """δ [m]."""
-    force: Array
-    """F [N], negative where the indenter is pulled."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +55,7 @@ class Adhesion:
         positive(reduced_modulus=self.reduced_modulus, work_of_adhesion=self.work_of_adhesion)
         not_negative(tension=self.tension)
 
-    def equilibrium(self, contact_radius: ArrayLike) -> Equilibrium:
+    def equilibrium(self, contact_radius: ArrayLike) -> AdhesiveContact:
         """Return the equilibrium, stable or not, at contact radii > 0 [m] of any shape.
 
         Raises
@@ -83,7 +72,7 @@ class Adhesion:
             )
         return self._equilibrium(xi_at(self.indenter, radius))
 
-    def instability(self, spring_constant: float = 0.0) -> Equilibrium:
+    def instability(self, spring_constant: float = 0.0) -> AdhesiveContact:
         """Return the last stable equilibrium of a retraction.
 
         Parameters
@@ -94,14 +83,14 @@ class Adhesion:
 
         Returns
         -------
-        Equilibrium
+        AdhesiveContact
             All 0 for a cone whose flank is steeper than the surface at its rim,
             cot α ≥ √(2w/τ₀): its contact shrinks to nothing without being pulled.
         """
         if not spring_constant >= 0:
             raise ConfigError(f"must not be negative, got {spring_constant!r}", "spring_constant")
         if self._never_sticks:
-            return Equilibrium(*np.zeros(3))
+            return AdhesiveContact(*np.zeros(3))
         per_modulus = spring_constant / self.reduced_modulus
 
         def slope(xi: float) -> float:
@@ -110,7 +99,7 @@ class Adhesion:
 
         return self._equilibrium(np.array(_rising_root(slope, self._guess(), self._last)))
 
-    def at_depth(self, depth: float) -> Equilibrium:
+    def at_depth(self, depth: float) -> AdhesiveContact:
         """Return the equilibrium at a depth [m] that is stable if the depth is fixed.
 
         Raises
@@ -120,7 +109,7 @@ class Adhesion:
         """
         return self._stable(depth, "depth", inf)
 
-    def at_force(self, force: float) -> Equilibrium:
+    def at_force(self, force: float) -> AdhesiveContact:
         """Return the equilibrium at a force [N] that is stable under a dead load.
 
         Raises
@@ -130,7 +119,7 @@ class Adhesion:
         """
         return self._stable(force, "force", 0.0)
 
-    def _stable(self, value: float, quantity: str, spring_constant: float) -> Equilibrium:
+    def _stable(self, value: float, quantity: str, spring_constant: float) -> AdhesiveContact:
         """Return the equilibrium with a value of depth or force above that of the instability."""
         end = self.instability(spring_constant)
         lowest = float(getattr(end, quantity))
@@ -186,11 +175,13 @@ class Adhesion:
         )
         return hard, retraction
 
-    def _equilibrium(self, xi: Array) -> Equilibrium:
+    def _equilibrium(self, xi: Array) -> AdhesiveContact:
         hard, retraction = self._curves(xi.ravel())
         depth = hard.depth - retraction
         force = self.reduced_modulus * (hard.force - hard.stiffness * retraction)
-        return Equilibrium(*(values.reshape(xi.shape) for values in (hard.radius, depth, force)))
+        return AdhesiveContact(
+            *(values.reshape(xi.shape) for values in (hard.radius, depth, force))
+        )
 
     def _slopes(self, xi: float) -> tuple[float, float]:
         """Return d(F/E*)/dξ [m²] and dδ/dξ [m]."""
@@ -210,7 +201,7 @@ class Adhesion:
 
 def punch_pull_off(
     radius: float, reduced_modulus: float, tension: float, work_of_adhesion: float
-) -> Equilibrium:
+) -> AdhesiveContact:
     """Return the last equilibrium of a flat punch, the same for a dead load and a fixed depth.
 
     Its contact opens all at once, at D = √(4πa w / k′); without tension F = −√(8πE*w a³)
@@ -234,7 +225,7 @@ def punch_pull_off(
         # The line load N at the rim has the energy release rate N² / 2τ₀.
         slope = contact.ring_force**2 / (2 * pi * radius * tension)
     retraction = sqrt(4 * pi * radius * work_of_adhesion / slope)
-    return Equilibrium(
+    return AdhesiveContact(
         np.array(radius), np.array(-retraction), np.array(-contact.force * retraction)
     )
 

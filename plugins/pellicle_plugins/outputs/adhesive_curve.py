@@ -1,0 +1,288 @@
+"""The adhesive contact that follows from a path without adhesion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import inf, pi
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pellicle import analysis, hookimpl
+from pellicle.arrays import Mask
+from pellicle.components import Output, Runs
+from pellicle.errors import ConfigError, StorageError
+from pellicle.grid import Grid
+from pellicle.report.plotting import save_figure
+from pellicle.results.result import Result
+from pellicle.units import Quantity, axis_unit
+from pellicle_plugins.corrections.yastrebov import Yastrebov
+
+from .base import TableFigure, set_scales, write_csv
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+_HEADS = "curve", "contact_radius [m]", "depth [m]", "force [N]"
+_SUMMARY_HEADS = (
+    "curve",
+    "work_of_adhesion [J/m2]",
+    "pull_off_force [N]",
+    "pull_off_radius [m]",
+    "pull_off_depth [m]",
+    "zero_load_radius [m]",
+    "zero_load_depth [m]",
+    "fixed_depth_force [N]",
+    "fixed_depth_radius [m]",
+    "fixed_depth_depth [m]",
+    "status",
+)
+_MARKERS = {"pull-off": "o", "no load": "s", "last at fixed depth": "v"}
+_ROUND = 0.02
+"""Relative difference of the semi-axes, or of the area from that of an ellipse, of a circle."""
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """The path of a run and its adhesive curve."""
+
+    name: str
+    colour: str
+    path: xr.Dataset
+    curve: analysis.AdhesiveCurve | None
+    """None if the path has none."""
+    status: str
+
+    def points(self) -> dict[str, analysis.AdhesiveContact]:
+        """Return pull-off, zero load and the instability at fixed depth, NaN where unknown."""
+        if self.curve is None:
+            unknown = analysis.AdhesiveContact(*np.full(3, np.nan))
+            return dict.fromkeys(_MARKERS, unknown)
+        contacts = (
+            self.curve.instability(),
+            self.curve.at_zero_load(),
+            self.curve.instability(inf),
+        )
+        return dict(zip(_MARKERS, contacts, strict=True))
+
+
+class AdhesiveCurve(TableFigure):
+    """Force against depth of an indenter that sticks, computed from its path without adhesion.
+
+    `pellicle.analysis.adhesive_curve` has the equations, for an axisymmetric contact on a free
+    boundary and any kernel. The run needs ``stiffness = true`` in its loading and at least eight
+    steps; the curve covers the contact radii of the path. The figure ends at a push as large as the
+    strongest pull; the whole curve is written as CSV beside it. ``-summary.csv`` has pull-off, the
+    contact without load and the last contact at a fixed depth, with NaN and a status for what the
+    path does not contain.
+    """
+
+    type: Literal["adhesive_curve"] = "adhesive_curve"
+    work_of_adhesion: Annotated[
+        float,
+        Quantity("J/m**2", above=0),
+        Field(description="energy per area that separates indenter and solid [J/m**2]"),
+    ]
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Suffixes of the figure, of the curve and of its summary."""
+        return (*super().suffixes, "-summary.csv")
+
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the figure, the curve and its summary."""
+        drawn = [
+            self._drawn(name, f"C{number}", run)
+            for number, (name, run) in enumerate(self._paths(runs))
+        ]
+        files = save_figure(
+            lambda figure: self._fill(figure.add_subplot(), drawn), stem, self.formats
+        )
+        summary = stem.with_name(f"{stem.name}-summary")
+        return (
+            *files,
+            write_csv(stem, [row for one in drawn for row in _rows(one)], _HEADS),
+            write_csv(summary, [self._summary(one) for one in drawn], _SUMMARY_HEADS),
+        )
+
+    def _paths(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
+        """Yield the name of each curve and its run, if its file exists."""
+        for name, point in self.picked(runs.table):
+            try:
+                run = runs.open(str(point["run"].item()))
+            except StorageError:
+                continue
+            yield name, run
+
+    def _drawn(self, name: str, colour: str, run: xr.Dataset) -> _Drawn:
+        _refuse(run)
+        path = run.isel(step=run["converged"].values & (run["contact_area"].values > 0))
+        try:
+            curve = curve_of(path, self.work_of_adhesion)
+        except ConfigError as error:
+            return _Drawn(name, colour, path, None, str(error))
+        missing = [
+            what
+            for what, contact in _Drawn(name, colour, path, curve, "").points().items()
+            if np.isnan(contact.force)
+        ]
+        status = "computed"
+        if missing:
+            low, high = curve.contact_radius[[0, -1]]
+            status = (
+                f"{', '.join(missing)}: not at a contact radius from {low:.3g} to {high:.3g} m, "
+                "those of the path"
+            )
+        return _Drawn(name, colour, path, curve, status)
+
+    def _summary(self, drawn: _Drawn) -> dict[str, object]:
+        pull_off, zero_load, fixed_depth = drawn.points().values()
+        values = (
+            drawn.name,
+            self.work_of_adhesion,
+            pull_off.force,
+            pull_off.contact_radius,
+            pull_off.depth,
+            zero_load.contact_radius,
+            zero_load.depth,
+            fixed_depth.force,
+            fixed_depth.contact_radius,
+            fixed_depth.depth,
+            drawn.status,
+        )
+        return dict(zip(_SUMMARY_HEADS, values, strict=True))
+
+    def _fill(self, axes: Axes, drawn: list[_Drawn]) -> None:
+        curves = [(one, one.curve) for one in drawn if one.curve is not None]
+        depths = [one.path["depth"].values for one in drawn] + [curve.depth for _, curve in curves]
+        forces = [one.path["force"].values for one in drawn] + [curve.force for _, curve in curves]
+        length, length_name = axis_unit(np.concatenate([np.zeros(1), *depths]), "m")
+        newton, newton_name = axis_unit(np.concatenate([np.zeros(1), *forces]), "N")
+        for one in drawn:
+            path = one.path["depth"].values * length, one.path["force"].values * newton
+            axes.plot(*path, "--", color=one.colour, linewidth=0.8)
+        for one, curve in curves:
+            points = one.points()
+            end = points["last at fixed depth"].contact_radius
+            # Without that point on the curve all of it is stable at a fixed depth.
+            stable = ~(curve.contact_radius < end)
+            for part, style in ((stable, "-"), (~stable, ":")):
+                x, y = curve.depth[part] * length, curve.force[part] * newton
+                name = one.name if style == "-" else ""
+                axes.plot(x, y, style, color=one.colour, linewidth=1.4, label=name or None)
+            for what, contact in points.items():
+                x, y = contact.depth * length, contact.force * newton
+                axes.plot(x, y, _MARKERS[what], color=one.colour, markersize=5, mfc="white")
+        if curves:
+            axes.plot([], [], "-", color="0.4", linewidth=1.4, label="with adhesion")
+            axes.plot([], [], ":", color="0.4", linewidth=1.4, label="unstable at fixed depth")
+            for what, marker in _MARKERS.items():
+                axes.plot([], [], marker, color="0.4", markersize=5, mfc="white", label=what)
+        axes.plot([], [], "--", color="0.4", linewidth=0.8, label="without adhesion")
+        axes.axhline(0.0, color="0.6", linewidth=0.6)
+        axes.set(xlabel=f"depth [{length_name}]", ylabel=f"force [{newton_name}]", title=self.title)
+        set_scales(axes, ())
+        _zoom(axes, [curve for _, curve in curves], length, newton)
+        axes.legend(frameon=False, fontsize="small", loc="upper left")
+        problems = dict.fromkeys(one.status for one in drawn if one.curve is None)
+        axes.text(
+            0.02,
+            0.02,
+            "\n".join(problems),
+            color="red",
+            fontsize="small",
+            transform=axes.transAxes,
+            wrap=True,
+        )
+
+
+def curve_of(path: xr.Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurve:
+    """Return the adhesive curve of the load steps of a run, for a work of adhesion [J/m²].
+
+    Raises
+    ------
+    ConfigError
+        The contact is not a circle, or `pellicle.analysis.adhesive_curve` refuses the path.
+    """
+    grid = Result(path).grid
+    contacts = [path["contact"][step].values for step in range(path.sizes["step"])]
+    if contacts:
+        _require_circle(max(contacts, key=np.count_nonzero), grid)
+    areas = np.array([Yastrebov().area(contact, grid.spacing) for contact in contacts])
+    return analysis.adhesive_curve(
+        path["depth"].values,
+        path["force"].values,
+        np.sqrt(areas / pi),
+        path["stiffness"].values,
+        work_of_adhesion,
+    )
+
+
+def _zoom(axes: Axes, curves: list[analysis.AdhesiveCurve], length: float, newton: float) -> None:
+    """Show the curves up to a push as large as the strongest pull."""
+    strongest = -min((curve.force.min() for curve in curves), default=0.0)
+    if strongest <= 0:
+        return
+    shown = [curve.depth[curve.force <= strongest] for curve in curves]
+    left, right = min(map(np.min, shown)) * length, max(map(np.max, shown)) * length
+    margin = 0.05 * (right - left)
+    axes.set_xlim(left - margin, right + margin)
+    axes.set_ylim(-1.1 * strongest * newton, 1.1 * strongest * newton)
+
+
+def _rows(drawn: _Drawn) -> Iterator[dict[str, object]]:
+    if drawn.curve is None:
+        return
+    columns = drawn.curve.contact_radius, drawn.curve.depth, drawn.curve.force
+    for values in zip(*columns, strict=True):
+        yield dict(zip(_HEADS, (drawn.name, *values), strict=True))
+
+
+def _refuse(run: xr.Dataset) -> None:
+    """Refuse a run that has no adhesive curve, however many steps are solved.
+
+    Raises
+    ------
+    ConfigError
+        The run has no stiffness, an interaction or a periodic domain.
+    """
+    result = Result(run)
+    if result.configuration.get("interaction"):
+        raise ConfigError(
+            "adds adhesion to a path without it, and this run has an [interaction]; leave one out"
+        )
+    if result.grid.boundary == "periodic":
+        raise ConfigError(
+            'holds for one contact on an infinite surface; set grid.boundary = "free"'
+        )
+    if "stiffness" not in run:
+        raise ConfigError("needs the stiffness of each step; set loading.stiffness = true")
+
+
+def _require_circle(contact: Mask, grid: Grid) -> None:
+    """Refuse a contact that is not a full circle, to a cell or 2 %.
+
+    Raises
+    ------
+    ConfigError
+        The semi-axes differ, or the contact does not fill its ellipse.
+    """
+    shape = analysis.ellipse(contact, grid)
+    major, minor = shape.semi_major_axis, shape.semi_minor_axis
+    allowed = _ROUND + max(grid.spacing) / major
+    filled = np.count_nonzero(contact) * grid.cell_area / (pi * major * minor)
+    if not (major <= minor * (1 + allowed) and abs(filled - 1) <= allowed):
+        raise ConfigError(
+            f"the contact is not a circle: its semi-axes are {major:.3g} and {minor:.3g} m, and it "
+            f"fills {filled:.3g} of that ellipse; an adhesive curve needs an axisymmetric indenter"
+        )
+
+
+@hookimpl
+def register_outputs(register: Callable[[type[Output]], None]) -> None:
+    """Register the adhesive curve."""
+    register(AdhesiveCurve)

@@ -1,0 +1,126 @@
+"""What the output of the adhesive curve leaves behind."""
+
+import csv
+import json
+from math import isnan, pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+from pellicle.errors import ConfigError
+from pellicle_plugins.outputs.adhesive_curve import AdhesiveCurve
+from tests.pictures import colourfulness
+
+WORK = 0.5e-3
+OUTPUT = {"type": "adhesive_curve", "work_of_adhesion": "0.5 mJ/m^2"}
+BEAD: dict[str, Any] = {
+    "title": "bead",
+    "grid": {"points": 48, "size": "180 um"},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "1 kPa", "tension": 0.0},
+    "indenter": {"type": "paraboloid", "radius": "0.2 mm"},
+    "loading": {
+        "depth": {"start": "2 um", "stop": "28 um", "num": 9, "spacing": "log"},
+        "stiffness": True,
+    },
+    "outputs": [OUTPUT],
+}
+FORCE = pi * WORK * 0.2e-3
+"""πwR [N]."""
+
+
+def table(path: Path) -> list[dict[str, str]]:
+    """Return the rows of a table."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def ran(folder: Path, **changed: Any) -> tuple[list[dict[str, str]], list[dict[str, str]]]:
+    """Run the bead with changed parts; return the rows of the curve and of its summary."""
+    configuration = BEAD | {key: {**BEAD[key], **value} for key, value in changed.items()}
+    pl.run(configuration, directory=folder, progress=False, threads=1)
+    names = "bead-adhesive_curve.csv", "bead-adhesive_curve-summary.csv"
+    return table(folder / names[0]), table(folder / names[1])
+
+
+def test_summary_and_curve_are_those_of_the_bead(tmp_path: Path) -> None:
+    """On a grid of 48 cells pull-off is right to 0.03 πwR, and the lowest force of the curve."""
+    curve, (summary,) = ran(tmp_path)
+    assert summary["status"] == "computed"
+    pull_off = float(summary["pull_off_force [N]"])
+    assert pull_off == pytest.approx(-1.5 * FORCE, abs=0.03 * FORCE)
+    assert min(float(row["force [N]"]) for row in curve) == pytest.approx(pull_off, rel=1e-4)
+    radius = (9 * pi * WORK * 0.2e-3**2 / 2 / 1e3) ** (1 / 3)
+    assert float(summary["zero_load_radius [m]"]) == pytest.approx(radius, rel=0.01)
+    assert np.any(colourfulness(tmp_path / "bead-adhesive_curve.png") > 0.5)
+
+
+def test_a_study_has_a_curve_for_each_value(tmp_path: Path) -> None:
+    """Tension weakens pull-off, from 1.5 πwR towards πwR."""
+    output = OUTPUT | {"by": "kernel.tension", "label": "{1e3 * kernel.tension}"}
+    study = {"vary": {"kernel.tension": ["0 N/m", "20 mN/m"]}}
+    configuration = BEAD | {"outputs": [output], "study": study}
+    pl.run_study(configuration, directory=tmp_path, progress=False)
+    summary = table(tmp_path / "study-adhesive_curve-summary.csv")
+    pulls = [-float(row["pull_off_force [N]"]) / FORCE for row in summary]
+    assert [row["curve"] for row in summary] == ["0", "20"]
+    assert 1.5 > pulls[0] - 0.03 > pulls[1] > 1
+    assert {row["curve"] for row in table(tmp_path / "study-adhesive_curve.csv")} == {"0", "20"}
+
+
+def test_what_the_path_does_not_contain_is_unknown(tmp_path: Path) -> None:
+    """A deep path has no pull-off, and its status says which radii it has."""
+    deep = {"start": "20 um", "stop": "28 um", "num": 8}
+    _, (summary,) = ran(tmp_path, loading={"depth": deep})
+    assert isnan(float(summary["pull_off_force [N]"]))
+    assert "pull-off" in summary["status"]
+    assert "those of the path" in summary["status"]
+
+
+def test_too_few_steps_are_told_in_the_files(tmp_path: Path) -> None:
+    """An interrupted run has its files too."""
+    curve, (summary,) = ran(tmp_path, loading={"depth": ["5 um", "10 um"]})
+    assert curve == []
+    assert "2 steps" in summary["status"]
+    assert "at least 8" in summary["status"]
+
+
+def test_an_elliptic_contact_is_told_in_the_files(tmp_path: Path) -> None:
+    """The theory is for circles."""
+    quadric = {"type": "quadric", "radius_x": "0.2 mm", "radius_y": "0.25 mm"}
+    configuration = BEAD | {"indenter": quadric}
+    pl.run(configuration, directory=tmp_path, progress=False, threads=1)
+    (summary,) = table(tmp_path / "bead-adhesive_curve-summary.csv")
+    assert "not a circle" in summary["status"]
+
+
+@pytest.mark.parametrize(
+    ("message", "changed"),
+    [
+        ("loading.stiffness = true", {"loading": {"depth": "5 um"}}),
+        ("periodic|one contact", {"grid": {**BEAD["grid"], "boundary": "periodic"}}),
+        ("work_of_adhesion: .*> 0", {"outputs": [OUTPUT | {"work_of_adhesion": 0.0}]}),
+        ("work_of_adhesion: .*> 0", {"outputs": [OUTPUT | {"work_of_adhesion": "-1 J/m^2"}]}),
+        ("work_of_adhesion: .*measures", {"outputs": [OUTPUT | {"work_of_adhesion": "1 N"}]}),
+    ],
+)
+def test_runs_without_an_adhesive_curve_are_refused(
+    message: str, changed: dict[str, Any], tmp_path: Path
+) -> None:
+    """Each is refused with the output's name and what to change."""
+    configuration = BEAD | {"loading": {"depth": ["5 um"], "stiffness": True}} | changed
+    with pytest.raises(ConfigError, match=f"outputs.0.*{message}"):
+        pl.run(configuration, directory=tmp_path, progress=False, threads=1)
+
+
+def test_a_path_with_adhesion_is_refused() -> None:
+    """Adhesion would count twice."""
+    result = pl.run(BEAD | {"loading": {"depth": "5 um"}, "outputs": []}, progress=False).dataset
+    configuration = json.loads(result.attrs["configuration"])
+    configuration["interaction"] = {"type": "jkr", "work_of_adhesion": 1e-3}
+    sticky = result.assign_attrs(configuration=json.dumps(configuration))
+    output = AdhesiveCurve(work_of_adhesion=WORK)
+    with pytest.raises(ConfigError, match="interaction"):
+        output.write(pl.components.Runs.of_run(sticky), Path("unwritten"))
