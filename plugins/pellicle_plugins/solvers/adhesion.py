@@ -42,8 +42,10 @@ _STRICT_SIGN_CERTAINTY: Final = 30.0
 _LOOSE_CHANGES: Final = 6
 # Set changes of one round after which the next round begins.
 _MOST_CHANGES: Final = 40
+_CHANGES: Final = 40
 # Rounds without a smaller residual after which the solve is abandoned.
 _STAGNATION: Final = 60
+_FLOOR: Final = 0.4
 _COARSE_TOLERANCE: Final = 1e-5
 _COARSEST: Final = 48
 
@@ -66,6 +68,8 @@ class _Round:
     """max(|gap| in contact, penetration) [m]."""
     missed: Array
     """Traction that the law exerts at `gap`, minus `traction` [Pa]."""
+    settled: bool = True
+    """Whether the wall pressure is ≥ 0 and no cell penetrates."""
     history: tuple[tuple[Array, Array, Array], ...] = ()
     """Traction, missed traction and wall pressure of earlier rounds on the same contact."""
     progress: Progress = field(default_factory=Progress)
@@ -80,7 +84,7 @@ class _Round:
     def residual(self) -> float:
         magnitude = float(np.abs(self.wall + self.traction).sum())
         missed = float(np.abs(self.missed).sum()) / magnitude if magnitude else 0.0
-        return max(self.error / self.scale, missed)
+        return max(self.error / self.scale, missed, 0.0 if self.settled else 1e-3)
 
     @property
     def energy(self) -> float:
@@ -208,10 +212,11 @@ class Adhesion(ScaledSolver):
         if before:
             size = float(np.abs(before.missed).max(where=~before.contact, initial=0.0))
             goal = min(goal, _CONTACT_SHARE * size * law.cutoff() / law.strength())
-            goal = max(goal, 0.4 * self.tolerance * before.scale)
+            goal = max(goal, _FLOOR * self.tolerance * before.scale)
         hard = replace(problem, law=None)
         contact = on_contact.contact
-        for change in range(_MOST_CHANGES):
+        settled = False
+        for change in range(_CHANGES if before else _MOST_CHANGES):
             transferred = on_contact.transferred(wall)
             balanced = _with_wall_force(problem, contact, transferred, traction)
             if balanced is None:
@@ -236,12 +241,12 @@ class Adhesion(ScaledSolver):
                 misclassified = inner.misclassified
                 if not misclassified.size and inner.error > 1.01 * goal:
                     continue
-            if not misclassified.size:
+            if settled := not misclassified.size:
                 break
             contact = contact.copy()
             contact.ravel()[misclassified] ^= True
             on_contact = on_contact.preconditioner.on(contact)
-        return _finished(problem, on_contact, wall, traction, displacement, before)
+        return _finished(problem, on_contact, wall, traction, displacement, before, settled)
 
 
 def _released(problem: Problem, preconditioner: Preconditioner, before: _Round | None) -> _Round:
@@ -257,6 +262,7 @@ def _finished(
     traction: Array,
     displacement: Array,
     before: _Round | None,
+    settled: bool = True,
 ) -> _Round:
     law, contact = problem.law, on_contact.contact
     assert law
@@ -269,13 +275,22 @@ def _finished(
         -float(gap.min(initial=0.0, where=~contact)),
     )
     state = _Round(
-        problem, on_contact, wall, traction, displacement, gap, depth, error, exerted - traction
+        problem,
+        on_contact,
+        wall,
+        traction,
+        displacement,
+        gap,
+        depth,
+        error,
+        exerted - traction,
+        settled,
     )
     if before is None:
         return state
     history: tuple[tuple[Array, Array, Array], ...] = ()
     # On another contact, earlier rounds obey other equations.
-    if np.array_equal(contact, before.contact) and _is_convex(before, state):
+    if settled and before.settled and np.array_equal(contact, before.contact) and _is_convex(before, state):
         history = (*before.history, (before.traction, before.missed, before.wall))[-_MEMORY:]
     return replace(
         state, history=history, progress=before.progress.after(state.residual, state.energy)
