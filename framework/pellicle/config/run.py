@@ -79,7 +79,7 @@ class Run(FromFile):
         if info.data.get("interaction", "not valid") is not None:
             return make(value)
         if isinstance(value, (Mapping, Loading)):
-            refuse_pulls(dict(value))
+            refuse_pulls(value.model_dump() if isinstance(value, Loading) else value)
         return make(value)
 
     @model_validator(mode="after")

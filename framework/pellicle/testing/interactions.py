@@ -134,7 +134,8 @@ def values_are_finite(interaction: Interaction) -> None:
         gaps = _gaps(law)
         for what, function in _functions(law):
             for bad in np.flatnonzero(~np.isfinite(function(gaps))):
-                raise AssertionError(f"{what} of {name} is {function(gaps)[bad]} at {gaps[bad]:g} m")
+                value = function(gaps)[bad]
+                raise AssertionError(f"{what} of {name} is {value} at {gaps[bad]:g} m")
 
 
 def energy_rises_to_nothing(interaction: Interaction) -> None:
@@ -200,9 +201,7 @@ def slope_is_the_derivative_of_the_traction(interaction: Interaction) -> None:
 
 
 def resolved_keeps_the_work_of_adhesion(interaction: Interaction) -> None:
-    """What `resolved` returns has the work of adhesion of the interaction, and the framework's
-    checks have nothing to say of it.
-    """
+    """What `resolved` returns has the work of adhesion of the interaction on every grid."""
     modulus, size = _sizes(interaction)
     for name, law in _laws(interaction):
         require_close(_work(law), _work(interaction), f"−γ(0) [J/m²] of {name}", relative=1e-9)
