@@ -13,7 +13,15 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.fitting.fit import Fit
 from pellicle.fitting.many import ManyFits, Row
-from pellicle.fitting.parameters import MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
+from pellicle.fitting.parameters import (
+    CONTACT_POINT,
+    MODULUS,
+    OFFSET,
+    SLOPE,
+    TENSION,
+    Coordinates,
+    Parameter,
+)
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.profile import Estimate
@@ -106,12 +114,13 @@ def curve(fit: Fit, axes: Axes) -> None:
     axes.plot(
         data.position * length, data.force * scale, ".", color="0.6", markersize=3, label="data"
     )
-    fine = replace(data, position=np.linspace(data.position[0], data.position[-1], 500))
+    fine = data.resampled(500)
     for parameters, style, label in (
         (fit.parameters_without_tension, "C1--", "without tension"),
         (fit.parameters, "C0-", "fit"),
     ):
-        axes.plot(fine.position * length, fine.model(parameters) * scale, style, label=label)
+        position, force = fine.fitted(parameters)
+        axes.plot(position * length, force * scale, style, label=label)
     axes.axvline(fit.contact_point.value * length, color="0.3", linewidth=0.8, linestyle=":")
     axes.set_ylabel(f"force [{name}]")
     axes.legend()
@@ -120,13 +129,14 @@ def curve(fit: Fit, axes: Axes) -> None:
 def curves(fit: PooledFit, axes: Axes) -> None:
     """Draw data and model of each curve of a pool, depth and force relative to their maxima."""
     for number, (member, parameters) in enumerate(fit.pool.curves(fit.parameters)):
-        baseline = parameters[OFFSET] + parameters[SLOPE] * (member.position - member.position[0])
-        model = member.model(parameters) - baseline
-        largest = float(np.max(np.abs(model)))
-        data = (member.force - baseline) / largest
-        depth, colour = _relative_depth(member, parameters), f"C{number}"
-        axes.plot(depth, data, ".", color=colour, alpha=0.3, markersize=2)
-        axes.plot(depth, model / largest, color=colour, label=fit.curves[number].name)
+        position, force = member.fitted(parameters)
+        baseline = parameters[OFFSET] + parameters[SLOPE] * member.travel
+        largest = float(np.max(np.abs(force - baseline)))
+        data, model = (member.force - baseline) / largest, (force - baseline) / largest
+        measured = _relative_depth(member, member.position, parameters)
+        axes.plot(measured, data, ".", color=f"C{number}", alpha=0.3, markersize=2)
+        depth = _relative_depth(member, position, parameters)
+        axes.plot(depth, model, color=f"C{number}", label=fit.curves[number].name)
     axes.set_ylabel("force / largest force")
     if len(fit.curves) <= _LEGEND_CURVES:
         axes.legend(fontsize="small")
@@ -141,8 +151,8 @@ def residuals(fit: Fit | PooledFit, axes: Axes) -> None:
     if isinstance(fit, PooledFit):
         label = "depth / largest depth"
         lines = [
-            (f"C{number}", _relative_depth(*part), *part)
-            for number, part in enumerate(fit.pool.curves(fit.parameters))
+            (f"C{number}", _relative_depth(member, member.position, part), member, part)
+            for number, (member, part) in enumerate(fit.pool.curves(fit.parameters))
         ]
     else:
         length, name = axis_unit(fit.likelihood.position, "m")
@@ -281,7 +291,7 @@ def _estimates(rows: Sequence[Row], figure: FigureBase) -> None:
         lower.set_xlabel("curve")
 
 
-def _relative_depth(member: Likelihood, parameters: Coordinates) -> Array:
-    depth = member.depth(parameters)
-    depth /= depth[-1]
+def _relative_depth(member: Likelihood, position: Array, parameters: Coordinates) -> Array:
+    deepest = member.depth(parameters)[-1]
+    depth: Array = (position - parameters[CONTACT_POINT]) / deepest
     return depth
