@@ -53,7 +53,11 @@ def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
     if not isinstance(schema, dict):
         return schema
     filled = {name: _filled(inner, choices) for name, inner in schema.items() if name != _FAMILY}
-    return filled | {"oneOf": choices[schema[_FAMILY]]} if _FAMILY in schema else filled
+    if _FAMILY not in schema:
+        return filled
+    # A list of choices must not be empty, which it is where no plugin of a family could be loaded.
+    choice = choices[schema[_FAMILY]]
+    return filled | ({"oneOf": choice} if choice else {"not": {}})
 
 
 def _required(model: type[BaseModel]) -> list[str]:
