@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.errors import ConvergenceError
 from pellicle.fitting.fit import Fit
 from pellicle.fitting.many import ManyFits, Row
 from pellicle.fitting.parameters import (
@@ -23,7 +25,7 @@ from pellicle.fitting.parameters import (
     Parameter,
 )
 from pellicle.fitting.pooled import PooledFit
-from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
 from pellicle.fitting.statistics.profile import Estimate
 from pellicle.report.plotting import save_figure as save_drawing
 from pellicle.units import axis_unit
@@ -170,7 +172,8 @@ def residuals(fit: Fit | PooledFit, axes: Axes) -> None:
 
 def likelihood_map(fit: Fit, axes: Axes) -> None:
     """Draw √Δχ² over reduced modulus and tension, minimised over the other parameters."""
-    moduli, tensions, rise = _likelihood_grid(fit)
+    moduli, tensions, rises = _likelihood_grid(fit)
+    rise = np.ma.masked_invalid(rises)
     scale, name = axis_unit(moduli, "Pa")
     tension_scale, tension_name = axis_unit(tensions, "N/m")
     x, y = moduli * scale, tensions * tension_scale
@@ -209,15 +212,24 @@ def _likelihood_grid(fit: Fit) -> tuple[Array, Array, Array]:
     rise = np.empty_like(tensions)
     for row, modulus in enumerate(moduli):
         start = fit.parameters | {MODULUS: MODULUS.coordinate(modulus)}
-        ridge = fixed.minimise(start).parameters
+        ridge = start
+        with suppress(ConvergenceError):
+            ridge = fixed.minimise(start).parameters
         deviation = fixed.deviations(ridge)[TENSION]
         half = _MAP_HALF_WIDTH * (deviation if np.isfinite(deviation) else ridge[TENSION])
         lowest = max(ridge[TENSION] - half, 0.0)
         tensions[row] = np.linspace(lowest, ridge[TENSION] + half, _TENSIONS)
         for column, tension in enumerate(tensions[row]):
-            start = ridge | {TENSION: tension}
-            rise[row, column] = fixed.minimise(start, (TENSION,)).chi_squared - fit.chi_squared
+            rise[row, column] = _rise(fixed, ridge | {TENSION: tension}, TENSION, fit.chi_squared)
     return np.repeat(moduli[:, None], _TENSIONS, axis=1), tensions, rise
+
+
+def _rise(likelihood: ChiSquared, start: Coordinates, fixed: Parameter, least: float) -> float:
+    """Return Δχ² with a parameter fixed; NaN, which leaves a gap, if the search fails."""
+    try:
+        return likelihood.minimise(start, (fixed,)).chi_squared - least
+    except ConvergenceError:
+        return np.nan
 
 
 def profile(fit: PooledFit, parameter: Parameter, axes: Axes) -> None:
@@ -231,7 +243,7 @@ def profile(fit: PooledFit, parameter: Parameter, axes: Axes) -> None:
     rises = np.empty_like(values)
     for index, value in enumerate(values):
         start = fit.parameters | {parameter: parameter.coordinate(value)}
-        rises[index] = fit.pool.minimise(start, (parameter,)).chi_squared - fit.chi_squared
+        rises[index] = _rise(fit.pool, start, parameter, fit.chi_squared)
     scale, unit = axis_unit(values, estimate.unit)
     axes.plot(values * scale, rises, "C0-")
     axes.axhline(fit.rise, color="0.3", linewidth=0.8, linestyle="--")
