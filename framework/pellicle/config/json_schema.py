@@ -57,7 +57,9 @@ def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
         return filled
     # A list of choices must not be empty, which it is where no plugin of a family could be loaded.
     choice = choices[schema[_FAMILY]]
-    return filled | ({"oneOf": choice} if choice else {"not": {}})
+    if not choice:
+        return filled | {"not": {}}
+    return filled | {"oneOf": choice}
 
 
 def _required(model: type[BaseModel]) -> list[str]:
