@@ -170,10 +170,7 @@ def solution_of(
         ``start`` as an array, which it was in earlier versions.
     """
     name = component_name(solver)
-    with errors_attributed_to(solver):
-        reason = solver.refuses(problem)
-    if reason:
-        raise ConfigError(f"{name} {reason}", "solver.type")
+    check_solver(solver, problem)
     adheres = problem.law is not None
     sticks = adheres and start is not None and (start.wall.any() or start.pressure.any())
     if not problem.needs_solving and not sticks:
@@ -224,6 +221,20 @@ def solution_of(
     return Solution(state, int(value.iterations), value.stop, bool(value.jumped))
 
 
+def check_solver(solver: Solver, problem: Problem) -> None:
+    """Let a solver refuse a problem.
+
+    Raises
+    ------
+    ConfigError
+        The solver cannot solve the problem.
+    """
+    with errors_attributed_to(solver):
+        reason = solver.refuses(problem)
+    if reason:
+        raise ConfigError(f"{component_name(solver)} {reason}", "solver.type")
+
+
 def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
     """Return the law of an interaction, resolved on a grid, with checked values.
 
@@ -242,7 +253,8 @@ def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
     cutoff = law.cutoff()
     if not 0 < cutoff < LARGEST:
         raise PluginError(
-            f"{component_name(interaction)}: cutoff() is {cutoff:g} m; it has to be positive"
+            f"{component_name(interaction)}: cutoff() is {cutoff:g} m; it has to be > 0 and "
+            f"< {LARGEST:g} m"
         )
     gaps = np.linspace(0.0, cutoff, _GAPS)
     energy, traction = law.energy(gaps), law.traction(gaps)
