@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import inf, pi
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -12,14 +12,12 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import analysis, hookimpl
-from pellicle.arrays import Mask
 from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError, StorageError
-from pellicle.grid import Grid
 from pellicle.report.plotting import save_figure
 from pellicle.results.result import Result
 from pellicle.units import Quantity, axis_unit
-from pellicle_plugins.corrections.yastrebov import Yastrebov
+from pellicle_plugins.analytic.adhesive_path import curve_of
 
 from .base import TableFigure, set_scales, write_csv
 
@@ -42,8 +40,6 @@ _SUMMARY_HEADS = (
     "status",
 )
 _MARKERS = {"pull-off": "o", "no load": "s", "last at fixed depth": "v"}
-_ROUND = 0.02
-"""Relative difference of the semi-axes, or of the area from that of an ellipse, of a circle."""
 
 
 @dataclass(frozen=True)
@@ -200,28 +196,6 @@ class AdhesiveCurve(TableFigure):
         )
 
 
-def curve_of(path: xr.Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurve:
-    """Return the adhesive curve of the load steps of a run, for a work of adhesion [J/m²].
-
-    Raises
-    ------
-    ConfigError
-        The contact is not a circle, or `pellicle.analysis.adhesive_curve` refuses the path.
-    """
-    grid = Result(path).grid
-    contacts = [path["contact"][step].values for step in range(path.sizes["step"])]
-    if contacts:
-        _require_circle(max(contacts, key=np.count_nonzero), grid)
-    areas = np.array([Yastrebov().area(contact, grid.spacing) for contact in contacts])
-    return analysis.adhesive_curve(
-        path["depth"].values,
-        path["force"].values,
-        np.sqrt(areas / pi),
-        path["stiffness"].values,
-        work_of_adhesion,
-    )
-
-
 def _zoom(axes: Axes, curves: list[analysis.AdhesiveCurve], length: float, newton: float) -> None:
     """Show the curves up to a push as large as the strongest pull."""
     strongest = -min((curve.force.min() for curve in curves), default=0.0)
@@ -261,25 +235,6 @@ def _refuse(run: xr.Dataset) -> None:
         )
     if "stiffness" not in run:
         raise ConfigError("needs the stiffness of each step; set loading.stiffness = true")
-
-
-def _require_circle(contact: Mask, grid: Grid) -> None:
-    """Refuse a contact that is not a full circle, to a cell or 2 %.
-
-    Raises
-    ------
-    ConfigError
-        The semi-axes differ, or the contact does not fill its ellipse.
-    """
-    shape = analysis.ellipse(contact, grid)
-    major, minor = shape.semi_major_axis, shape.semi_minor_axis
-    allowed = _ROUND + max(grid.spacing) / major
-    filled = np.count_nonzero(contact) * grid.cell_area / (pi * major * minor)
-    if not (major <= minor * (1 + allowed) and abs(filled - 1) <= allowed):
-        raise ConfigError(
-            f"the contact is not a circle: its semi-axes are {major:.3g} and {minor:.3g} m, and it "
-            f"fills {filled:.3g} of that ellipse; an adhesive curve needs an axisymmetric indenter"
-        )
 
 
 @hookimpl
