@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -14,6 +14,7 @@ from pydantic import Field
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError, StorageError
+from pellicle.grid import Grid
 from pellicle.report.plotting import save_figure
 from pellicle.results.result import Result
 from pellicle.units import Quantity, axis_unit
@@ -39,6 +40,8 @@ _SUMMARY_HEADS = (
     "fixed_depth_depth [m]",
     "status",
 )
+_CELLS = 12
+"""Contact radius in cells below which force and radius may be off by more than 2 %."""
 _MARKERS = {"pull-off": "o", "no load": "s", "last at fixed depth": "v"}
 
 
@@ -74,7 +77,7 @@ class AdhesiveCurve(TableFigure):
     steps; the curve covers the contact radii of the path. The figure ends at a push as large as the
     strongest pull; the whole curve is written as CSV beside it. ``-summary.csv`` has pull-off, the
     contact without load and the last contact at a fixed depth, with NaN and a status for what the
-    path does not contain.
+    path does not contain, or its cells do not resolve.
     """
 
     type: Literal["adhesive_curve"] = "adhesive_curve"
@@ -121,19 +124,8 @@ class AdhesiveCurve(TableFigure):
             curve = curve_of(path, self.work_of_adhesion)
         except ConfigError as error:
             return _Drawn(name, colour, path, None, str(error))
-        missing = [
-            what
-            for what, contact in _Drawn(name, colour, path, curve, "").points().items()
-            if np.isnan(contact.force)
-        ]
-        status = "computed"
-        if missing:
-            low, high = curve.contact_radius[[0, -1]]
-            status = (
-                f"{', '.join(missing)}: not at a contact radius from {low:.3g} to {high:.3g} m, "
-                "those of the path"
-            )
-        return _Drawn(name, colour, path, curve, status)
+        drawn = _Drawn(name, colour, path, curve, "")
+        return replace(drawn, status=_status(curve, drawn.points(), Result(path).grid))
 
     def _summary(self, drawn: _Drawn) -> dict[str, object]:
         pull_off, zero_load, fixed_depth = drawn.points().values()
@@ -194,6 +186,29 @@ class AdhesiveCurve(TableFigure):
             transform=axes.transAxes,
             wrap=True,
         )
+
+
+def _status(
+    curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], grid: Grid
+) -> str:
+    """Return which points the path does not contain, and which its cells do not resolve."""
+    radii = {what: float(contact.contact_radius) for what, contact in points.items()}
+    cells = {what: radius / max(grid.spacing) for what, radius in radii.items()}
+    missing = [what for what, radius in radii.items() if np.isnan(radius)]
+    coarse = [what for what, count in cells.items() if count < _CELLS]
+    low, high = curve.contact_radius[[0, -1]]
+    problems = []
+    if missing:
+        problems.append(
+            f"{', '.join(missing)}: not at a contact radius from {low:.3g} to {high:.3g} m, those "
+            "of the path"
+        )
+    if coarse:
+        problems.append(
+            f"{', '.join(coarse)}: a contact radius of {min(cells[what] for what in coarse):.1f} "
+            "cells is good to some per cent; use more points"
+        )
+    return "; ".join(problems) or "computed"
 
 
 def _zoom(axes: Axes, curves: list[analysis.AdhesiveCurve], length: float, newton: float) -> None:
