@@ -53,7 +53,7 @@ def test_on_separate_springs_it_pulls_off_at_the_force_of_a_rigid_sphere() -> No
     )
     pull_off = springs.instability()
     assert pull_off.force == pytest.approx(-2 * pi * W * R, rel=1e-5)
-    assert pull_off.depth == pytest.approx(0, abs=1e-4 * sqrt(2 * W / foundation))
+    assert pull_off.depth == pytest.approx(0, abs=1e-3 * sqrt(2 * W / foundation))
 
 
 def test_points_of_the_curve_are_those_of_johnson_kendall_and_roberts() -> None:

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellicle import analysis
+from pellicle import Run, analysis
 from pellicle.arrays import Mask
+from pellicle.components import Kernel
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
 from pellicle.results.result import Result
-from pellicle_plugins.corrections.yastrebov import Yastrebov
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _ROUND = 0.02
 """Relative difference of the semi-axes, or of the area from that of an ellipse, of a circle."""
+
+_EXCESS_CELLS = 0.115
+"""Excess of the radius counted in cells, per power of q in the stiffness."""
 
 
 def curve_of(path: xr.Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurve:
@@ -30,17 +33,30 @@ def curve_of(path: xr.Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurv
         The contact is not a circle, or `pellicle.analysis.adhesive_curve` refuses the path.
     """
     grid = Result(path).grid
-    contacts = [path["contact"][step].values for step in range(path.sizes["step"])]
-    if contacts:
-        _require_circle(max(contacts, key=np.count_nonzero), grid)
-    areas = np.array([Yastrebov().area(contact, grid.spacing) for contact in contacts])
+    area = path["contact_area"].values
+    if area.size:
+        _require_circle(path["contact"][int(area.argmax())].values, grid)
+    kernel = Run.from_json(path.attrs["configuration"]).kernel
     return analysis.adhesive_curve(
         path["depth"].values,
         path["force"].values,
-        np.sqrt(areas / pi),
+        np.sqrt(area / pi) - _excess_radius(kernel, sqrt(grid.cell_area)),
         path["stiffness"].values,
         work_of_adhesion,
     )
+
+
+def _excess_radius(kernel: Kernel, spacing: float) -> float:
+    """Return how much the contact radius counted in cells exceeds that of equal stiffness [m].
+
+    Measured for flat punches of nine radii: 0 cells on springs, 0.115 on a half-space, whose
+    stiffness grows as q, 0.24 under tension, as q², 0.18 where tension sets in at the size of a
+    cell; with a bending stiffness 0.14 to 0.25, with a scatter of 0.05.
+    """
+    shortest = pi / spacing
+    compliance = kernel.compliance(shortest * np.array([sqrt(0.5), sqrt(2.0)]))
+    order = float(np.log2(compliance[0] / compliance[1]))
+    return _EXCESS_CELLS * min(max(order, 0.0), 2.0) * spacing
 
 
 def _require_circle(contact: Mask, grid: Grid) -> None:
