@@ -65,6 +65,11 @@ def tables() -> str:
     return "\n".join(parts)
 
 
+def options_of_fits() -> str:
+    """Return the fields of the configuration of a fit."""
+    return fields(pl.FitConfig)
+
+
 def fields(model: Any) -> str:
     """Return a table of the fields of a model: unit and range, default, meaning."""
     rows = [
@@ -126,7 +131,17 @@ def starter() -> str:
 
 
 PARTS = {
-    part.__name__: part for part in (components, tables, variables, cases, statuses, stops, starter)
+    part.__name__: part
+    for part in (
+        components,
+        tables,
+        options_of_fits,
+        variables,
+        cases,
+        statuses,
+        stops,
+        starter,
+    )
 }
 
 
@@ -184,6 +199,7 @@ def _kind(annotation: Any) -> str:
         str: "text",
         Path: "file",
         Any: "array",
+        pl.HasForceCurve: "force curve",
     }
     return names[annotation]
 

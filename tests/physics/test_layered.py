@@ -132,3 +132,21 @@ def test_full_contact_of_a_sine(name: str, solver: str) -> None:
     assert step["contact"].all()
     pressure = step["pressure"].values[:, 0]
     np.testing.assert_allclose(pressure / expected, 2 + heights / amplitude, atol=1e-7)
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_the_number_of_applications_is_flat(boundary: str) -> None:
+    """A bead on three layers takes at most 25 operator applications on 64² and on 256² cells."""
+    layers = [
+        Layer(100 * YOUNGS, 0.3, 0.01 * LENGTH),
+        Layer(YOUNGS, 0.5, 0.1 * LENGTH),
+        Layer(0.1 * YOUNGS, 0.45, 0.2 * LENGTH),
+    ]
+    for points in (64, 256):
+        step = solve(
+            grid={"points": points, "size": LENGTH, "boundary": boundary},
+            kernel=kernel(layers, HalfSpace(1e6 * YOUNGS, 0.2)),
+            indenter={"type": "paraboloid", "radius": LENGTH},
+            loading={"depth": 0.02 * LENGTH},
+        )
+        assert step["operator_applications"] <= 25

@@ -126,13 +126,11 @@ class FitConfig(FromFile, Calibration):
         "none", description="force before contact that is fitted: offset, or offset and slope"
     )
     segment: Segment = Field("approach", description="the pass that is fitted")
-    per_file: Annotated[
-        dict[str, tuple[Any, ...]],
-        Field(
-            description="fields of the indenter, spring_constant or sensitivity, each with a list "
-            "of one value for each file"
-        ),
-    ] = Field(default_factory=dict)
+    per_file: dict[str, tuple[Any, ...]] = Field(
+        default_factory=dict,
+        description="fields of the indenter, spring_constant or sensitivity, each with a list of "
+        "one value for each file",
+    )
     pool: bool = Field(False, description="whether all curves share one modulus and one tension")
     contact_points: bool = Field(
         False, description="whether a pool gives the interval of each contact point too"
@@ -143,12 +141,10 @@ class FitConfig(FromFile, Calibration):
         BeforeValidator(_component),
         Field(description="executor of many fits and of simulations"),
     ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
-    cache: Annotated[Path | None, Field(description="folder that keeps simulated force curves")] = (
-        None
+    cache: Path | None = Field(None, description="folder that keeps simulated force curves")
+    grid_points: int = Field(
+        GRID_POINTS, description="cells along each edge of the grids of a simulation"
     )
-    grid_points: Annotated[
-        int, Field(description="cells along each edge of the grids of a simulation")
-    ] = GRID_POINTS
     _solid: Solid | None = PrivateAttr(None)
 
     @model_validator(mode="after")

@@ -101,14 +101,12 @@ def fit_many(
         table that lists files, with a header such as ``file,radius [um]``; several of these; or
         position [m] and force [N] of each curve by its name, ``{"first": (position, force)}``.
         Those of the configuration if not given.
-    config
-        A configuration or its TOML file.
     directory
         Folder for the table, as ``fits.h5``, ``fits.csv`` and ``fits.json``, and a file for each
         curve in ``curves``. A fit that it contains already is not repeated.
     progress
         Show a bar on a terminal; without one, a line for each curve.
-    **options
+    config, **options
         As for `fit`.  A list for a field of the indenter, for spring_constant or for sensitivity
         has a value for each file: ``radius=["5 um", "20 um"]``.
 

@@ -21,8 +21,15 @@ class Parameter:
     """Whether the fit varies the natural logarithm, as for a modulus of unknown magnitude."""
     shared: bool = False
     """Whether all curves of a pooled fit have the same value."""
+    plausible: tuple[float, float] = (-np.inf, np.inf)
+    """Range beyond which a unit is probably wrong."""
     curve: int = 0
     """Index of the curve in a pooled fit; 0 if shared."""
+
+    @property
+    def word(self) -> str:
+        """The last word of the name, for sentences."""
+        return self.name.rpartition("_")[2]
 
     def of_curve(self, index: int) -> Parameter:
         """Return the parameter of one curve of a pooled fit."""
@@ -44,9 +51,9 @@ Coordinates = dict[Parameter, float]
 
 CONTACT_POINT = Parameter("contact_point", "m")
 """Position of first touch."""
-MODULUS = Parameter("reduced_modulus", "Pa", logarithmic=True, shared=True)
+MODULUS = Parameter("reduced_modulus", "Pa", logarithmic=True, shared=True, plausible=(1.0, 1e12))
 """E*."""
-TENSION = Parameter("tension", "N/m", minimum=0.0, shared=True)
+TENSION = Parameter("tension", "N/m", minimum=0.0, shared=True, plausible=(0.0, 10.0))
 """τ₀."""
 OFFSET = Parameter("offset", "N")
 """Force of the baseline at the first position."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -147,11 +148,9 @@ def fit_pooled(
     ----------
     curves
         As for `fit_many`.
-    config
-        A configuration or its TOML file.
     progress
         Show the progress of studies and of the fit on a terminal.
-    **options
+    config, **options
         As for `fit_many`, but a contact point cannot be fixed.  ``contact_points=True`` determines
         the interval of each contact point too.  Each needs searches over the parameters of all
         curves, so the time grows with the square of their number.
@@ -208,7 +207,8 @@ def _fit_pool(
     threshold = factor * chi_squared_threshold(sum(single.freedom for _, single in singles))
     points = [CONTACT_POINT.of_curve(index) for index in range(len(singles))]
     parameters = [*shared, *(p for p in points if contact_points and p in pool.free)]
-    profile = profile_likelihood(pool, start, threshold, parameters, pool.without_tension, report)
+    without = partial(pool.least_without, TENSION)
+    profile = profile_likelihood(pool, start, threshold, parameters, without, report)
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = []
     for index, (member, part) in enumerate(pool.curves(profile.best.parameters)):

@@ -30,7 +30,7 @@ from pellicle.runs.lock import locked
 from pellicle.runs.progress import ProgressReporter, StudyProgress
 
 from . import table
-from .summary import coarse, failures
+from .summary import coarse, failures, progress_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -186,7 +186,7 @@ def _execute(
     check_writable(directory / "study.h5")
     check_writable(directory / "runs" / "run.h5")
     _require_table(directory / "study.h5", overwrite)
-    rows = table.Table(study)
+    rows = table.StudyTable(study)
     unfinished = {
         task.index: task
         for task in tasks(study, directory, overwrite=overwrite)
@@ -285,7 +285,7 @@ def is_table(path: Path) -> bool:
     return path.name == "study.h5" or (path / "study.h5").is_file()
 
 
-def _collect(task: RunTask, rows: table.Table) -> int:
+def _collect(task: RunTask, rows: table.StudyTable) -> int:
     """Copy the steps in the file of a run into the table; return their number."""
     try:
         numbers = task.journal.numbers()
@@ -312,9 +312,8 @@ def _require_table(path: Path, overwrite: bool) -> None:
 def _verdict(outcome: xr.Dataset | Exception) -> tuple[str, bool]:
     if isinstance(outcome, Exception):
         return Status.FAILED.value.format(reason=_one_line(outcome)), True
-    if outcome["converged"].values.all():
-        return "converged", False
-    return "NOT CONVERGED", True
+    _, _, verdict = progress_of(outcome)
+    return verdict, verdict != "converged"
 
 
 def _one_line(error: Exception) -> str:
@@ -331,7 +330,7 @@ class _Writer:
         self._next = 0.0
         self.paths: tuple[Path, ...] = ()
 
-    def write(self, rows: table.Table, *, at_once: bool = False) -> None:
+    def write(self, rows: table.StudyTable, *, at_once: bool = False) -> None:
         start = time.monotonic()
         if start < self._next and not at_once:
             return

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _TEXTS = "status_code", "status"
 
 
-class Table:
+class StudyTable:
     """Collects the numbers of the runs of a study as they finish."""
 
     def __init__(self, study: Study) -> None:

@@ -11,9 +11,7 @@ from pellicle.arrays import Array
 from pellicle.units import Length
 
 from .elastic_constants import IsotropicSolid
-
-# Value of 2qh above which e^{−2qh} is below double precision and the layer acts as a half-space.
-_DEEP = 100.0
+from .hyperbolic import DEEP
 
 
 class ElasticLayer(IsotropicSolid):
@@ -29,5 +27,5 @@ class ElasticLayer(IsotropicSolid):
         return self.thickness * self.uniaxial_compliance
 
     def _twice_depth(self, q: Array) -> Array:
-        """Return 2qh, limited to `_DEEP` so that exp does not underflow."""
-        return np.minimum(2 * self.thickness * q, _DEEP)
+        """Return 2qh, limited to `DEEP` so that exp does not underflow."""
+        return np.minimum(2 * self.thickness * q, DEEP)

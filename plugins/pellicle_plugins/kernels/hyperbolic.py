@@ -13,6 +13,9 @@ import numpy as np
 
 from pellicle.arrays import Array
 
+DEEP: Final = 100.0
+"""2qh above which e^{−2qh} is below double precision and a layer acts as a half-space."""
+
 # Below it the power series is summed; its terms reach double precision there.
 _SPLIT: Final = 2.0
 _TERMS: Final = 12

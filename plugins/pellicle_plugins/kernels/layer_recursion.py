@@ -12,10 +12,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 
-from .hyperbolic import scaled_cosh_rest, scaled_sinh_rest
-
-# 2x above which e^{−2x} is below double precision and the layer acts as a half-space.
-_DEEP: Final = 100.0
+from .hyperbolic import DEEP, scaled_cosh_rest, scaled_sinh_rest
 
 
 class SurfaceCompliance(NamedTuple):
@@ -70,14 +67,14 @@ def on_layer(below: SurfaceCompliance, x: Array, coupling_ratio: float) -> Surfa
     error is below 2e-15.
     """
     g, f = coupling_ratio, 1 - coupling_ratio**2
-    y = np.minimum(2 * x, _DEEP)
-    one = np.exp(-y)
-    cosh2, sinh2 = ((1 + one) / 2) ** 2, (np.expm1(-y) / 2) ** 2  # cosh² x, sinh² x
-    x1, x2 = one * y / 2, one * (y / 2) ** 2
+    y = np.minimum(2 * x, DEEP)
+    decay = np.exp(-y)
+    cosh2, sinh2 = ((1 + decay) / 2) ** 2, (np.expm1(-y) / 2) ** 2  # cosh² x, sinh² x
+    x1, x2 = decay * y / 2, decay * (y / 2) ** 2
     odd, even = scaled_sinh_rest(y) / 2, scaled_cosh_rest(y) / 2
 
     # Minors of the layer on a rigid base.
-    tractions = one + 2 * (1 - g) * x2 + f * even
+    tractions = decay + 2 * (1 - g) * x2 + f * even
     shear = f * odd + 2 * (1 - g) * x1
     normal = f * odd + 2 * g * (1 - g) * x1
     coupling = (1 - g) * ((1 - 3 * g) * x2 - g * (1 + g) * even)
@@ -86,7 +83,7 @@ def on_layer(below: SurfaceCompliance, x: Array, coupling_ratio: float) -> Surfa
     by_shear = (1 - 2 * g) * x1 - g * odd
     by_normal = x1 + g * odd
     by_both = x2 + g * even
-    by_coupling = one - 2 * (1 - 2 * g) * x2 + 2 * g**2 * even
+    by_coupling = decay - 2 * (1 - 2 * g) * x2 + 2 * g**2 * even
 
     a, b, c, d = below
     minor = tractions + (odd + 2 * x1) * a - 2 * by_both * b + odd * c + even * d

@@ -18,9 +18,8 @@ from pellicle.units import Length
 from .elastic_constants import ElasticConstants
 from .layer_recursion import RIGID, half_space, on_layer
 
-_BLOCK: Final = (
-    8192  # wavenumbers treated at once, so that some thirty temporaries stay in the cache
-)
+# Wavenumbers treated at once, so that some thirty temporaries stay in the cache.
+_BLOCK: Final = 8192
 
 
 class Layer(ElasticConstants):

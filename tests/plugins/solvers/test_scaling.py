@@ -34,6 +34,13 @@ def kernels(length: float, modulus: float) -> dict[str, dict[str, Any]]:
         "bending_skin": solid | {"tension": 0.0, "bending": 1e-5 * modulus * length**3},
         "bonded_layer": layer,
         "frictionless_layer": layer,
+        "layered": {
+            "layers": [
+                {"reduced_modulus": 50 * modulus, "poissons_ratio": 0.3, "thickness": length / 50},
+                {"reduced_modulus": modulus, "poissons_ratio": 0.5, "thickness": length / 5},
+            ],
+            "substrate": {"reduced_modulus": modulus / 10, "poissons_ratio": 0.4},
+        },
         "gurtin_murdoch": solid | surface,
         "winkler": {"foundation": modulus / length},
         "coated": {"substrate": springs, "tension": tension},

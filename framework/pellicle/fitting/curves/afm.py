@@ -122,10 +122,9 @@ def _curve(
             raise ConfigError(f"{path}: has no height over the sample (has {', '.join(data)})")
         bending = force / Calibration(spring_constant=stiffness).required_spring_constant()
         tip = np.asarray(data[height], dtype=float) + bending
-    rows = _rows(np.asarray(data["segment"]), segment) if "segment" in data else slice(None)
+    rows: Any = slice(None)
+    if "segment" in data:
+        # The first and the last segment are the same if there is only one.
+        segments = np.asarray(data["segment"])
+        rows = segments == (segments.min() if segment == "approach" else segments.max())
     return Curve(-tip[rows], force[rows], stiffness=stiffness)
-
-
-def _rows(segments: Any, segment: str) -> Any:
-    """Return the rows of the first or of the last segment: all if there is only one."""
-    return segments == (segments.min() if segment == "approach" else segments.max())

@@ -43,20 +43,19 @@ class Channel(NamedTuple):
 class Calibration(Model):
     """Converts the signal of a cantilever to force and deflection; None if not given."""
 
-    spring_constant: Annotated[
-        SpringConstant | None, Field(description="of the cantilever, to subtract its bending")
-    ] = None
-    sensitivity: Annotated[
-        Sensitivity | None,
-        Field(description="deflection of the cantilever over the signal of its detector"),
-    ] = None
+    spring_constant: SpringConstant | None = Field(
+        None, description="of the cantilever, to subtract its bending"
+    )
+    sensitivity: Sensitivity | None = Field(
+        None, description="deflection of the cantilever over the signal of its detector"
+    )
 
-    def required_spring_constant(self) -> float:
-        """Return the spring constant [N/m]."""
+    def required_spring_constant(self, purpose: str = "") -> float:
+        """Return the spring constant [N/m]; an error tells the purpose if there is one."""
         if self.spring_constant is None:
             raise ConfigError(
-                "is missing; give that of the cantilever with its unit, such as '0.05 N/m' "
-                "(--spring-constant on the command line)",
+                f"is missing{purpose}; give that of the cantilever with its unit, such as "
+                "'0.05 N/m' (--spring-constant on the command line)",
                 "spring_constant",
             )
         return self.spring_constant
@@ -99,23 +98,17 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
         * _deflection(columns["deflection"], calibration)
     )
     if name in _OF_BASE:
+        purpose = (
+            f", and column {name} is the {_POSITIONS[name]}, from which the deflection must be "
+            "subtracted"
+        )
         deflection = (
             _deflection(columns["deflection"], calibration)
             if "deflection" in columns
-            else force / _spring_constant_for(name, calibration)
+            else force / calibration.required_spring_constant(purpose)
         )
         position = (position if name == "extension" else -position) - deflection
     return Curve(position, force, name == "depth", stiffness=calibration.spring_constant)
-
-
-def _spring_constant_for(name: str, calibration: Calibration) -> float:
-    try:
-        return calibration.required_spring_constant()
-    except ConfigError as error:
-        raise ConfigError(
-            f"column {name} is the {_POSITIONS[name]}, from which the deflection must be "
-            f"subtracted: {error}"
-        ) from None
 
 
 def _deflection(column: Channel, calibration: Calibration) -> Array:

@@ -14,10 +14,9 @@ from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.models.solid import lengths
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 
-from .baseline_checks import check_baseline
 from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
-from .noise import FailedCheck, Noise, NoiseEstimate, Residuals
+from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
 from .pooled_likelihood import Pool
 from .profile import CONFIDENCE
 
@@ -35,8 +34,6 @@ _ALIKE = 10.8
 """Δχ² below which another shape describes a curve as well (by chance exceeded in 0.1 %)."""
 _PLAUSIBLE_DEPTH = (1e-3, 1.0)
 """Depth over radius."""
-_PLAUSIBLE_MODULUS = (1.0, 1e12)
-_PLAUSIBLE_TENSION = 10.0
 
 
 @dataclass(frozen=True)
@@ -113,26 +110,27 @@ def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str
         The depth is beyond that to which the force model holds.
     """
     messages = []
-    modulus, tension = MODULUS.value(parameters[MODULUS]), parameters[TENSION]
-    depth = float(likelihood.depth(parameters)[-1])
-    limit = likelihood.force_model.depth_limit
-    if depth > limit:
+    model, depth = likelihood.force_model, float(likelihood.depth(parameters)[-1])
+    if depth > model.depth_limit:
         raise ConfigError(
-            f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at {limit:.3g} "
-            "m; is the radius right? If so, leave out the deepest part",
+            f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at "
+            f"{model.depth_limit:.3g} m; is the radius right? If so, leave out the deepest part",
             "indenter",
         )
-    shape = getattr(likelihood.force_model, "indenter", None)
+    shape = getattr(model, "indenter", None)
     radius = next(iter(lengths(shape)), None) if isinstance(shape, Component) else None
     if radius is not None and not _PLAUSIBLE_DEPTH[0] <= depth / radius <= _PLAUSIBLE_DEPTH[1]:
         messages.append(
             f"the depth of {depth:.3g} m is {depth / radius:.3g} times the radius of {radius:.3g} "
             "m: are radius and units right?"
         )
-    if not _PLAUSIBLE_MODULUS[0] <= modulus <= _PLAUSIBLE_MODULUS[1]:
-        messages.append(f"a modulus of {modulus:.3g} Pa is not plausible: are the units right?")
-    if tension > _PLAUSIBLE_TENSION:
-        messages.append(f"a tension of {tension:.3g} N/m is not plausible: are the units right?")
+    for parameter in model.parameters:
+        value, (low, high) = parameter.value(parameters[parameter]), parameter.plausible
+        if not low <= value <= high:
+            messages.append(
+                f"a {parameter.word} of {value:.3g} {parameter.unit} is not plausible: are the "
+                "units right?"
+            )
     return messages
 
 
@@ -267,11 +265,7 @@ def _needs_no_tension(
     """Return whether ``other`` fits as well without tension where ``chi_squared`` needs one."""
     if TENSION not in chi_squared.free or not best.parameters[TENSION]:
         return False
-    needed = _without_tension(chi_squared, best) - best.chi_squared > chdtri(1, 1 - CONFIDENCE)
-    return needed and _without_tension(other, minimum) < best.chi_squared + _ALIKE
-
-
-def _without_tension(chi_squared: ChiSquared, minimum: Minimum) -> float:
-    """Return the least χ² without tension near a minimum with tension."""
-    start = minimum.parameters | {TENSION: 0.0}
-    return chi_squared.minimise(start, (TENSION,)).chi_squared
+    gain = chi_squared.without(TENSION, best).chi_squared - best.chi_squared
+    if gain <= chdtri(1, 1 - CONFIDENCE):
+        return False
+    return other.without(TENSION, minimum).chi_squared < best.chi_squared + _ALIKE

@@ -162,6 +162,10 @@ class ChiSquared(ABC):
         variances = np.where(variances > 0, variances, np.inf)
         return bounds | dict(zip(free, (np.sqrt(variances) * scale).tolist(), strict=True))
 
+    def without(self, parameter: Parameter, best: Minimum) -> Minimum:
+        """Return the minimum of χ² near ``best`` with a parameter at its least value."""
+        return self.minimise(best.parameters | {parameter: parameter.minimum}, (parameter,))
+
     def minimise(self, start: Coordinates, fixed: Sequence[Parameter] = ()) -> Minimum:
         """Return the minimum of χ² near ``start``, where the parameters in ``fixed`` stay.
 

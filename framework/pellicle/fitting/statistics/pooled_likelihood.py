@@ -11,7 +11,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.fitting.models.force_model import ForceModel
-from pellicle.fitting.parameters import MODULUS, TENSION, Coordinates, Parameter
+from pellicle.fitting.parameters import Coordinates, Parameter
 
 from .initial_guess import GUESSES
 from .likelihood import ChiSquared, Likelihood, Minimum, Range, least
@@ -111,24 +111,24 @@ class Pool(ChiSquared):
     def initial_minimum(self, single: Sequence[Coordinates]) -> Minimum:
         """Return the minimum of χ² near the best coordinates of the single curves.
 
-        Shared parameters start from the curves with the smallest bound of the modulus and from the
-        median.
+        Shared parameters start from the curves with the smallest bound of the first of them, and
+        from the median.
         """
-        pairs = list(zip(self.members, single, strict=True))
-        informative = sorted(pairs, key=lambda pair: pair[0].deviations(pair[1])[MODULUS])[:GUESSES]
-        tries = [part for _, part in informative]
-        return least(
-            self._minimise(single, {p: shared[p] for p in self.shared})
-            for shared in (*tries, self._median(single))
-        )
+        bounds = [m.deviations(part) for m, part in zip(self.members, single, strict=True)]
+        informative = sorted(range(len(single)), key=lambda n: bounds[n][self.shared[0]])
+        tries = [{p: single[n][p] for p in self.shared} for n in informative[:GUESSES]]
+        return least(self._minimise(single, shared) for shared in (*tries, self._median(single)))
 
-    def without_tension(self, best: Minimum) -> Minimum:
-        """Return the minimum of χ² without tension, from ``best`` and from the single fits."""
-        fixed = (TENSION,)
-        start = best.parameters | {TENSION: 0.0}
-        single = [member.minimise(part, fixed).parameters for member, part in self.curves(start)]
-        shared = self.minimise(start, fixed)
-        return least([shared, self._minimise(single, self._median(single), fixed)])
+    def least_without(self, parameter: Parameter, best: Minimum) -> Minimum:
+        """Return the minimum of χ² with a parameter at its least value, from several starts.
+
+        They are ``best`` and the minima of the single curves.
+        """
+        start, fixed = best.parameters | {parameter: parameter.minimum}, (parameter,)
+        single = [m.minimise(part, fixed).parameters for m, part in self.curves(start)]
+        return least(
+            [self.minimise(start, fixed), self._minimise(single, self._median(single), fixed)]
+        )
 
     def _median(self, parts: Sequence[Coordinates]) -> Coordinates:
         return {p: float(np.median([part[p] for part in parts])) for p in self.shared}

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from scipy.special import stdtrit
 
 from pellicle.errors import ConvergenceError
-from pellicle.fitting.parameters import MODULUS, TENSION, Coordinates, Parameter
+from pellicle.fitting.parameters import TENSION, Coordinates, Parameter
 
 from .likelihood import REACH, ChiSquared, Minimum, least
 
@@ -159,10 +159,11 @@ def widen(
         return ends, ()
     other = coarse.minimise(best.parameters).parameters
     shift = {p: abs(other[p] - value) for p, value in best.parameters.items()}
-    tension = best.parameters[TENSION]
-    changes = [f"the modulus by {100 * np.expm1(shift[MODULUS]):.2g} %"] * (MODULUS in ends)
-    if TENSION in ends and tension:
-        changes.append(f"the tension by {100 * shift[TENSION] / tension:.2g} %")
+    changes = [
+        f"the {p.word} by {100 * (np.expm1(shift[p]) if p.logarithmic else shift[p] / value):.2g} %"
+        for p, value in best.parameters.items()
+        if p in ends and p.shared and (p.logarithmic or value)
+    ]
     message = (
         f"the force curve is simulated to {100 * likelihood.accuracy:.2g} %; half as many cells "
         f"change {' and '.join(changes)}, and the intervals are widened by these changes"
