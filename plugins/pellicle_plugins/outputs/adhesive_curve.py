@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
@@ -42,6 +43,8 @@ _SUMMARY_HEADS = (
 )
 _CELLS = 12
 """Contact radius in cells below which force and radius may be off by more than 2 %."""
+_LINE = 70
+"""Letters of a line of text across the figure."""
 _MARKERS = {"pull-off": "o", "no load": "s", "last at fixed depth": "v"}
 
 
@@ -180,11 +183,10 @@ class AdhesiveCurve(TableFigure):
         axes.text(
             0.02,
             0.02,
-            "\n".join(problems),
+            "\n".join(textwrap.fill(problem, _LINE) for problem in problems),
             color="red",
             fontsize="small",
             transform=axes.transAxes,
-            wrap=True,
         )
 
 
