@@ -9,6 +9,7 @@ from .components import Force as Force
 from .components import ForceCurve as ForceCurve
 from .components import HasForceCurve as HasForceCurve
 from .components import Indenter as Indenter
+from .components import Interaction as Interaction
 from .components import IterativeSolver as IterativeSolver
 from .components import Kernel as Kernel
 from .components import Output as Output
@@ -28,6 +29,7 @@ from .errors import PellicleError as PellicleError
 from .errors import PluginError as PluginError
 from .errors import StorageError as StorageError
 from .factories import indenter as indenter
+from .factories import interaction as interaction
 from .factories import kernel as kernel
 from .factories import solver as solver
 from .fitting.config import FitConfig as FitConfig

@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 from .components.base import Component
 from .components.indenter import Indenter
+from .components.interaction import Interaction
 from .components.kernel import Kernel
 from .components.solver import Solver
 from .plugins import registry
@@ -34,6 +35,17 @@ def indenter(type: str, /, **fields: Any) -> Indenter:  # noqa: A002 - name of t
         No such type, or fields that it does not allow.
     """
     return _component(Indenter, type, fields)
+
+
+def interaction(type: str, /, **fields: Any) -> Interaction:  # noqa: A002 - name of the field
+    """Return an interaction by its type: ``interaction("jkr", work_of_adhesion="50 mJ/m^2")``.
+
+    Raises
+    ------
+    ConfigError
+        No such type, or fields that it does not allow.
+    """
+    return _component(Interaction, type, fields)
 
 
 def solver(type: str, /, **fields: Any) -> Solver:  # noqa: A002 - name of the field

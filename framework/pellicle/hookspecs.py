@@ -10,6 +10,7 @@ from .components import (
     AreaCorrection,
     Executor,
     Indenter,
+    Interaction,
     Kernel,
     Output,
     Prescription,
@@ -29,6 +30,11 @@ def register_kernels(register: Callable[[type[Kernel]], None]) -> None:
 @hookspec
 def register_indenters(register: Callable[[type[Indenter]], None]) -> None:
     """Call ``register`` with each indenter class of the plugin."""
+
+
+@hookspec
+def register_interactions(register: Callable[[type[Interaction]], None]) -> None:
+    """Call ``register`` with each interaction class of the plugin."""
 
 
 @hookspec

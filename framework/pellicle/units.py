@@ -29,6 +29,7 @@ _EXAMPLES = {
     "m": "10 um",
     "Pa": "10 kPa",
     "N/m": "50 mN/m",
+    "J/m**2": "50 mJ/m^2",
     "N*m": "1 pN*m",
     "Pa/m": "1 kPa/mm",
     "N": "2 uN",
@@ -342,6 +343,10 @@ Tension = Annotated[float, Quantity("N/m", at_least=0)]
 """A surface tension ≥ 0 [N/m]."""
 BendingStiffness = Annotated[float, Quantity("N*m", at_least=0)]
 """The bending stiffness of a plate ≥ 0 [N*m]."""
+WorkOfAdhesion = Annotated[float, Quantity("J/m**2", above=0)]
+"""An energy per area > 0 [J/m²]."""
+Strength = Annotated[float, Quantity("Pa", above=0)]
+"""A traction > 0 [Pa]."""
 FoundationStiffness = Annotated[float, Quantity("Pa/m", above=0)]
 """A stiffness per area > 0 [Pa/m]."""
 Force = Annotated[float, Quantity("N", at_least=0)]

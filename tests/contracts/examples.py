@@ -93,6 +93,12 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
     },
     "solver": {"active_set": {"tolerance": 1e-9}, "conjugate_gradient": {"tolerance": 1e-9}},
     "correction": {"yastrebov": {}},
+    "interaction": {
+        "dugdale": {"work_of_adhesion": "50 mJ/m^2", "range": "2 um"},
+        "exponential": {"work_of_adhesion": "50 mJ/m^2", "range": "1 um"},
+        "jkr": {"work_of_adhesion": "50 mJ/m^2"},
+        "linear": {"work_of_adhesion": "50 mJ/m^2", "strength": "20 kPa"},
+    },
     "prescription": {
         "depth": {},
         "mean_plane_depth": {},

@@ -20,6 +20,10 @@ STACKS: dict[str, tuple[list[Layer], HalfSpace | None]] = {
         [GEL, Layer(20 * YOUNGS, 0.3, LENGTH / 2)],
         HalfSpace(3 * YOUNGS, 0.3),
     ),
+    "stiffer layer on a gel on a rigid base": (
+        [Layer(10 * YOUNGS, 0.3, LENGTH / 2), GEL],
+        None,
+    ),
     "stiffer layer on a soft one on a rigid base": (
         [Layer(10 * YOUNGS, 0.3, LENGTH / 2), Layer(YOUNGS, 0.45, LENGTH / 2)],
         None,

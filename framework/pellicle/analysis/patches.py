@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pellicle.arrays import Array, Mask
-from pellicle.grid import Boundary, Grid
-
-Labels = NDArray[np.int64]
+from pellicle.arrays import Array
+from pellicle.grid import Grid
+from pellicle.numerics.labels import Labels as Labels
+from pellicle.numerics.labels import labelled
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def patches(contact: ArrayLike, grid: Grid, connectivity: Literal[4, 8] = 4) -> 
     connectivity
         4: cells that share an edge belong to one patch; 8: those that share a corner do, too.
     """
-    labels, count = _label(np.asarray(contact, dtype=bool), grid.boundary, connectivity)
+    labels, count = labelled(np.asarray(contact, dtype=bool), grid.boundary, connectivity)
     cells = np.bincount(labels.ravel(), minlength=count + 1)[1:]
     order = np.argsort(-cells, kind="stable")
     rank = np.zeros(count + 1, dtype=np.int64)
@@ -98,28 +98,3 @@ def _pairs(labels: Labels, axis: int, periodic: bool) -> Labels:
     if not periodic:
         pairs = np.delete(pairs, -1, axis + 1)
     return np.asarray(pairs[:, pairs[0] != pairs[1]])
-
-
-def _label(contact: Mask, boundary: Boundary, connectivity: Literal[4, 8]) -> tuple[Labels, int]:
-    from scipy import ndimage
-
-    structure = ndimage.generate_binary_structure(2, 1 if connectivity == 4 else 2)
-    labels, count = ndimage.label(contact, structure)
-    return _joined(labels, count, connectivity) if boundary == "periodic" else (labels, count)
-
-
-def _joined(labels: Labels, count: int, connectivity: Literal[4, 8]) -> tuple[Labels, int]:
-    """Return labels in which patches that meet across the edges of the domain are one."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    shifts = (0,) if connectivity == 4 else (-1, 0, 1)
-    edges: list[Any] = []
-    for lines in (labels, labels.T):
-        edges += [np.stack([lines[0], np.roll(lines[-1], shift)]) for shift in shifts]
-    pairs = np.concatenate(edges, axis=1)
-    pairs = pairs[:, (pairs > 0).all(axis=0)]
-    graph = coo_array((np.ones(pairs.shape[1], dtype=bool), tuple(pairs)), (count + 1, count + 1))
-    # Label 0 is the first node and isolated, so it stays 0.
-    joined, merged = connected_components(graph, directed=False)
-    return merged.astype(np.int64)[labels], int(joined) - 1

@@ -30,6 +30,7 @@ from .indenter import ForceCurve as ForceCurve
 from .indenter import HasForceCurve as HasForceCurve
 from .indenter import Indenter as Indenter
 from .indenter import IsShallowLimit as IsShallowLimit
+from .interaction import Interaction as Interaction
 from .kernel import HasRelaxation as HasRelaxation
 from .kernel import Kernel as Kernel
 from .output import Output as Output
@@ -46,7 +47,16 @@ from .validation import Suite as Suite
 
 FAMILIES: dict[str, type[Component]] = {
     family.family: family
-    for family in (Kernel, Indenter, Solver, AreaCorrection, Output, Executor, Prescription)
+    for family in (
+        Kernel,
+        Indenter,
+        Interaction,
+        Solver,
+        AreaCorrection,
+        Output,
+        Executor,
+        Prescription,
+    )
 }
 """The base class of each family, by name."""
 

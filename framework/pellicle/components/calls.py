@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from numbers import Integral
 from pathlib import Path
 from typing import Any, cast, get_args
@@ -27,6 +27,7 @@ from pellicle.checks import (
 )
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import LARGEST, Grid
+from pellicle.numerics.gap_law import GapLaw, Law
 from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
 from pellicle.numerics.relaxation import Branch
 from pellicle.numerics.solution import Solution, State, Stop
@@ -34,6 +35,7 @@ from pellicle.numerics.solution import Solution, State, Stop
 from .correction import AreaCorrection
 from .executor import AnyTask, Executor, Outcome, Report, Say
 from .indenter import Footprint, ForceCurve, HasForceCurve, Indenter
+from .interaction import Interaction
 from .kernel import HasRelaxation, Kernel
 from .output import Output, Runs, stem_of
 from .prescription import Prescription, Search, Setting
@@ -43,6 +45,10 @@ from .solver import Monitor, Solver
 # How Python refuses a State used as an array, which it was in earlier versions.
 _OUTDATED = "'State'|State is not an array|can't multiply sequence|argument 'pressure'"
 _ROUNDING = 1e-12
+# Gaps at which a law is checked, and the error of the energy by the trapezoidal rule, over w. A
+# law that drops within one of these gaps still passes.
+_GAPS = 2001
+_ENERGY_ERROR = 1e-2
 
 
 def profile_of(indenter: Indenter, grid: Grid) -> Array:
@@ -185,13 +191,24 @@ def solution_of(
 
     Raises
     ------
+    ConfigError
+        The solver refuses the problem.
     PluginError
         The solver does not return a `Solution` of the grid's shape, changes the problem, or treats
         ``start`` as an array, which it was in earlier versions.
     """
-    if not problem.needs_solving:
-        return Solution(np.zeros(problem.grid.shape), 0)
     name = component_name(solver)
+    with errors_attributed_to(solver):
+        reason = solver.refuses(problem)
+    if reason:
+        raise ConfigError(f"{name} {reason}", "solver.type")
+    adheres = problem.law is not None
+    if not problem.needs_solving and not (adheres and start is not None and start.pressure.any()):
+        nothing = np.zeros(problem.grid.shape)
+        state: State | Array = nothing
+        if adheres:
+            state = State(nothing, nothing, problem.depth(np.zeros(1)))
+        return Solution(state, 0)
     view = _read_only_problem(problem)
     fields, parts = dict(vars(view)), problem.operator.parts()
     try:
@@ -217,8 +234,92 @@ def solution_of(
             f"{name}: solve() returned iterations {shown(value.iterations)} and stop "
             f"{shown(value.stop)}; they have to be a whole number and a pellicle.Stop"
         )
-    # The solver may reuse the memory of the array that it returned.
-    return Solution(pressure.copy(), int(value.iterations), value.stop)
+    # The solver may reuse the memory of the arrays that it returned.
+    pressure = pressure.copy()
+    state = pressure
+    if adheres:
+        if not isinstance(value.state, State):
+            raise PluginError(
+                f"{name}: solve() returned a pressure alone; with an interaction it has to return "
+                "a pellicle.State with the wall pressure"
+            )
+        wall = real_array(solver, "solve().state.wall", value.state.wall, problem.grid.shape)
+        depth = real_number(solver, "solve().state.depth", value.state.depth)
+        state = State(pressure, wall.copy(), depth)
+    return Solution(state, int(value.iterations), value.stop, bool(value.jumped))
+
+
+def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
+    """Return the law of an interaction, resolved on a grid, with checked values.
+
+    Raises
+    ------
+    PluginError
+        The traction is not the derivative of the energy, or a value is not a finite number.
+    """
+
+    def resolve(grid: Grid) -> GapLaw:
+        with errors_attributed_to(interaction):
+            law = interaction.resolved(kernel, grid)
+        return _CheckedLaw(interaction, law)
+
+    law = resolve(grid)
+    cutoff = law.cutoff()
+    if not 0 < cutoff < LARGEST:
+        raise PluginError(
+            f"{component_name(interaction)}: cutoff() is {cutoff:g} m; it has to be positive"
+        )
+    gaps = np.linspace(0.0, cutoff, _GAPS)
+    energy, traction = law.energy(gaps), law.traction(gaps)
+    depth = -float(energy[0])
+    if not depth > 0:
+        raise PluginError(
+            f"{component_name(interaction)}: energy(0) is {energy[0]:g} J/m²; it has to be "
+            "negative: minus the work of adhesion"
+        )
+    work = np.concatenate([[0.0], np.cumsum(0.5 * (traction[1:] + traction[:-1])) * gaps[1]])
+    missed = float(np.abs(energy - energy[0] + work).max()) / depth
+    if missed > _ENERGY_ERROR:
+        raise PluginError(
+            f"{component_name(interaction)}: traction(gap) is not −dγ/dg of energy(gap): their "
+            f"difference over the range is {missed:.1e} of the work of adhesion"
+        )
+    return Law(law, resolve)
+
+
+@dataclass(frozen=True)
+class _CheckedLaw:
+    interaction: Interaction
+    law: GapLaw
+
+    @property
+    def needs_contact(self) -> bool:
+        return self.law.needs_contact
+
+    def energy(self, gap: Array) -> Array:
+        return self._values("energy", gap)
+
+    def traction(self, gap: Array) -> Array:
+        return self._values("traction", gap)
+
+    def slope(self, gap: Array) -> Array:
+        return self._values("slope", gap)
+
+    def cutoff(self) -> float:
+        with errors_attributed_to(self.interaction):
+            value = self.law.cutoff()
+        return real_number(self.interaction, "cutoff()", value)
+
+    def _values(self, name: str, gap: Array) -> Array:
+        with errors_attributed_to(self.interaction):
+            values = getattr(self.law, name)(read_only(gap))
+        values = real_array(self.interaction, f"{name}(gap)", values, gap.shape)
+        if not np.isfinite(values).all():
+            raise PluginError(
+                f"{component_name(self.interaction)}: {name}(gap) has values that are NaN or "
+                "infinite; it has to be finite for every gap up to the cutoff"
+            )
+        return values
 
 
 def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor) -> Array:
@@ -300,7 +401,8 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
         if number is None:
             continue
         number = real_number(prescription, f"{call}.{field}", number)
-        signed = field in ("goal", "guess") or (field == "value" and isinstance(target, Depth))
+        may_pull = isinstance(target, Depth) or setting.law is not None
+        signed = field in ("goal", "guess") or (field == "value" and may_pull)
         if not np.isfinite(number) or (number < 0 and not signed):
             allowed = "finite" if signed else "finite and ≥ 0"
             raise PluginError(f"{name}: {call}.{field} is {number:g}; it has to be {allowed}")

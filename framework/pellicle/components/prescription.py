@@ -11,6 +11,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.grid import Grid
+from pellicle.numerics.gap_law import Law
 from pellicle.numerics.initial_guess import overlap_pressure
 from pellicle.numerics.operators import Operator
 from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
@@ -34,6 +35,8 @@ class Setting:
     footprint: Footprint
     state: State | None = None
     """The state at the end of the step before; None at the first step."""
+    law: Law | None = None
+    """The traction that acts across the gap; None for hard contact that does not stick."""
 
     @property
     def mean_height(self) -> float:
@@ -45,7 +48,7 @@ class Setting:
 
     def problem(self, control: Depth | Force) -> Problem:
         """Return the problem of a load step."""
-        return Problem(self.grid, self.operator, self.profile, control)
+        return Problem(self.grid, self.operator, self.profile, control, law=self.law)
 
     def force_at(self, depth: float) -> float:
         """Return an estimate of the force [N] at a depth [m], by one application of the operator.
@@ -85,15 +88,17 @@ class Prescription(Component):
     """SI unit of its values."""
     at_least: ClassVar[float | None] = None
     """Least allowed value; None if there is no bound."""
+    may_pull: ClassVar[bool] = False
+    """Whether values below `at_least` are allowed where there is an interaction."""
     needs_period: ClassVar[bool] = False
     """Whether it is defined on periodic grids only."""
     variables: ClassVar[tuple[Variable, ...]] = ()
     """Variables that it adds to a result; kind ``residual`` is the relative error of its search."""
 
     @classmethod
-    def quantity(cls) -> Quantity:
-        """Return unit and range of its values."""
-        return Quantity(cls.unit, at_least=cls.at_least)
+    def quantity(cls, interaction: bool = False) -> Quantity:
+        """Return unit and range of its values, without or with an interaction."""
+        return Quantity(cls.unit, at_least=None if interaction and cls.may_pull else cls.at_least)
 
     @abstractmethod
     def target(self, setting: Setting, value: float) -> Depth | Force | Search:

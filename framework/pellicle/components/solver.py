@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
@@ -51,6 +52,13 @@ class Solver(Component):
         Quantity("1", at_least=1e-13, below=1),
         Field(description="bound on every residual, relative to the indenter's height range"),
     ] = 1e-8
+
+    def refuses(self, problem: Problem) -> str:
+        """Return why it cannot solve a problem; empty if it can.
+
+        The default refuses a law that acts across the gap.
+        """
+        return "cannot solve with an interaction; use active_set" if problem.law else ""
 
     @abstractmethod
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
@@ -116,6 +124,10 @@ class IterativeSolver(Solver):
     def pressure(self, state: Any) -> Array:
         """Return the pressure [Pa] of an iterate."""
 
+    def state(self, state: Any) -> State | Array:
+        """Return the solution's state of an iterate; by default its pressure."""
+        return self.pressure(state)
+
     def terminate(self, problem: Problem, state: Any) -> Stop | None:
         """Return the reason to end the iteration above the tolerance; None, the default, continues.
 
@@ -149,7 +161,7 @@ class IterativeSolver(Solver):
                 break
             state = self.step(problem, state)
             iteration += 1
-        pressure = self.pressure(state)
-        if stop is Stop.STALLED and residual <= _ROUNDINGS * round_off(problem, pressure):
-            stop = Stop.ROUND_OFF
-        return Solution(pressure, iteration, stop)
+        solution = Solution(self.state(state), iteration, stop)
+        if stop is Stop.STALLED and residual <= _ROUNDINGS * round_off(problem, solution.pressure):
+            solution = replace(solution, stop=Stop.ROUND_OFF)
+        return solution

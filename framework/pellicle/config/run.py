@@ -21,7 +21,7 @@ from pydantic import (
     model_validator,
 )
 
-from pellicle.components import AreaCorrection, Indenter, Kernel, Output, Solver
+from pellicle.components import AreaCorrection, Indenter, Interaction, Kernel, Output, Solver
 from pellicle.components.calls import branches_of
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
@@ -31,7 +31,7 @@ from pellicle.model.paths import get, replaced, walk
 from pellicle.plugins import registry
 
 from .component_field import FromRegistry
-from .loading import Loading
+from .loading import Loading, refuse_pulls
 
 DEFAULT_SOLVER = "active_set"
 # Increment if an equal configuration gives different numbers, not if the file layout changes.
@@ -45,6 +45,12 @@ class Run(FromFile):
     grid: Annotated[Grid, Field(description="the domain and its cells")]
     kernel: Annotated[Kernel, FromRegistry(), Field(description="how the surface yields")]
     indenter: Annotated[Indenter, FromRegistry(), Field(description="what is pressed in")]
+    interaction: Annotated[
+        Annotated[Interaction, FromRegistry()] | None,
+        Field(
+            description="what acts across the gap; without it contact is hard and does not stick"
+        ),
+    ] = None
     loading: Annotated[Loading, Field(description="the load steps")]
     solver: Annotated[Solver, FromRegistry(), Field(description="how it is solved")] = Field(
         default_factory=lambda: registry().make(Solver, {"type": DEFAULT_SOLVER})
@@ -65,6 +71,17 @@ class Run(FromFile):
     ) -> Any:
         with grid_of_run(info.data.get("grid")):
             return make(value)
+
+    @field_validator("loading", mode="wrap")
+    @classmethod
+    def _pulls_by_an_interaction(
+        cls, value: object, make: ValidatorFunctionWrapHandler, info: ValidationInfo
+    ) -> Any:
+        if info.data.get("interaction", "not valid") is not None:
+            return make(value)
+        if isinstance(value, (Mapping, Loading)):
+            refuse_pulls(value.model_dump() if isinstance(value, Loading) else value)
+        return make(value)
 
     @model_validator(mode="after")
     def _prescription_has_a_period(self) -> Self:

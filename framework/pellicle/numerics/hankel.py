@@ -34,7 +34,7 @@ Symbol = Callable[[Array], Array]
 ACCURACY = 1e-7
 """Bound on the errors of P(r) and r² G(r), relative to the largest |P| up to r."""
 
-_STEP = 1 / 128  # of log q and log r; interpolating with splines costs about 1e-10
+_STEP = 1 / 256  # of log q and log r; at 1/128 splines miss a stiff film on a thin gel by 1e-8
 _CUT_OFF = 4e3  # q · shortest; the cut-off e^(−(q/cut-off)⁴) changes G(r) by about its 4th power
 _TOP = 2.5  # highest sample over the cut-off wavenumber, where the cut-off is below rounding
 _DECADES = 10  # of samples below 1/longest, fewer if G q² vanishes before

@@ -12,8 +12,10 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Grid
 
+from .gap_law import Law, attracted
 from .grid_transfer import restrict
 from .operators import Operator
+from .solution import Solution, State
 
 # Height range in contact over the depth below which an indenter counts as flat there.
 _FLAT = 1e-3
@@ -54,6 +56,9 @@ _CONTROLS: Final = {"depth": Depth, "force": Force}
 class Problem:
     """Find p ≥ 0 with gap = A p − z − f ≥ 0 and p·gap = 0, for a given depth z or force.
 
+    With a `law` the traction is p = w + σ(gap), and the conditions on p hold for the wall
+    pressure w.
+
     Under a `Depth` with a compliance, z is the depth of the base. The `operator` A then includes
     the deflection of the spring, so that a solver need not know of the spring.
     """
@@ -66,6 +71,8 @@ class Problem:
     """Indenter profile f ≤ 0 [m] of the grid's shape; −inf where there is no indenter."""
     control: Depth | Force
     """The prescribed depth or force; a mean pressure is given as a force."""
+    law: Law | None
+    """The traction that acts across the gap; None for hard contact that does not stick."""
 
     def __init__(
         self,
@@ -75,6 +82,7 @@ class Problem:
         control: Depth | Force | Literal["depth", "force"],
         value: float | None = None,
         prescribed: Literal["depth", "force"] | None = None,
+        law: Law | None = None,
     ) -> None:
         # Packages written for version 1 pass the kind of control and its value separately.
         kind = prescribed or control
@@ -85,7 +93,11 @@ class Problem:
             kind = replace(kind, value=value)
         compliance = kind.compliance if isinstance(kind, Depth) else 0.0
         vars(self).update(
-            grid=grid, operator=operator.with_spring(compliance), profile=profile, control=kind
+            grid=grid,
+            operator=operator.with_spring(compliance),
+            profile=profile,
+            control=kind,
+            law=law,
         )
 
     @property
@@ -100,8 +112,16 @@ class Problem:
 
     @property
     def needs_solving(self) -> bool:
-        """Whether there is contact, so that the undeformed surface is not the solution."""
+        """Whether there is contact, so that the undeformed surface is not the solution.
+
+        With a law, whether the indenter presses or is within the cutoff, if it was out of reach
+        before.
+        """
         lowest = float(self.profile.max())
+        if self.law:
+            near = 0.0 if self.law.needs_contact else self.law.cutoff()
+            least = 0.0 if self.prescribed == "force" else -lowest - near
+            return isfinite(lowest) and self.value >= least
         # A coarse grid may not resolve any part of an indenter of single cells.
         return isfinite(lowest) and self.value > (0 if self.prescribed == "force" else -lowest)
 
@@ -151,7 +171,11 @@ class Problem:
         operator = self.operator.coarsened()
         grid = operator.grid
         return replace(
-            self, grid=grid, operator=operator, profile=restrict(self.profile, grid.shape)
+            self,
+            grid=grid,
+            operator=operator,
+            profile=restrict(self.profile, grid.shape),
+            law=self.law.on(grid) if self.law else None,
         )
 
     def scaled(self, height: float, pressure: float) -> Problem:
@@ -164,6 +188,7 @@ class Problem:
             operator=self.operator.scaled(pressure / height),
             profile=self.profile / height,
             control=self.control.scaled(height, pressure),
+            law=self.law.scaled(height, pressure) if self.law else None,
         )
 
 
@@ -176,12 +201,24 @@ class Equilibrium:
 
     problem: Problem
     pressure: Array
-    """Contact pressure [Pa]."""
+    """Traction on the surface [Pa]; without a law the contact pressure."""
+    adhesive: State | None = None
+    """The state that the solver found, if the problem has a law."""
+
+    @property
+    def wall(self) -> Array:
+        """Wall pressure [Pa]; without a law the contact pressure."""
+        return self.adhesive.wall if self.adhesive else self.pressure
 
     @cached_property
     def contact(self) -> Mask:
-        """The cells with pressure > 0, bool of the grid's shape."""
-        return self.pressure > 0
+        """The cells with wall pressure > 0, bool of the grid's shape."""
+        return self.wall > 0
+
+    @property
+    def state(self) -> State:
+        """The state from which the next step starts."""
+        return State(self.pressure, self.wall, self.depth)
 
     @property
     def residual(self) -> float:
@@ -191,6 +228,7 @@ class Equilibrium:
             self.residual_penetration,
             self.residual_complementarity,
             self.residual_load,
+            self.residual_traction,
         )
 
     @cached_property
@@ -218,6 +256,29 @@ class Equilibrium:
         """Gap u − δ − f [m]; +inf where there is no indenter."""
         return self.displacement - self.problem.profile - self.depth
 
+    @cached_property
+    def attraction(self) -> Array:
+        """The traction σ(gap) that the law of the problem exerts [Pa]; 0 without a law."""
+        if not self.problem.law:
+            return np.zeros(self.pressure.shape)
+        return attracted(self.problem.law, self.gap, self.contact, self.problem.grid.boundary)
+
+    @property
+    def zone(self) -> Mask:
+        """The cells off the contact on which a traction acts, bool of the grid's shape."""
+        zone: Mask = (self.pressure != 0) & ~self.contact
+        return zone
+
+    @property
+    def energy(self) -> float:
+        """Elastic energy and energy of the law [J]; the spring of a holder is not counted."""
+        elastic = 0.5 * float((self.pressure * self.displacement).sum())
+        bound = 0.0
+        if self.problem.law:
+            acts = self.contact | self.zone
+            bound = float(self.problem.law.energy(self.gap[acts]).sum())
+        return (elastic + bound) * self.problem.grid.cell_area
+
     @property
     def residual_contact(self) -> float:
         """Largest gap in contact by magnitude, over the height range of the indenter there."""
@@ -230,32 +291,61 @@ class Equilibrium:
 
     @property
     def residual_complementarity(self) -> float:
-        """Σ p|gap| / Σ p, over the same."""
-        work = float((self.pressure[self.contact] * self._inside).sum())
-        return work / self.total / self._scale if self.total else 0.0
+        """Σ w|gap| / Σ|p|, over the same."""
+        work = float((self.wall[self.contact] * self._inside).sum())
+        return work / self._magnitude / self._scale if self._magnitude else 0.0
 
     @property
     def residual_load(self) -> float:
-        """|force − prescribed| / prescribed; 0 under depth control."""
+        """|force − prescribed| over the prescribed force, with a law over Σ|p|; 0 at a depth."""
         control = self.problem.control
         missed = abs(self.force - control.value) if isinstance(control, Force) else 0.0
+        if self.problem.law:
+            scale = self._magnitude * self.problem.grid.cell_area
+            return missed / (scale or abs(control.value)) if missed else 0.0
         return missed / control.value if missed else 0.0
+
+    @property
+    def residual_traction(self) -> float:
+        """Σ|p − w − σ(gap)| / Σ|p|; 0 without a law."""
+        if not self.problem.law or not self._magnitude:
+            return 0.0
+        missed = np.abs(self.pressure - self.wall - self.attraction)
+        return float(missed.sum()) / self._magnitude
+
+    @cached_property
+    def _magnitude(self) -> float:
+        return float(np.abs(self.pressure).sum()) if self.problem.law else self.total
 
     @cached_property
     def _base(self) -> float:
         # Without pressure the lowest point just touches, even if it lies between the cells.
         contact = self.contact
         if not contact.any():
+            if self.adhesive and self.problem.prescribed == "force":
+                return self.adhesive.depth
             return self.problem.depth(np.zeros(1))
         return self.problem.depth(self.displacement[contact] - self.problem.profile[contact])
 
     @cached_property
     def _scale(self) -> float:
+        if self.problem.law:
+            # Pulled upwards, the surface may be far from flat where the depth is near 0.
+            in_contact = self.problem.profile[self.contact]
+            heights = float(np.ptp(in_contact)) if in_contact.size else 0.0
+            greatest = float(np.abs(self.displacement).max())
+            return heights if heights > _FLAT * greatest else greatest or 1.0
         return self.problem.height_scale(self.contact, self._base, self.total)
 
     @property
     def _inside(self) -> Array:
         return np.abs(self.gap[self.contact])
+
+
+def equilibrium_of(problem: Problem, solution: Solution) -> Equilibrium:
+    """Return the equilibrium of a solver's solution; its gap is computed on first access."""
+    state = solution.state
+    return Equilibrium(problem, solution.pressure, state if isinstance(state, State) else None)
 
 
 def measure(problem: Problem, pressure: Array) -> Equilibrium:

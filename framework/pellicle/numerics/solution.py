@@ -39,6 +39,10 @@ class Stop(Enum):
         "the solver makes no progress any more, and not because of round-off: try another solver, "
         "another load, or cells that resolve the heights"
     )
+    PULLED_OFF = (
+        "no contact carries this pull; prescribe base_displacement with a soft spring_constant to "
+        "find the greatest one"
+    )
     NOT_FINITE = "the iteration met a value that is not finite"
 
 
@@ -52,6 +56,8 @@ class Solution:
     """Steps of the solver's outermost loop."""
     stop: Stop = Stop.DONE
     """Why the solver stopped."""
+    jumped: bool = False
+    """Whether the state is not on the same branch as the start: a contact was lost or gained."""
 
     @property
     def pressure(self) -> Array:

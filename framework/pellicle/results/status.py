@@ -24,6 +24,15 @@ class Status(Enum):
         "converged, but the cells are too coarse for this contact, which covers {cells} of them: "
         "force, depth and area may be far off; use more points, or a smaller grid.size"
     )
+    COARSE_ZONE = (
+        "converged, but the zone in which the interaction pulls is {cells:.1f} cells wide, where "
+        "it takes {least:g} for the contact not to be pinned by the cells: force and area may be "
+        "off; use more points, or a longer range"
+    )
+    STEEP = (
+        "converged, but slopes in contact reach {slope:.2f}, and the theory is for slopes up to "
+        "{most:g}: force and area are those of the model, not of the experiment"
+    )
     NOT_FINITE = (
         "the pressure became NaN or infinite; check the kernel's compliance and the profile for "
         "extreme values"
@@ -48,6 +57,10 @@ class Status(Enum):
     NOT_REACHED = (
         "the {quantity} misses the prescribed one by {measure:.1e}, over {tolerance:g}; {remedy}"
     )
+    TRACTION = (
+        "the traction across the gap misses that of the interaction by {measure:.1e}, over the "
+        "tolerance {tolerance:.1e}; {remedy}"
+    )
     STIFFNESS = (
         "the contact stiffness is not known: its displacement misses by {measure:.1e}, over the "
         "tolerance {tolerance:.1e}; loosen solver.tolerance, or leave loading.stiffness out"
@@ -63,7 +76,14 @@ class Status(Enum):
     @property
     def converged(self) -> bool:
         """Whether the numbers of the step may be used, possibly with a caveat."""
-        return self in (Status.CONVERGED, Status.NEAREST_AREA, Status.NEAREST, Status.COARSE)
+        return self in (
+            Status.CONVERGED,
+            Status.NEAREST_AREA,
+            Status.NEAREST,
+            Status.COARSE,
+            Status.COARSE_ZONE,
+            Status.STEEP,
+        )
 
     @property
     def verdict(self) -> str:

@@ -67,6 +67,15 @@ def step_dataset(
         "residual_load": equilibrium.residual_load,
         **scalars,
     }
+    if equilibrium.problem.law:
+        fields["wall_pressure"] = equilibrium.wall
+        zone = np.count_nonzero(equilibrium.zone) * grid.cell_area
+        values |= {
+            "zone_area": zone,
+            "zone_width": zone_width(equilibrium),
+            "energy": equilibrium.energy,
+            "residual_traction": equilibrium.residual_traction,
+        }
     described = {**VARIABLES, **{variable.name: variable for variable in variables}}
     x, y = grid.coordinates()
     coordinates = {
@@ -86,6 +95,17 @@ def step_dataset(
         for name, value in values.items()
     }
     return xr.Dataset(data, coordinates)
+
+
+def zone_width(equilibrium: Equilibrium) -> float:
+    """Return the mean width [m] of the zone around the contact; NaN without one."""
+    zone, contact = equilibrium.zone, equilibrium.contact
+    grid = equilibrium.problem.grid
+    if not contact.any() or not zone.any():
+        return np.nan
+    # The border of the contact with the zone on half of it: a zone at the edge of a punch.
+    length = perimeter(contact, grid)
+    return float(np.count_nonzero(zone) * grid.cell_area / length) if length else np.nan
 
 
 class Steps:
@@ -109,7 +129,10 @@ class Steps:
         if not self._scalars:
             return None
         pressure = self._fields["pressure"].values[len(self) - 1]
-        return State(pressure, pressure, self._scalars[-1]["depth"].item())
+        wall = pressure
+        if "wall_pressure" in self._fields:
+            wall = self._fields["wall_pressure"].values[len(self) - 1]
+        return State(pressure, wall, self._scalars[-1]["depth"].item())
 
     def append(self, step: xr.Dataset) -> xr.Dataset:
         """Copy a step of `step_dataset` into the arrays, and return it as views of them."""

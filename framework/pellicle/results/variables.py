@@ -49,6 +49,12 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
     "other": (("mean_pressure", "Pa", "force over the area of the domain"),),
     "requested": (
         ("stiffness", "N/m", "contact stiffness dF/dδ, where loading.stiffness asks for it"),
+        ("wall_pressure", "Pa", "pressure of the indenter without the traction across the gap"),
+        ("zone_area", "m2", "area of the cells off the contact on which a traction acts"),
+        ("zone_width", "m", "zone area over the length of the border of the contact"),
+        ("energy", "J", "elastic energy plus energy of the interaction"),
+        ("jumped", "1", "whether a contact was lost or gained at once", "truth"),
+        ("residual_traction", "1", "error of the traction across the gap over all tractions"),
     ),
     "contact": (
         ("mean_contact_pressure", "Pa", "force over the contact area"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pellicle.checks import errors_attributed_to
 from pellicle.components import Setting
-from pellicle.components.calls import check_value, profile_of
+from pellicle.components.calls import check_value, law_of, profile_of
 from pellicle.config.run import Run
 from pellicle.numerics.grid_checks import warn_of_cells, warn_of_period
 from pellicle.numerics.operators import make_operator
@@ -24,7 +24,8 @@ def compose(run: Run) -> Setting:
     profile = profile_of(run.indenter, run.grid)
     if run.indenter.footprint == "domain":
         warn_of_period(profile, run.grid)
-    setting = Setting(run.grid, operator, profile, run.indenter.footprint)
+    law = law_of(run.interaction, run.kernel, run.grid) if run.interaction else None
+    setting = Setting(run.grid, operator, profile, run.indenter.footprint, law=law)
     for index, value in enumerate(run.loading.values):
         field = f"loading.{run.loading.prescribed}.{index}"
         check_value(run.loading.prescription, setting, value, field)

@@ -19,8 +19,7 @@ from pellicle.components.calls import (
 )
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
-from pellicle.numerics.problem import Equilibrium, Stiffness, measure_stiffness
-from pellicle.numerics.solution import State
+from pellicle.numerics.problem import Equilibrium, Stiffness, equilibrium_of, measure_stiffness
 from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable
 
@@ -82,7 +81,7 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Re
         return reach(setting, target, run.solver, monitor)
     problem = setting.problem(target)
     solution = solution_of(run.solver, problem, setting.state, monitor)
-    return Reached(Equilibrium(problem, solution.pressure), solution.iterations, solution.stop)
+    return Reached(equilibrium_of(problem, solution), solution.iterations, solution.stop)
 
 
 def _stiffness(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> Stiffness:
@@ -93,5 +92,5 @@ def _stiffness(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> Stiffnes
         return Stiffness(np.inf, 0.0)
     if not contact.any():
         return Stiffness(0.0, 0.0)
-    state = State(equilibrium.pressure, equilibrium.pressure, equilibrium.depth)
-    return measure_stiffness(problem, contact, response_of(run.solver, problem, state, monitor))
+    response = response_of(run.solver, problem, equilibrium.state, monitor)
+    return measure_stiffness(problem, contact, response)

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 from pellicle.components import Monitor, Solver
 from pellicle.components.calls import solution_of
 from pellicle.components.prescription import Search, Setting
-from pellicle.numerics.problem import Depth, Equilibrium
+from pellicle.numerics.problem import Depth, Equilibrium, equilibrium_of
 from pellicle.numerics.solution import Solution, Stop
 
 # Number of trials to bracket the goal, after which it counts as out of reach.
@@ -129,8 +129,7 @@ class _Trials:
         goal = self.search.goal
         problem = self.setting.problem(self.search.control(control))
         solution = solution_of(self.solver, problem, self.setting.state, self.monitor)
-        # Not measured: the quantity, such as an area, may need no displacement.
-        equilibrium = Equilibrium(problem, solution.pressure)
+        equilibrium = equilibrium_of(problem, solution)
         self.iterations += solution.iterations
         value = self.search.measure(equilibrium)
         missed = abs(value - goal) / (abs(goal) or 1.0)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from pellicle.analysis.steepness import rim_slope, steepest
 from pellicle.arrays import Mask
+from pellicle.components import Interaction
 from pellicle.components.prescription import Search, in_unit
 from pellicle.config.run import Run
-from pellicle.numerics.problem import Stiffness
+from pellicle.numerics.problem import Equilibrium, Stiffness
 from pellicle.results.status import Status
+from pellicle.results.step import zone_width
 
 from .target_search import Reached
 
@@ -17,6 +20,8 @@ _NEAR = 0.05
 # The force of a paraboloid is right to 8 % on nine or twelve cells, to 14 % on five, on fewer not.
 _RESOLVED = 13
 _RESOLVED_ACROSS = 4
+# Slope beyond which the theory of small slopes does not hold.
+_STEEPEST = 0.3
 
 
 def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) -> tuple[Status, str]:
@@ -25,21 +30,24 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
     tolerance = run.solver.tolerance
     if not np.isfinite(equilibrium.force):
         return Status.NOT_FINITE, Status.NOT_FINITE.value
-    if (lowest := float(equilibrium.pressure.min())) < 0:
-        share = -lowest / float(equilibrium.pressure.max())
+    if (lowest := float(equilibrium.wall.min())) < 0:
+        share = -lowest / float(np.abs(equilibrium.wall).max())
         return Status.NEGATIVE_PRESSURE, Status.NEGATIVE_PRESSURE.value.format(measure=share)
     for status, residual in (
         (Status.LOAD, equilibrium.residual_load),
         (Status.CONTACT_RESIDUAL, equilibrium.residual_contact),
         (Status.PENETRATION, equilibrium.residual_penetration),
         (Status.COMPLEMENTARITY, equilibrium.residual_complementarity),
+        (Status.TRACTION, equilibrium.residual_traction),
         (Status.STIFFNESS, stiffness.residual if stiffness else 0.0),
     ):
         if not residual <= tolerance:
             return status, status.value.format(
                 measure=residual, tolerance=tolerance, remedy=step.stop.value
             )
-    if run.indenter.footprint == "unbounded" and _touches_edge(run, equilibrium.contact):
+    if run.indenter.footprint == "unbounded" and _touches_edge(
+        run, equilibrium.contact | equilibrium.zone
+    ):
         nx, ny = run.grid.size
         loading = run.loading
         return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
@@ -51,8 +59,26 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
         return _not_met(step, step.search)
     cells = int(np.count_nonzero(equilibrium.contact))
     enough = _RESOLVED_ACROSS if min(equilibrium.contact.shape) == 1 else _RESOLVED
+    if run.interaction:
+        return _doubt(run, run.interaction, equilibrium)
     if equilibrium.problem.control.value > 0 and cells < min(enough, equilibrium.contact.size):
         return Status.COARSE, Status.COARSE.value.format(cells=cells or "none")
+    return Status.CONVERGED, Status.CONVERGED.value
+
+
+def _doubt(run: Run, interaction: Interaction, equilibrium: Equilibrium) -> tuple[Status, str]:
+    """Return the status of a step that is solved, where an interaction acts."""
+    width = zone_width(equilibrium) / max(run.grid.spacing)
+    if width < interaction.least_cells:
+        return Status.COARSE_ZONE, Status.COARSE_ZONE.value.format(
+            cells=width, least=interaction.least_cells
+        )
+    slope = max(
+        steepest(equilibrium.problem.profile, equilibrium.contact, run.grid),
+        rim_slope(run.kernel.compliance, equilibrium) if equilibrium.contact.any() else 0.0,
+    )
+    if slope > _STEEPEST:
+        return Status.STEEP, Status.STEEP.value.format(slope=slope, most=_STEEPEST)
     return Status.CONVERGED, Status.CONVERGED.value
 
 

@@ -20,6 +20,7 @@ class BaseDisplacement(Prescription):
     type: Literal["base_displacement"] = "base_displacement"
     unit: ClassVar[str] = "m"
     at_least: ClassVar[float | None] = 0.0
+    may_pull: ClassVar[bool] = True
     variables: ClassVar[tuple[Variable, ...]] = (
         Variable("base_displacement", "m", "displacement of the base, 0 at first touch"),
     )

@@ -21,6 +21,7 @@ class IndenterDepth(Prescription):
     type: Literal["depth"] = "depth"
     unit: ClassVar[str] = "m"
     at_least: ClassVar[float | None] = 0.0
+    may_pull: ClassVar[bool] = True
 
     def check(self, setting: Setting, value: float) -> None:
         """Refuse a depth that no load reaches."""

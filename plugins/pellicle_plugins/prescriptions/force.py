@@ -15,6 +15,7 @@ class NormalForce(Prescription):
     type: Literal["force"] = "force"
     unit: ClassVar[str] = "N"
     at_least: ClassVar[float | None] = 0.0
+    may_pull: ClassVar[bool] = True
 
     def target(self, setting: Setting, value: float) -> Force:
         """Return the force itself."""

@@ -15,6 +15,7 @@ class MeanPressure(Prescription):
     type: Literal["mean_pressure"] = "mean_pressure"
     unit: ClassVar[str] = "Pa"
     at_least: ClassVar[float | None] = 0.0
+    may_pull: ClassVar[bool] = True
     needs_period: ClassVar[bool] = True
 
     def target(self, setting: Setting, value: float) -> Force:

@@ -15,8 +15,9 @@ from pellicle.errors import ConfigError
 from pellicle.numerics.grid_transfer import highest, prolong
 from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.problem import Depth, Problem
-from pellicle.numerics.solution import Progress, State, Stop
+from pellicle.numerics.solution import Progress, Solution, State, Stop
 
+from .adhesion import Adhesion
 from .contact_cg import InnerSolution, inner_solve
 from .preconditioner import OnContact, Preconditioner
 from .relaxation import relaxed
@@ -130,6 +131,17 @@ class ActiveSet(ScaledSolver):
     """
 
     type: Literal["active_set"] = "active_set"
+
+    def refuses(self, problem: Problem) -> str:
+        """Return "": it solves with a law too."""
+        return ""
+
+    def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
+        """Return the solution of a load step; with a law by `Adhesion`."""
+        if problem.law:
+            adhesion = Adhesion(tolerance=self.tolerance, max_iterations=self.max_iterations)
+            return adhesion.solve(problem, start, monitor)
+        return super().solve(problem, start, monitor)
 
     def begin(self, problem: Problem, start: State | None) -> _Iterate:
         """Return the iterate of the last step if it is close, else that of a coarser grid."""

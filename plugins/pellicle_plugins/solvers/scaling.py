@@ -30,12 +30,18 @@ class ScaledSolver(IterativeSolver):
         pressure = height / problem.operator.unit
         # Squares of a pressure far above those of this step would overflow.
         if start is not None and float(start.pressure.max()) / pressure < 2.0**_SINGLE_EXPONENT:
-            before = start.pressure / pressure
-            start = State(before, before, start.depth / height)
+            start = _scaled(start, 1 / height, 1 / pressure)
         else:
             start = None
         solution = super().solve(problem.scaled(height, pressure), start, monitor)
-        return replace(solution, state=solution.pressure * pressure)
+        state = solution.state
+        if isinstance(state, State):
+            return replace(solution, state=_scaled(state, height, pressure))
+        return replace(solution, state=state * pressure)
+
+
+def _scaled(state: State, length: float, pressure: float) -> State:
+    return State(state.pressure * pressure, state.wall * pressure, state.depth * length)
 
 
 def height_unit(problem: Problem) -> float:
@@ -45,6 +51,13 @@ def height_unit(problem: Problem) -> float:
     control it is the geometric mean of the indenter's height range and of the displacement of the
     most compliant wave under the mean pressure; either may be much smaller than the other.
     """
+    if problem.law:
+        # Depth and force may be 0 or negative; what the law does at its cutoff is not.
+        heights = max(
+            float(problem.law.cutoff()),
+            abs(problem.value) if problem.prescribed == "depth" else 0.0,
+        )
+        return 2.0 ** _exponent(heights)
     if problem.prescribed == "depth":
         return 2.0 ** _exponent(problem.value + float(problem.profile.max()))
     finite = problem.profile[np.isfinite(problem.profile)]

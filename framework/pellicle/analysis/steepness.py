@@ -1,0 +1,57 @@
+"""Slopes of indenter and surface, which the theory takes as small."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from pellicle.arrays import Array, Mask
+from pellicle.grid import Grid
+from pellicle.numerics.problem import Equilibrium
+
+# Relative change of G(q) q² over a decade below which it is the limit of short waves.
+_CONSTANT = 0.05
+
+
+def steepest(profile: Array, contact: Mask, grid: Grid) -> float:
+    """Return the largest slope of an indenter between two neighbouring cells in contact.
+
+    Parameters
+    ----------
+    profile
+        Heights [m] of the grid's shape.
+    contact
+        Bool, of the same shape.
+    grid
+        The cells.
+    """
+    slopes = [0.0]
+    for axis, width in enumerate(grid.spacing):
+        both = np.logical_and(*(_shifted(contact, axis, first) for first in (True, False)))
+        one, other = (_shifted(profile, axis, first)[both] for first in (True, False))
+        slopes.append(float(np.abs(one - other).max(initial=0.0)) / width)
+    return max(slopes)
+
+
+def _shifted(values: Array | Mask, axis: int, first: bool) -> Array | Mask:
+    cells = [slice(None), slice(None)]
+    cells[axis] = slice(None, -1) if first else slice(1, None)
+    return values[tuple(cells)]
+
+
+def rim_slope(compliance: Callable[[Array], Array], equilibrium: Equilibrium) -> float:
+    """Return the slope √(2w/τ₀) of the surface at the rim of an adhesive contact; 0 without τ₀.
+
+    With a surface tension τ₀ the energy per area w that is released bends the surface by this angle
+    (Young–Dupré at small slopes). The tension is the limit of 1/(G q²) for short waves; without one
+    the slope of the theory has no bound, and depends on the range of the interaction.
+    """
+    law = equilibrium.problem.law
+    if law is None:
+        return 0.0
+    q = 1e3 * np.pi / min(equilibrium.problem.grid.spacing) * np.array([1.0, 10.0])
+    one, other = compliance(q) * q**2
+    if not abs(other / one - 1) < _CONSTANT:
+        return 0.0
+    return float(np.sqrt(2 * law.work_of_adhesion() * other))

@@ -1,0 +1,60 @@
+"""The contract of interactions: what acts across the gap between surface and indenter."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import ClassVar
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.grid import Grid
+from pellicle.numerics.gap_law import GapLaw
+
+from .base import Component
+from .kernel import Kernel
+
+# Share of the cutoff over which a slope is measured.
+_DIFFERENCE = 1e-6
+
+
+class Interaction(Component):
+    """An energy per area γ(g) that depends on the gap g between surface and indenter.
+
+    The traction on the surface is p = w + σ(g) with the wall pressure w ≥ 0, the gap g ≥ 0 and
+    w g = 0. Methods take arrays of gaps g ≥ 0 up to the cutoff.
+    """
+
+    family: ClassVar[str] = "interaction"
+    needs_contact: ClassVar[bool] = False
+    """Whether it acts only on cells that are joined to a contact by cells within the cutoff."""
+
+    least_cells: ClassVar[float] = 3.0
+    """Cells across the zone around a contact below which the cells pin its edge."""
+
+    @abstractmethod
+    def energy(self, gap: Array) -> Array:
+        """Return γ(g) [J/m²]: −(work of adhesion) at g = 0, and 0 at the cutoff."""
+
+    @abstractmethod
+    def traction(self, gap: Array) -> Array:
+        """Return σ(g) = −dγ/dg [Pa]; negative where surface and indenter attract each other."""
+
+    @abstractmethod
+    def cutoff(self) -> float:
+        """Return the gap [m] beyond which nothing acts."""
+
+    def slope(self, gap: Array) -> Array:
+        """Return dσ/dg [Pa/m]; by default from differences of `traction`."""
+        half = 0.5 * _DIFFERENCE * self.cutoff()
+        low, high = np.maximum(gap - half, 0.0), np.minimum(gap + half, self.cutoff())
+        slopes: Array = (self.traction(high) - self.traction(low)) / (high - low)
+        return slopes
+
+    def resolved(self, kernel: Kernel, grid: Grid) -> GapLaw:
+        """Return the law that the cells of ``grid`` can resolve; by default the interaction itself.
+
+        Whole cells that switch off at once are pinned: approach and retraction end in different
+        states. A law that is resolved is continuous, and its slope is bounded.
+        """
+        return self

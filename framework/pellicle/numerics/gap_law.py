@@ -1,0 +1,113 @@
+"""The traction that acts across the gap between surface and indenter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from pellicle.arrays import Array, Mask
+from pellicle.grid import Boundary, Grid
+
+from .labels import labelled
+
+
+class GapLaw(Protocol):
+    """An energy per area that depends on the gap."""
+
+    @property
+    def needs_contact(self) -> bool:
+        """Whether it acts only on cells that are joined to a contact."""
+        ...
+
+    def energy(self, gap: Array) -> Array:
+        """Return γ(g) [J/m²] for gaps g ≥ 0 [m]; −(work of adhesion) at 0, and 0 far away."""
+        ...
+
+    def traction(self, gap: Array) -> Array:
+        """Return σ(g) = −dγ/dg [Pa]; negative where surface and indenter attract each other."""
+        ...
+
+    def slope(self, gap: Array) -> Array:
+        """Return dσ/dg [Pa/m]."""
+        ...
+
+    def cutoff(self) -> float:
+        """Return the gap [m] beyond which nothing acts."""
+        ...
+
+
+@dataclass(frozen=True)
+class Law:
+    """A gap law on a grid, in the units of length and pressure of a problem.
+
+    Gaps below 0 count as 0.
+    """
+
+    law: GapLaw
+    """The law as it is resolved on the grid."""
+    resolve: Callable[[Grid], GapLaw]
+    """Return the law as it is resolved on another grid."""
+    length: float = 1.0
+    """Unit of length [m]."""
+    pressure: float = 1.0
+    """Unit of pressure [Pa]."""
+
+    @property
+    def needs_contact(self) -> bool:
+        """Whether it acts only on cells that are joined to a contact."""
+        return self.law.needs_contact
+
+    def energy(self, gap: Array) -> Array:
+        """Return γ(g) of an array of gaps."""
+        return self.law.energy(self._si(gap)) / (self.length * self.pressure)
+
+    def traction(self, gap: Array) -> Array:
+        """Return σ(g) of an array of gaps, 0 beyond the cutoff."""
+        values = self.law.traction(self._si(gap)) / self.pressure
+        return np.where(gap < self.cutoff(), values, 0.0)
+
+    def slope(self, gap: Array) -> Array:
+        """Return dσ/dg of an array of gaps, 0 beyond the cutoff."""
+        values = self.law.slope(self._si(gap)) * (self.length / self.pressure)
+        return np.where(gap < self.cutoff(), values, 0.0)
+
+    def cutoff(self) -> float:
+        """Return the gap beyond which nothing acts."""
+        return self.law.cutoff() / self.length
+
+    def work_of_adhesion(self) -> float:
+        """Return −γ(0)."""
+        return -float(self.energy(np.zeros(1))[0])
+
+    def strength(self) -> float:
+        """Return the traction that separates a closed gap, −σ(0)."""
+        return -float(self.traction(np.zeros(1))[0])
+
+    def scaled(self, length: float, pressure: float) -> Law:
+        """Return the law in units of ``length`` and ``pressure`` of the present units."""
+        return replace(self, length=self.length * length, pressure=self.pressure * pressure)
+
+    def on(self, grid: Grid) -> Law:
+        """Return the law as it is resolved on another grid."""
+        return replace(self, law=self.resolve(grid))
+
+    def _si(self, gap: Array) -> Array:
+        # Far from the indenter the gap is infinite, for which a formula may have no value.
+        return np.clip(gap, 0.0, self.cutoff()) * self.length
+
+
+def attracted(law: Law, gap: Array, contact: Mask, boundary: Boundary) -> Array:
+    """Return the traction σ(gap) on each cell, −(strength) in contact.
+
+    A law that needs contact acts only on patches of cells within its cutoff that hold a contact.
+    """
+    traction = law.traction(np.where(contact, 0.0, gap))
+    if law.needs_contact:
+        labels, number = labelled(contact | (gap < law.cutoff()), boundary, 4)
+        joined = np.zeros(number + 1, dtype=bool)
+        joined[labels[contact]] = True
+        traction[~joined[labels]] = 0.0
+    return traction

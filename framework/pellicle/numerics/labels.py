@@ -1,0 +1,43 @@
+"""Connected parts of a set of cells."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pellicle.arrays import Mask
+from pellicle.grid import Boundary
+
+Labels = NDArray[np.int64]
+
+
+def labelled(mask: Mask, boundary: Boundary, connectivity: Literal[4, 8]) -> tuple[Labels, int]:
+    """Return the connected part of each cell, counted from 1, and the number of parts.
+
+    Cells outside ``mask`` have the label 0. On a periodic grid parts that meet across the edge of
+    the domain are one.
+    """
+    from scipy import ndimage
+
+    structure = ndimage.generate_binary_structure(2, 1 if connectivity == 4 else 2)
+    labels, count = ndimage.label(mask, structure)
+    return _joined(labels, count, connectivity) if boundary == "periodic" else (labels, count)
+
+
+def _joined(labels: Labels, count: int, connectivity: Literal[4, 8]) -> tuple[Labels, int]:
+    """Return labels in which patches that meet across the edges of the domain are one."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    shifts = (0,) if connectivity == 4 else (-1, 0, 1)
+    edges: list[Any] = []
+    for lines in (labels, labels.T):
+        edges += [np.stack([lines[0], np.roll(lines[-1], shift)]) for shift in shifts]
+    pairs = np.concatenate(edges, axis=1)
+    pairs = pairs[:, (pairs > 0).all(axis=0)]
+    graph = coo_array((np.ones(pairs.shape[1], dtype=bool), tuple(pairs)), (count + 1, count + 1))
+    # Label 0 is the first node and isolated, so it stays 0.
+    joined, merged = connected_components(graph, directed=False)
+    return merged.astype(np.int64)[labels], int(joined) - 1

@@ -1,0 +1,1 @@
+"""Interactions: the traction that acts across the gap."""

@@ -1,0 +1,49 @@
+"""An attraction that decays exponentially with the gap."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.arrays import Array
+from pellicle.components import Interaction
+from pellicle.units import Length, WorkOfAdhesion
+
+# Energy at the cutoff over that at contact.
+_CUTOFF = 1e-6
+
+
+class Exponential(Interaction):
+    """Energy −w e^(−g/range), smooth for every gap; the strength is w over the range."""
+
+    type: Literal["exponential"] = "exponential"
+    work_of_adhesion: Annotated[
+        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m**2]")
+    ]
+    range: Annotated[Length, Field(description="decay length of the energy [m]")]
+
+    def energy(self, gap: Array) -> Array:
+        """Return γ(g) = −w e^(−g/range) [J/m²]."""
+        return -self.work_of_adhesion * np.exp(-gap / self.range)
+
+    def traction(self, gap: Array) -> Array:
+        """Return σ(g) = −(w/range) e^(−g/range) [Pa]."""
+        return self.energy(gap) / self.range
+
+    def slope(self, gap: Array) -> Array:
+        """Return dσ/dg = (w/range²) e^(−g/range) [Pa/m]."""
+        return -self.energy(gap) / self.range**2
+
+    def cutoff(self) -> float:
+        """Return the gap [m] at which the energy is 10⁻⁶ w."""
+        return -float(np.log(_CUTOFF)) * self.range
+
+
+@hookimpl
+def register_interactions(register: Callable[[type[Interaction]], None]) -> None:
+    """Register the interaction."""
+    register(Exponential)

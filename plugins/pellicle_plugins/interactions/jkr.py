@@ -1,0 +1,70 @@
+"""Adhesion of no range."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from pellicle import hookimpl
+from pellicle.arrays import Array
+from pellicle.components import Interaction, Kernel
+from pellicle.grid import Grid
+from pellicle.numerics.gap_law import GapLaw
+from pellicle.units import WorkOfAdhesion
+
+from .linear import Linear
+from .zone import softening_strength
+
+# Width of the zone in cells. Below 1.5 cells it is pinned by the lattice.
+_CELLS = 2.5
+
+
+class JKR(Interaction):
+    """Adhesion in the limit of no range (Johnson, Kendall & Roberts 1971), on any kernel.
+
+    The grid gives the range: the traction softens linearly over two to three cells around the
+    contact, and the error of force and depth falls with their size. It attracts only cells that
+    are joined to a contact, and a new contact begins where the gap closes, because the range of
+    the grid would attract too soon. The wall pressure depends on the grid.
+    """
+
+    needs_contact: ClassVar[bool] = True
+    least_cells: ClassVar[float] = 1.5
+
+    type: Literal["jkr"] = "jkr"
+    work_of_adhesion: Annotated[
+        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m**2]")
+    ]
+
+    def energy(self, gap: Array) -> Array:
+        """Return −w [J/m²] at contact and 0 across any gap."""
+        return np.where(gap > 0, 0.0, -self.work_of_adhesion)
+
+    def traction(self, gap: Array) -> Array:
+        """Return 0 [Pa]: without a grid there is no range over which a traction acts."""
+        return np.zeros_like(gap)
+
+    def cutoff(self) -> float:
+        """Return 0 [m]."""
+        return 0.0
+
+    def resolved(self, kernel: Kernel, grid: Grid) -> GapLaw:
+        """Return linear softening over about two to three cells on this kernel."""
+        width = _CELLS * max(grid.spacing)
+        strength = softening_strength(self.work_of_adhesion, width, kernel)
+        return Joined(work_of_adhesion=self.work_of_adhesion, strength=strength)
+
+
+class Joined(Linear):
+    """Linear softening that acts only on cells joined to a contact."""
+
+    needs_contact: ClassVar[bool] = True
+
+
+@hookimpl
+def register_interactions(register: Callable[[type[Interaction]], None]) -> None:
+    """Register the interaction."""
+    register(JKR)

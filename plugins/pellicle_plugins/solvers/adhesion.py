@@ -1,0 +1,411 @@
+"""Contact with a traction across the gap, followed along a path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+import scipy.fft
+
+from pellicle.analysis import perimeter
+from pellicle.arrays import Array, Mask
+from pellicle.errors import ConfigError
+from pellicle.numerics.gap_law import attracted
+from pellicle.numerics.grid_transfer import prolong
+from pellicle.numerics.initial_guess import first_guess
+from pellicle.numerics.problem import Problem
+from pellicle.numerics.solution import Progress, State, Stop
+
+from .contact_cg import inner_solve
+from .preconditioner import OnContact, Preconditioner, edges
+from .scaling import ScaledSolver
+
+# The gap on the contact is closed to this share of the error of the tractions.
+_CONTACT_SHARE: Final = 0.05
+# Rounds whose tractions are extrapolated.
+_MEMORY: Final = 8
+# A front moves by at most this many cells in a round; beyond, the linear estimate says nothing.
+_MOST_CELLS: Final = 2.0
+# Energy by which a front of unit length resists a wave of unit wavenumber, over the work of
+# adhesion: 1 on a half-space (Rice 1985), 2 on a membrane.
+_FRONT_STIFFNESS: Final = 1.25
+# Longest wave of a front, as a multiple of the mean extent of the contact, area over perimeter.
+_LONGEST: Final = 0.5
+# Bounds of the factor on the shift of the fronts, and its growth in a round.
+_LEAST_GAIN: Final = 1 / 16
+_GREATEST_GAIN: Final = 4.0
+_FASTER: Final = 1.5
+# Sign-certainty factors of inner solves, and the set changes after which the strict one applies.
+_SIGN_CERTAINTY: Final = 1.0
+_STRICT_SIGN_CERTAINTY: Final = 30.0
+_LOOSE_CHANGES: Final = 6
+# Set changes of one round after which the next round begins.
+_MOST_CHANGES: Final = 40
+_CHANGES: Final = 40
+# Rounds without a smaller residual after which the solve is abandoned.
+_STAGNATION: Final = 60
+_FLOOR: Final = 0.4
+_COARSE_TOLERANCE: Final = 1e-5
+_COARSEST: Final = 48
+
+
+@dataclass(frozen=True)
+class _Round:
+    """The state after the contact is closed under given tractions across the gap."""
+
+    problem: Problem
+    on_contact: OnContact
+    wall: Array
+    """Wall pressure w [Pa]; 0 off the contact."""
+    traction: Array
+    """Traction across the gap, from which the contact was closed [Pa]; −(strength) in contact."""
+    displacement: Array
+    """Displacement [m] under the sum of both."""
+    gap: Array
+    depth: float
+    error: float
+    """max(|gap| in contact, penetration) [m]."""
+    missed: Array
+    """Traction that the law exerts at `gap`, minus `traction` [Pa]."""
+    settled: bool = True
+    """Whether the wall pressure is ≥ 0 and no cell penetrates."""
+    history: tuple[tuple[Array, Array, Array], ...] = ()
+    """Traction, missed traction and wall pressure of earlier rounds on the same contact."""
+    progress: Progress = field(default_factory=Progress)
+    gain: float = 1.0
+    """Factor on the estimated shift of the fronts."""
+
+    @property
+    def contact(self) -> Mask:
+        return self.on_contact.contact
+
+    @property
+    def residual(self) -> float:
+        magnitude = float(np.abs(self.wall + self.traction).sum())
+        missed = float(np.abs(self.missed).sum()) / magnitude if magnitude else 0.0
+        return max(self.error / self.scale, missed, 0.0 if self.settled else 1e-3)
+
+    @property
+    def energy(self) -> float:
+        """Energy over that of closed cells, to as many digits as show that a state still moves."""
+        law = self.problem.law
+        assert law
+        acts = self.traction != 0
+        bound = float(law.energy(self.gap[acts]).sum())
+        elastic = 0.5 * float(((self.wall + self.traction) * self.displacement).sum())
+        load = 0.0
+        if self.problem.prescribed == "force":
+            load = self.depth * self.problem.value / self.problem.grid.cell_area
+        unit = law.work_of_adhesion() * (int(np.count_nonzero(acts)) or 1)
+        return round((elastic + bound - load) / unit, 8)
+
+    @property
+    def scale(self) -> float:
+        heights = self.problem.profile[self.contact]
+        greatest = float(np.abs(self.displacement).max())
+        height_range = float(np.ptp(heights)) if heights.size else 0.0
+        return height_range if height_range > 1e-3 * greatest else greatest or 1.0
+
+
+class Adhesion(ScaledSolver):
+    """Solver of problems with a law, for `ActiveSet`.
+
+    In each round the hard contact under given tractions t across the gap is closed by the inner
+    solves of `ActiveSet`; then t is replaced by what the law exerts at the gap that results. For an
+    attraction that decays with the gap the round is a step of the concave–convex procedure (Yuille
+    & Rangarajan 2003): the energy falls in every round, so the state follows the start down to the
+    next minimum. Two things make it fast:
+
+    1. Shifting the edge of a contact costs little energy, so rounds alone would move it slowly,
+       and the slower the longer the wave along the edge. The shift is estimated from the missed
+       tractions with the stiffness of a crack front, w|κ| for waves κ along it (Rice 1985).
+    2. While the contact stays the same, rounds are linear, and their tractions are extrapolated
+       (Anderson 1965).
+    """
+
+    def begin(self, problem: Problem, start: State | None) -> _Round:
+        """Return the round from the last state; without one, from that of a coarser grid."""
+        assert problem.law
+        preconditioner = Preconditioner(problem.operator)
+        if start is not None and start.pressure.any():
+            traction = start.pressure - start.wall
+            return self._closed(problem, preconditioner.on(start.contact), start.wall, traction)
+        pressure = self._prolonged(problem)
+        if pressure is None:
+            pressure = _first_pressure(problem)
+        contact = (pressure > 0) | _touching(problem)
+        u_minus_f = problem.operator(pressure) - problem.profile
+        depth = problem.depth(u_minus_f[contact] if contact.any() else np.zeros(1))
+        traction = attracted(problem.law, u_minus_f - depth, contact, problem.grid.boundary)
+        wall = np.where(contact, np.maximum(pressure - traction, 0.0), 0.0)
+        return self._closed(problem, preconditioner.on(contact), wall, traction)
+
+    def step(self, problem: Problem, state: _Round) -> _Round:
+        """Return the next round."""
+        if not state.contact.any() and not state.traction.any():
+            return state
+        traction, missed, wall = _extrapolated(state)
+        contact, law = state.contact, problem.law
+        assert law
+        strength = law.strength()
+        following = traction + missed + state.gain * _front_shift(state, missed)
+        following = np.clip(following, -strength, 0.0, where=~contact, out=following)
+        following[contact] = -strength
+        # The contact takes up what the change of the tractions off it lifts.
+        change = np.where(contact, wall, traction - following)
+        wall = state.on_contact.transferred(change)
+        wall[~contact] = 0.0
+        after = self._closed(problem, state.on_contact, wall, following, state)
+        return replace(after, gain=_gain(state, after))
+
+    def residual(self, problem: Problem, state: _Round) -> float:
+        """Return the largest of gap, penetration and missed traction, each relative."""
+        return state.residual
+
+    def pressure(self, state: _Round) -> Array:
+        """Return the traction on the surface [Pa]."""
+        return state.wall + state.traction
+
+    def state(self, state: _Round) -> State:
+        """Return traction, wall pressure and depth."""
+        return State(state.wall + state.traction, np.maximum(state.wall, 0.0), state.depth)
+
+    def terminate(self, problem: Problem, state: _Round) -> Stop | None:
+        """Return why the rounds end above the tolerance."""
+        if problem.prescribed == "force" and not state.contact.any():
+            return Stop.PULLED_OFF
+        return Stop.STALLED if state.progress.stagnant >= _STAGNATION else None
+
+    def _prolonged(self, problem: Problem) -> Array | None:
+        """Return the traction of a coarser grid, if a cell of this grid closes without a law."""
+        grid = problem.grid
+        closed = problem.prescribed == "force" or problem.value > -float(problem.profile.max())
+        if not closed or max(grid.shape) <= _COARSEST:
+            return None
+        try:
+            coarse = problem.coarsened()
+        except ConfigError:
+            return None
+        if not coarse.needs_solving:
+            return None
+        tolerance = max(self.tolerance, _COARSE_TOLERANCE)
+        solver = self.model_copy(update={"tolerance": tolerance})
+        solution = solver.solve(coarse, None, lambda iteration, residual_ratio: None)
+        state = solution.state
+        assert isinstance(state, State)
+        wall = prolong(state.wall, grid.shape) * np.isfinite(problem.profile)
+        return wall if wall.any() else None
+
+    def _closed(
+        self,
+        problem: Problem,
+        on_contact: OnContact,
+        wall: Array,
+        traction: Array,
+        before: _Round | None = None,
+    ) -> _Round:
+        """Return the round in which the contact is closed under ``traction``."""
+        law = problem.law
+        assert law
+        goal = 0.01 * law.cutoff()
+        if before:
+            size = float(np.abs(before.missed).max(where=~before.contact, initial=0.0))
+            goal = min(goal, _CONTACT_SHARE * size * law.cutoff() / law.strength())
+            goal = max(goal, _FLOOR * self.tolerance * before.scale)
+        hard = replace(problem, law=None)
+        contact = on_contact.contact
+        settled = False
+        for change in range(_CHANGES if before else _MOST_CHANGES):
+            transferred = on_contact.transferred(wall)
+            balanced = _with_wall_force(problem, contact, transferred, traction)
+            if balanced is None:
+                return _released(problem, on_contact.preconditioner, before)
+            wall = balanced
+            displacement = problem.operator(wall + traction)
+            if not on_contact.cells.size:
+                gap = displacement - problem.profile - problem.depth(np.zeros(1))
+                misclassified = np.flatnonzero(gap < -goal)
+            else:
+                inner = inner_solve(
+                    hard,
+                    on_contact,
+                    wall,
+                    displacement,
+                    goal,
+                    certainty=_SIGN_CERTAINTY
+                    if change < _LOOSE_CHANGES
+                    else _STRICT_SIGN_CERTAINTY,
+                )
+                wall, displacement = inner.pressure, inner.displacement
+                misclassified = inner.misclassified
+                if not misclassified.size and inner.error > 1.01 * goal:
+                    continue
+            if settled := not misclassified.size:
+                break
+            contact = contact.copy()
+            contact.ravel()[misclassified] ^= True
+            on_contact = on_contact.preconditioner.on(contact)
+        return _finished(problem, on_contact, wall, traction, displacement, before, settled)
+
+
+def _released(problem: Problem, preconditioner: Preconditioner, before: _Round | None) -> _Round:
+    """Return the round without contact and tractions."""
+    nothing = np.zeros(problem.grid.shape)
+    return _finished(problem, preconditioner.on(nothing > 0), nothing, nothing, nothing, before)
+
+
+def _finished(
+    problem: Problem,
+    on_contact: OnContact,
+    wall: Array,
+    traction: Array,
+    displacement: Array,
+    before: _Round | None,
+    settled: bool = True,
+) -> _Round:
+    law, contact = problem.law, on_contact.contact
+    assert law
+    gap = displacement - problem.profile
+    depth = problem.depth(gap[contact] if contact.any() else np.zeros(1))
+    gap -= depth
+    exerted = attracted(law, gap, contact, problem.grid.boundary)
+    error = max(
+        float(np.abs(gap[contact]).max(initial=0.0)),
+        -float(gap.min(initial=0.0, where=~contact)),
+    )
+    state = _Round(
+        problem,
+        on_contact,
+        wall,
+        traction,
+        displacement,
+        gap,
+        depth,
+        error,
+        exerted - traction,
+        settled,
+    )
+    if before is None:
+        return state
+    history: tuple[tuple[Array, Array, Array], ...] = ()
+    # On another contact, earlier rounds obey other equations.
+    if (
+        settled
+        and before.settled
+        and np.array_equal(contact, before.contact)
+        and _is_convex(before, state)
+    ):
+        history = (*before.history, (before.traction, before.missed, before.wall))[-_MEMORY:]
+    return replace(
+        state, history=history, progress=before.progress.after(state.residual, state.energy)
+    )
+
+
+def _is_convex(before: _Round, after: _Round) -> bool:
+    """Whether the energy is convex between two rounds, so that a minimum may be extrapolated.
+
+    Where it is not, the state between two positions of the edge on the lattice is unstable, and an
+    extrapolation would return to it.
+    """
+    step, change = after.traction - before.traction, after.missed - before.missed
+    return float((step * change)[~after.contact].sum()) < 0
+
+
+def _gain(before: _Round, after: _Round) -> float:
+    """Return the factor on the next shift of the fronts, from where this round should have ended.
+
+    The missed tractions along the step fall linearly with its length on a smooth front, to 0 at the
+    length at which the energy is least.
+    """
+    step = after.traction - before.traction
+    one, other = (float((step * part.missed).sum()) for part in (before, after))
+    best = one / (one - other) if other < one and one > 0 else 2.0
+    return float(np.clip(before.gain * np.clip(best, 0.5, _FASTER), _LEAST_GAIN, _GREATEST_GAIN))
+
+
+def _touching(problem: Problem) -> Mask:
+    """Return the cells where the undeformed surface just touches the indenter."""
+    lowest = float(problem.profile.max())
+    touches = problem.prescribed == "force" or problem.value == -lowest
+    cells: Mask = problem.profile == lowest
+    return cells & touches
+
+
+def _first_pressure(problem: Problem) -> Array:
+    """Return a pressure where indenter and undeformed surface overlap at the depth [Pa]."""
+    if problem.prescribed == "force" or problem.value <= -float(problem.profile.max()):
+        return np.zeros(problem.grid.shape)
+    return first_guess(replace(problem, law=None))
+
+
+def _with_wall_force(problem: Problem, contact: Mask, wall: Array, traction: Array) -> Array | None:
+    """Return the wall pressure scaled such that force control has its force; None if it pulls."""
+    if problem.prescribed == "depth":
+        return wall
+    wanted = problem.value / problem.grid.cell_area - float(traction.sum())
+    if not wanted > 0 or not contact.any():
+        return None
+    total = float(wall.sum())
+    return wall * (wanted / total) if total > 0 else contact * (wanted / contact.sum())
+
+
+def _extrapolated(state: _Round) -> tuple[Array, Array, Array]:
+    """Return traction, missed traction and wall pressure of least missed traction.
+
+    They are the combination of the rounds on the same contact, whose coefficients sum to 1
+    (Anderson 1965).
+    """
+    rounds = (*state.history, (state.traction, state.missed, state.wall))
+    latest = rounds[-1]
+    if len(rounds) == 1:
+        return latest
+    cells = np.flatnonzero(np.any([part[1] != 0 for part in rounds], axis=0) & ~state.contact)
+    missed = np.array([part[1].ravel()[cells] for part in rounds])
+    weights, *_ = np.linalg.lstsq(np.diff(missed, axis=0).T, missed[-1], rcond=1e-10)
+    one, two, three = (part.copy() for part in latest)
+    for weight, a, b in zip(weights, rounds, rounds[1:], strict=False):
+        one -= weight * (b[0] - a[0])
+        two -= weight * (b[1] - a[1])
+        three -= weight * (b[2] - a[2])
+    return one, two, three
+
+
+def _front_shift(state: _Round, missed: Array) -> Array:
+    """Return the change of the tractions [Pa] if the fronts move by what is missed.
+
+    A front that moves by v changes the tractions by v times their slope. Missed tractions push it
+    with the force per length ∫ (dg/dn) r dn over the width of the zone, which waves κ along the
+    front resist with w|κ|; on the plane this is the potential of charges in two dimensions.
+    """
+    problem, contact = state.problem, state.contact
+    law = problem.law
+    assert law
+    if not contact.any():
+        return np.zeros(contact.shape)
+    grid = problem.grid
+    dx, dy = edges(grid)
+    gap = np.where(contact, 0.0, state.gap)
+    exerted = attracted(law, gap, contact, grid.boundary)
+    zone = (exerted < 0) & ~contact | (missed != 0) & ~contact
+    gap_slope = np.where(zone, _slope(gap, dx, dy), 0.0)
+    traction_slope = np.where(zone, _slope(exerted, dx, dy), 0.0)
+    length = np.count_nonzero(contact) * grid.cell_area / perimeter(contact, grid)
+    push = gap_slope * missed
+    qx = 2 * np.pi * scipy.fft.fftfreq(grid.shape[0], dx)[:, None]
+    qy = 2 * np.pi * scipy.fft.rfftfreq(grid.shape[1], dy)
+    stiffness = 0.5 * _FRONT_STIFFNESS * law.work_of_adhesion()
+    stiffness = stiffness * (qx**2 + qy**2 + 1 / (_LONGEST * length) ** 2)
+    shift = scipy.fft.irfft2(scipy.fft.rfft2(push) / stiffness, s=grid.shape)
+    limit = _MOST_CELLS * max(dx, dy)
+    limited: Array = np.clip(shift, -limit, limit)
+    return traction_slope * limited
+
+
+def _slope(values: Array, dx: float, dy: float) -> Array:
+    """Return the magnitude of the gradient, from central differences."""
+    slopes: Array = np.zeros(values.shape)
+    for axis, width in ((0, dx), (1, dy)):
+        if values.shape[axis] > 1:
+            slopes += np.square(np.gradient(values, width, axis=axis))
+    return np.asarray(np.sqrt(slopes))
