@@ -18,6 +18,7 @@ from pellicle.units import Quantity, quantity_of
 _HEADINGS = {
     "kernel": "Kernels",
     "indenter": "Indenters",
+    "interaction": "Interactions",
     "solver": "Solvers",
     "correction": "Corrections of the area",
     "output": "Outputs",
