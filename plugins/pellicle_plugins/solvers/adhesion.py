@@ -290,7 +290,12 @@ def _finished(
         return state
     history: tuple[tuple[Array, Array, Array], ...] = ()
     # On another contact, earlier rounds obey other equations.
-    if settled and before.settled and np.array_equal(contact, before.contact) and _is_convex(before, state):
+    if (
+        settled
+        and before.settled
+        and np.array_equal(contact, before.contact)
+        and _is_convex(before, state)
+    ):
         history = (*before.history, (before.traction, before.missed, before.wall))[-_MEMORY:]
     return replace(
         state, history=history, progress=before.progress.after(state.residual, state.energy)
