@@ -18,6 +18,7 @@ from pellicle.units import Quantity, quantity_of
 _HEADINGS = {
     "kernel": "Kernels",
     "indenter": "Indenters",
+    "interaction": "Interactions",
     "solver": "Solvers",
     "correction": "Corrections of the area",
     "output": "Outputs",
@@ -63,6 +64,11 @@ def tables() -> str:
         )
     ]
     return "\n".join(parts)
+
+
+def options_of_fits() -> str:
+    """Return the fields of the configuration of a fit."""
+    return fields(pl.FitConfig)
 
 
 def fields(model: Any) -> str:
@@ -126,7 +132,17 @@ def starter() -> str:
 
 
 PARTS = {
-    part.__name__: part for part in (components, tables, variables, cases, statuses, stops, starter)
+    part.__name__: part
+    for part in (
+        components,
+        tables,
+        options_of_fits,
+        variables,
+        cases,
+        statuses,
+        stops,
+        starter,
+    )
 }
 
 
@@ -184,6 +200,7 @@ def _kind(annotation: Any) -> str:
         str: "text",
         Path: "file",
         Any: "array",
+        pl.HasForceCurve: "force curve",
     }
     return names[annotation]
 

@@ -60,6 +60,13 @@ def test_component_is_documented(registered: Any) -> None:
         assert f"| `{name}` |" in section
 
 
+def test_options_of_fits_are_documented() -> None:
+    """docs/reference.md has a row for each field of the configuration of a fit."""
+    page = _page("reference.md")
+    for name in pl.FitConfig.model_fields:
+        assert f"| `{name}` |" in page
+
+
 @pytest.mark.parametrize("command", COMMANDS)
 def test_command_is_documented(command: str) -> None:
     """Every command has a section in docs/commands.md with an example and all its options."""

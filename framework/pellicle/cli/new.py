@@ -22,8 +22,8 @@ def new(
         typer.Option(
             "--plugin",
             metavar="FAMILY",
-            help="Write the package of a kernel, indenter, solver, correction, output, executor or "
-            "prescription.",
+            help="Write the package of a kernel, indenter, interaction, solver, correction, "
+            "output, executor or prescription.",
         ),
     ] = None,
 ) -> None:

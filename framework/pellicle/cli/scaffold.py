@@ -23,8 +23,8 @@ def write_plugin(family: str, name: str, parent: Path) -> Path:
     Parameters
     ----------
     family
-        One of ``kernel``, ``indenter``, ``solver``, ``correction``, ``output``, ``executor``,
-        ``prescription``.
+        One of ``kernel``, ``indenter``, ``interaction``, ``solver``, ``correction``, ``output``,
+        ``executor``, ``prescription``.
     name
         The component's type, such as ``graded`` or ``graded-solid``.
     parent

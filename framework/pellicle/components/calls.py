@@ -373,7 +373,8 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
         if number is None:
             continue
         number = real_number(prescription, f"{call}.{field}", number)
-        signed = field in ("goal", "guess") or (field == "value" and isinstance(target, Depth))
+        may_pull = isinstance(target, Depth) or setting.law is not None
+        signed = field in ("goal", "guess") or (field == "value" and may_pull)
         if not np.isfinite(number) or (number < 0 and not signed):
             allowed = "finite" if signed else "finite and ≥ 0"
             raise PluginError(f"{name}: {call}.{field} is {number:g}; it has to be {allowed}")

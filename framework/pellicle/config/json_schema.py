@@ -53,7 +53,13 @@ def _filled(schema: Any, choices: dict[str, list[dict[str, Any]]]) -> Any:
     if not isinstance(schema, dict):
         return schema
     filled = {name: _filled(inner, choices) for name, inner in schema.items() if name != _FAMILY}
-    return filled | {"oneOf": choices[schema[_FAMILY]]} if _FAMILY in schema else filled
+    if _FAMILY not in schema:
+        return filled
+    # A list of choices must not be empty, which it is where no plugin of a family could be loaded.
+    choice = choices[schema[_FAMILY]]
+    if not choice:
+        return filled | {"not": {}}
+    return filled | {"oneOf": choice}
 
 
 def _required(model: type[BaseModel]) -> list[str]:

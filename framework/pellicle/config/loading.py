@@ -90,9 +90,36 @@ def model_of(loading: Mapping[str, Any]) -> type[Model]:
     return loading_model(prescribed_in(loading))
 
 
+def refuse_pulls(loading: Mapping[str, Any]) -> None:
+    """Refuse values of ``[loading]`` that only an interaction allows, such as a force below 0.
+
+    Raises
+    ------
+    ConfigError
+        A value is not allowed without an interaction.
+    """
+    data = {key: value for key, value in loading.items() if value is not None}
+    try:
+        loading_model(prescribed_in(data), interaction=False)(**data)
+    except ConfigError as error:
+        try:
+            model_of(data)(**data)
+        except ConfigError:
+            raise error from None
+        raise ConfigError(
+            [
+                Problem(field, f"{reason}; with an [interaction] it may be negative")
+                for field, reason in error.problems
+            ]
+        ) from None
+
+
 @cache
-def loading_model(type_: str) -> type[Model]:
-    """Return the model that validates ``[loading]`` with the prescription ``type_``."""
+def loading_model(type_: str, interaction: bool = True) -> type[Model]:
+    """Return the model that validates ``[loading]`` with the prescription ``type_``.
+
+    Without an interaction values that pull are refused.
+    """
     component = registry().find("prescription", type_)
     assert issubclass(component, Prescription)
     options = {name: Loading.model_fields[name] for name in OPTIONS}
@@ -100,7 +127,7 @@ def loading_model(type_: str) -> type[Model]:
     meaning = (inspect.getdoc(component) or "").partition("\n")[0]
     steps: Any = Annotated[
         tuple[float, ...],
-        LoadSteps(component.quantity(interaction=True)),
+        LoadSteps(component.quantity(interaction)),
         Field(description=meaning),
     ]
     definitions: dict[str, Any] = {type_: (steps, ...)}

@@ -23,14 +23,14 @@ from pydantic import (
 
 from pellicle.components import AreaCorrection, Indenter, Interaction, Kernel, Output, Solver
 from pellicle.components.output import refuse_shared_files
-from pellicle.errors import ConfigError, Problem
+from pellicle.errors import ConfigError
 from pellicle.grid import Grid, grid_of_run
 from pellicle.model.from_file import FromFile
 from pellicle.model.paths import get, replaced, walk
 from pellicle.plugins import registry
 
 from .component_field import FromRegistry
-from .loading import Loading
+from .loading import Loading, refuse_pulls
 
 DEFAULT_SOLVER = "active_set"
 # Increment if an equal configuration gives different numbers, not if the file layout changes.
@@ -71,6 +71,17 @@ class Run(FromFile):
         with grid_of_run(info.data.get("grid")):
             return make(value)
 
+    @field_validator("loading", mode="wrap")
+    @classmethod
+    def _pulls_by_an_interaction(
+        cls, value: object, make: ValidatorFunctionWrapHandler, info: ValidationInfo
+    ) -> Any:
+        if info.data.get("interaction", "not valid") is not None:
+            return make(value)
+        if isinstance(value, (Mapping, Loading)):
+            refuse_pulls(value.model_dump() if isinstance(value, Loading) else value)
+        return make(value)
+
     @model_validator(mode="after")
     def _prescription_has_a_period(self) -> Self:
         if self.loading.prescription.needs_period and self.grid.boundary == "free":
@@ -79,22 +90,6 @@ class Run(FromFile):
                 'or depth, or set grid.boundary = "periodic"',
                 f"loading.{self.loading.prescribed}",
             )
-        return self
-
-    @model_validator(mode="after")
-    def _pulls_by_an_interaction(self) -> Self:
-        if self.interaction is None:
-            quantity = self.loading.prescription.quantity()
-            problems = []
-            for index, value in enumerate(self.loading.values):
-                try:
-                    quantity(value)
-                except ValueError as error:
-                    field = f"loading.{self.loading.prescribed}.{index}"
-                    reason = f"{error}; only an [interaction] holds a surface that is pulled"
-                    problems.append(Problem(field, reason))
-            if problems:
-                raise ConfigError(problems)
         return self
 
     @model_validator(mode="after")

@@ -111,8 +111,8 @@ def fit(
     """
     config = FitConfig.merged(config, **options)
     curves = None
-    if not (position is depth is force is None and config.curves):
-        positions = [values for values in (position, depth) if values is not None]
+    positions = [values for values in (position, depth) if values is not None]
+    if positions or force is not None or not config.curves:
         if len(positions) != 1:
             raise ConfigError("give either position or depth")
         if force is None:

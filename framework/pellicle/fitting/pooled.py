@@ -207,7 +207,7 @@ def _fit_pool(
     threshold = factor * chi_squared_threshold(sum(single.freedom for _, single in singles))
     points = [CONTACT_POINT.of_curve(index) for index in range(len(singles))]
     parameters = [*shared, *(p for p in points if contact_points and p in pool.free)]
-    without = partial(pool.without_in_all, TENSION)
+    without = partial(pool.least_without, TENSION)
     profile = profile_likelihood(pool, start, threshold, parameters, without, report)
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = []

@@ -11,6 +11,7 @@ a test framework; under pytest a plain function is enough::
 from .corrections import check_correction
 from .executors import check_executor
 from .indenters import check_indenter
+from .interactions import check_interaction
 from .kernels import check_kernel
 from .outputs import check_output
 from .prescriptions import check_prescription
@@ -20,6 +21,7 @@ __all__ = [
     "check_correction",
     "check_executor",
     "check_indenter",
+    "check_interaction",
     "check_kernel",
     "check_output",
     "check_prescription",

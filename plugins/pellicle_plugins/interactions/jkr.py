@@ -36,7 +36,7 @@ class JKR(Interaction):
 
     type: Literal["jkr"] = "jkr"
     work_of_adhesion: Annotated[
-        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m²]")
+        WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m**2]")
     ]
 
     def energy(self, gap: Array) -> Array:

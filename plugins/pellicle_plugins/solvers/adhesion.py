@@ -398,7 +398,8 @@ def _front_shift(state: _Round, missed: Array) -> Array:
     stiffness = stiffness * (qx**2 + qy**2 + 1 / (_LONGEST * length) ** 2)
     shift = scipy.fft.irfft2(scipy.fft.rfft2(push) / stiffness, s=grid.shape)
     limit = _MOST_CELLS * max(dx, dy)
-    return traction_slope * np.clip(shift, -limit, limit)
+    limited: Array = np.clip(shift, -limit, limit)
+    return traction_slope * limited
 
 
 def _slope(values: Array, dx: float, dy: float) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,9 +17,11 @@ from pellicle.fitting.curves.readers import read
 from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates
 from pellicle.fitting.parameters import MODULUS as REDUCED_MODULUS
+from pellicle.fitting.report.figures import save_figure
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.framework.fitting import instruments
+from tests.pictures import drawn_width
 
 Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS, SPRING, SENSITIVITY = 5e3, 3e-6, 10e-6, 0.05, 50e-9
@@ -222,6 +225,34 @@ def test_balance_of_cantilever_and_solid() -> None:
         slope = likelihood.jacobian(here)[:, column]
         derivative = (above - below) / (2 * step)
         assert derivative[away] == pytest.approx(slope[away], abs=1e-4 * np.abs(slope).max())
+
+
+@pytest.mark.parametrize("points", [SEEN[0].size, 500])
+def test_fitted_curve_of_a_cantilever_has_no_noise(points: int) -> None:
+    """At the truth it is the true curve, at the measured and at other positions of the base."""
+    likelihood = Likelihood(*SEEN, tension_model(BEAD), 1e-10, tuple(TRUTH), SPRING)
+    position, force = likelihood.resampled(points).fitted(TRUTH)
+    true = MODULUS * BEAD.force_curve(position, LENGTH).force
+    assert force == pytest.approx(true, abs=1e-8 * FORCE.max())
+    assert position[[0, -1]] == pytest.approx(
+        POSITION[[0, -1]], abs=3 * np.abs(NOISE).max() / SPRING
+    )
+    assert likelihood.fitted(TRUTH)[0] == pytest.approx(POSITION, abs=1e-8 * FORCE.max() / SPRING)
+
+
+def test_fits_of_cantilevers_are_drawn(tmp_path: Path) -> None:
+    """Figures of one curve and of a pool know positions that hold the deflection."""
+    options: dict[str, Any] = {
+        "indenter": BEAD,
+        "spring_constant": SPRING,
+        "baseline": "slope",
+        "fix": {"tension": TRUTH[TENSION]},
+    }
+    one = save_figure(pl.fit(*SEEN, **options), tmp_path / "one.png")
+    pool = save_figure(pl.fit_pooled({"a": SEEN, "b": SEEN}, **options), tmp_path / "pool.png")
+    for figure, columns in ((one, (0.0, 1.0)), (pool, (0.0, 0.5))):
+        for rows in ((0.0, 0.68), (0.75, 1.0)):
+            assert drawn_width(figure, columns, rows) > 0.6
 
 
 def test_bad_calibration() -> None:

@@ -114,6 +114,39 @@ def test_what_is_done_is_kept(cli: Cli, tmp_path: Path) -> None:
     assert len(list(Path("out/curves").iterdir())) == 6
 
 
+class Stiffer:
+    """A paraboloid on which forces are a multiple of the true ones."""
+
+    depth_limit = np.inf
+
+    def __init__(self, factor: float) -> None:
+        self.factor = factor
+
+    def force_curve(self, depth: Array, length: float) -> pl.ForceCurve:
+        """Return the multiple."""
+        curve = Paraboloid(radius=RADIUS).force_curve(depth, length)
+        return pl.ForceCurve(*(self.factor * values for values in curve))
+
+
+def test_each_change_is_another_fit(tmp_path: Path) -> None:
+    """Radius, indenter and solid make another fit of the same curve; an executor does not."""
+    common: dict[str, Any] = {"fix": {"tension": 0}, "directory": tmp_path, "progress": False}
+    bead: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS}
+    moduli = set()
+    for options in (
+        bead,
+        bead | {"executor": Keeps()},
+        bead | {"radius": 2 * RADIUS},
+        bead | {"radius": [3 * RADIUS]},
+        bead | {"fix": {"tension": 1e-3}},
+        {"indenter": Stiffer(2.0)},
+        {"indenter": Stiffer(5.0)},
+    ):
+        table = pl.fit_many({"a": curve(1)}, **common | options)
+        moduli.add(table["reduced_modulus"].item())
+    assert len(moduli) == len(list((tmp_path / "curves").iterdir())) == 6
+
+
 class Stops(Executor):
     """Is interrupted after the first task."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import log
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,11 +15,13 @@ from scipy.optimize import minimize
 import pellicle as pl
 from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Parameter
-from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle.fitting.report.figures import save_figure
+from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.flat_punch import FlatPunch
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere
+from tests.pictures import drawn_width
 
 Array = NDArray[np.float64]
 MODULUS_TRUE, RADIUS = 5e3, 10e-6
@@ -254,3 +257,20 @@ def test_curve_of_the_solver_is_recovered(type_: str, points: int, size: int) ->
         assert estimate.high is not None
         assert estimate.low <= truth <= estimate.high
         assert estimate.high / estimate.low < 1.5
+
+
+def test_figures_leave_gaps_where_a_search_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A figure of a fit that ended is drawn, even if beyond its intervals no search does."""
+    curve = synthetic(0.3, points=60)
+    one = fitted(*curve)
+    pool = pl.fit_pooled({"a": curve, "b": curve}, indenter="paraboloid", radius=RADIUS)
+
+    def fails(*_: object) -> None:
+        raise pl.ConvergenceError("no search ends")
+
+    monkeypatch.setattr(ChiSquared, "minimise", fails)
+    for name, fit in (("one", one), ("pool", pool)):
+        figure = save_figure(fit, tmp_path / f"{name}.png")
+        assert drawn_width(figure, (0.0, 0.5)) > 0.6

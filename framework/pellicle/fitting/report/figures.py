@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -11,11 +12,20 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from pellicle.arrays import Array
+from pellicle.errors import ConvergenceError
 from pellicle.fitting.fit import Fit
 from pellicle.fitting.many import ManyFits, Row
-from pellicle.fitting.parameters import MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
+from pellicle.fitting.parameters import (
+    CONTACT_POINT,
+    MODULUS,
+    OFFSET,
+    SLOPE,
+    TENSION,
+    Coordinates,
+    Parameter,
+)
 from pellicle.fitting.pooled import PooledFit
-from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
 from pellicle.fitting.statistics.profile import Estimate
 from pellicle.report.plotting import save_figure as save_drawing
 from pellicle.units import axis_unit
@@ -106,12 +116,13 @@ def curve(fit: Fit, axes: Axes) -> None:
     axes.plot(
         data.position * length, data.force * scale, ".", color="0.6", markersize=3, label="data"
     )
-    fine = replace(data, position=np.linspace(data.position[0], data.position[-1], 500))
+    fine = data.resampled(500)
     for parameters, style, label in (
         (fit.parameters_without_tension, "C1--", "without tension"),
         (fit.parameters, "C0-", "fit"),
     ):
-        axes.plot(fine.position * length, fine.model(parameters) * scale, style, label=label)
+        position, force = fine.fitted(parameters)
+        axes.plot(position * length, force * scale, style, label=label)
     axes.axvline(fit.contact_point.value * length, color="0.3", linewidth=0.8, linestyle=":")
     axes.set_ylabel(f"force [{name}]")
     axes.legend()
@@ -120,13 +131,14 @@ def curve(fit: Fit, axes: Axes) -> None:
 def curves(fit: PooledFit, axes: Axes) -> None:
     """Draw data and model of each curve of a pool, depth and force relative to their maxima."""
     for number, (member, parameters) in enumerate(fit.pool.curves(fit.parameters)):
-        baseline = parameters[OFFSET] + parameters[SLOPE] * (member.position - member.position[0])
-        model = member.model(parameters) - baseline
-        largest = float(np.max(np.abs(model)))
-        data = (member.force - baseline) / largest
-        depth, colour = _relative_depth(member, parameters), f"C{number}"
-        axes.plot(depth, data, ".", color=colour, alpha=0.3, markersize=2)
-        axes.plot(depth, model / largest, color=colour, label=fit.curves[number].name)
+        position, force = member.fitted(parameters)
+        baseline = parameters[OFFSET] + parameters[SLOPE] * member.travel
+        largest = float(np.max(np.abs(force - baseline)))
+        data, model = (member.force - baseline) / largest, (force - baseline) / largest
+        measured = _relative_depth(member, member.position, parameters)
+        axes.plot(measured, data, ".", color=f"C{number}", alpha=0.3, markersize=2)
+        depth = _relative_depth(member, position, parameters)
+        axes.plot(depth, model, color=f"C{number}", label=fit.curves[number].name)
     axes.set_ylabel("force / largest force")
     if len(fit.curves) <= _LEGEND_CURVES:
         axes.legend(fontsize="small")
@@ -141,8 +153,8 @@ def residuals(fit: Fit | PooledFit, axes: Axes) -> None:
     if isinstance(fit, PooledFit):
         label = "depth / largest depth"
         lines = [
-            (f"C{number}", _relative_depth(*part), *part)
-            for number, part in enumerate(fit.pool.curves(fit.parameters))
+            (f"C{number}", _relative_depth(member, member.position, part), member, part)
+            for number, (member, part) in enumerate(fit.pool.curves(fit.parameters))
         ]
     else:
         length, name = axis_unit(fit.likelihood.position, "m")
@@ -160,7 +172,8 @@ def residuals(fit: Fit | PooledFit, axes: Axes) -> None:
 
 def likelihood_map(fit: Fit, axes: Axes) -> None:
     """Draw √Δχ² over reduced modulus and tension, minimised over the other parameters."""
-    moduli, tensions, rise = _likelihood_grid(fit)
+    moduli, tensions, rises = _likelihood_grid(fit)
+    rise = np.ma.masked_invalid(rises)
     scale, name = axis_unit(moduli, "Pa")
     tension_scale, tension_name = axis_unit(tensions, "N/m")
     x, y = moduli * scale, tensions * tension_scale
@@ -199,15 +212,24 @@ def _likelihood_grid(fit: Fit) -> tuple[Array, Array, Array]:
     rise = np.empty_like(tensions)
     for row, modulus in enumerate(moduli):
         start = fit.parameters | {MODULUS: MODULUS.coordinate(modulus)}
-        ridge = fixed.minimise(start).parameters
+        ridge = start
+        with suppress(ConvergenceError):
+            ridge = fixed.minimise(start).parameters
         deviation = fixed.deviations(ridge)[TENSION]
         half = _MAP_HALF_WIDTH * (deviation if np.isfinite(deviation) else ridge[TENSION])
         lowest = max(ridge[TENSION] - half, 0.0)
         tensions[row] = np.linspace(lowest, ridge[TENSION] + half, _TENSIONS)
         for column, tension in enumerate(tensions[row]):
-            start = ridge | {TENSION: tension}
-            rise[row, column] = fixed.minimise(start, (TENSION,)).chi_squared - fit.chi_squared
+            rise[row, column] = _rise(fixed, ridge | {TENSION: tension}, TENSION, fit.chi_squared)
     return np.repeat(moduli[:, None], _TENSIONS, axis=1), tensions, rise
+
+
+def _rise(likelihood: ChiSquared, start: Coordinates, fixed: Parameter, least: float) -> float:
+    """Return Δχ² with a parameter fixed; NaN, which leaves a gap, if the search fails."""
+    try:
+        return likelihood.minimise(start, (fixed,)).chi_squared - least
+    except ConvergenceError:
+        return np.nan
 
 
 def profile(fit: PooledFit, parameter: Parameter, axes: Axes) -> None:
@@ -221,7 +243,7 @@ def profile(fit: PooledFit, parameter: Parameter, axes: Axes) -> None:
     rises = np.empty_like(values)
     for index, value in enumerate(values):
         start = fit.parameters | {parameter: parameter.coordinate(value)}
-        rises[index] = fit.pool.minimise(start, (parameter,)).chi_squared - fit.chi_squared
+        rises[index] = _rise(fit.pool, start, parameter, fit.chi_squared)
     scale, unit = axis_unit(values, estimate.unit)
     axes.plot(values * scale, rises, "C0-")
     axes.axhline(fit.rise, color="0.3", linewidth=0.8, linestyle="--")
@@ -281,7 +303,7 @@ def _estimates(rows: Sequence[Row], figure: FigureBase) -> None:
         lower.set_xlabel("curve")
 
 
-def _relative_depth(member: Likelihood, parameters: Coordinates) -> Array:
-    depth = member.depth(parameters)
-    depth /= depth[-1]
+def _relative_depth(member: Likelihood, position: Array, parameters: Coordinates) -> Array:
+    deepest = member.depth(parameters)[-1]
+    depth: Array = (position - parameters[CONTACT_POINT]) / deepest
     return depth

@@ -14,10 +14,9 @@ from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.models.solid import lengths
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 
-from .baseline_checks import check_baseline
 from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
-from .noise import FailedCheck, Noise, NoiseEstimate, Residuals
+from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
 from .pooled_likelihood import Pool
 from .profile import CONFIDENCE
 

@@ -317,6 +317,21 @@ class Likelihood(ChiSquared):
             [-elastic.by_depth, *columns, np.ones_like(self.travel), self.travel]
         )
 
+    def fitted(self, parameters: Coordinates) -> tuple[Array, Array]:
+        """Return position [m] and force [N] of the model, both without noise.
+
+        A cantilever puts the noise of the measured force into the measured position.
+        """
+        force, _ = self._balanced(parameters)
+        return self.base - force / self.stiffness if self.stiffness else self.position, force
+
+    def resampled(self, points: int) -> Likelihood:
+        """Return the same with forces interpolated at evenly spaced positions of the base."""
+        base = np.linspace(self.base[0], self.base[-1], points)
+        force = np.interp(base, self.base, self.force)
+        position = base - force / self.stiffness if self.stiffness else base
+        return replace(self, position=position, force=force)
+
     def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return (model − force)/noise, of shape (n,), and its Jacobian."""
         force, jacobian = self._balanced(parameters)

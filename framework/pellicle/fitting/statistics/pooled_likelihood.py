@@ -119,7 +119,7 @@ class Pool(ChiSquared):
         tries = [{p: single[n][p] for p in self.shared} for n in informative[:GUESSES]]
         return least(self._minimise(single, shared) for shared in (*tries, self._median(single)))
 
-    def without_in_all(self, parameter: Parameter, best: Minimum) -> Minimum:
+    def least_without(self, parameter: Parameter, best: Minimum) -> Minimum:
         """Return the minimum of χ² with a parameter at its least value, from several starts.
 
         They are ``best`` and the minima of the single curves.
