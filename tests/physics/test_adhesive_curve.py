@@ -10,10 +10,10 @@ import pellicle as pl
 from pellicle.analysis import AdhesiveCurve
 from pellicle.components import Indenter
 from pellicle_plugins.analytic.adhesion import Adhesion
+from pellicle_plugins.analytic.adhesive_path import curve_of
 from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
-from pellicle_plugins.outputs.adhesive_curve import curve_of
 from tests.layered_contact import LayeredContact, layered_contact
 
 PARABOLOID = Paraboloid(radius=1.0)
