@@ -203,12 +203,15 @@ def solution_of(
     if reason:
         raise ConfigError(f"{name} {reason}", "solver.type")
     adheres = problem.law is not None
-    if not problem.needs_solving and not (adheres and start is not None and start.pressure.any()):
+    sticks = adheres and start is not None and (start.wall.any() or start.pressure.any())
+    if not problem.needs_solving and not sticks:
         nothing = np.zeros(problem.grid.shape)
         state: State | Array = nothing
+        stop = Stop.DONE
         if adheres:
             state = State(nothing, nothing, problem.depth(np.zeros(1)))
-        return Solution(state, 0)
+            stop = Stop.DONE if problem.prescribed == "depth" else Stop.PULLED_OFF
+        return Solution(state, 0, stop)
     view = _read_only_problem(problem)
     fields, parts = dict(vars(view)), problem.operator.parts()
     try:

@@ -33,8 +33,8 @@ class Distributions(TableFigure):
     Each is over the cells of its own part and integrates to 1; infinite gaps are left out. The bins
     are written as CSV beside the figure, with the mean of the values in each: mean pressure times
     density times width, summed up and multiplied by the contact area, is the force. With an
-    interaction the pressure is that of the contact and of the zone around it, and the force is over
-    the area of both.
+    interaction the pressure is that of all cells with a traction, and their area takes the place of
+    the contact area.
     """
 
     type: Literal["distributions"] = "distributions"
