@@ -21,6 +21,8 @@ from .solution import Solution, State
 _FLAT = 1e-3
 # Relative rounding error of displacements; smaller heights are not resolved.
 _ROUNDING = 1e-13
+# Traction over the strength of a law up to which a cell does not count as part of the zone.
+_ZONE = 1e-2
 
 
 @dataclass(frozen=True)
@@ -265,8 +267,9 @@ class Equilibrium:
 
     @property
     def zone(self) -> Mask:
-        """The cells off the contact on which a traction acts, bool of the grid's shape."""
-        zone: Mask = (self.pressure != 0) & ~self.contact
+        """The cells off the contact where the traction exceeds 1 % of the strength of the law."""
+        strength = self.problem.law.strength() if self.problem.law else 0.0
+        zone: Mask = (np.abs(self.pressure) > _ZONE * strength) & ~self.contact
         return zone
 
     @property
@@ -275,7 +278,7 @@ class Equilibrium:
         elastic = 0.5 * float((self.pressure * self.displacement).sum())
         bound = 0.0
         if self.problem.law:
-            acts = self.contact | self.zone
+            acts = self.contact | (self.pressure != 0)
             bound = float(self.problem.law.energy(self.gap[acts]).sum())
         return (elastic + bound) * self.problem.grid.cell_area
 

@@ -98,14 +98,19 @@ def step_dataset(
 
 
 def zone_width(equilibrium: Equilibrium) -> float:
-    """Return the mean width [m] of the zone around the contact; NaN without one."""
-    zone, contact = equilibrium.zone, equilibrium.contact
-    grid = equilibrium.problem.grid
-    if not contact.any() or not zone.any():
+    """Return the mean width [m] of the zone around the contact, where it has an outer edge.
+
+    It is the mean distance from the contact of the outermost cells of the zone; NaN if there are
+    none, as between asperities so close that the zone fills the gap between them.
+    """
+    from scipy.ndimage import binary_erosion, distance_transform_edt
+
+    contact, grid = equilibrium.contact, equilibrium.problem.grid
+    reached = contact | equilibrium.zone
+    outermost = reached & ~binary_erosion(reached, border_value=1) & ~contact
+    if not contact.any() or not outermost.any():
         return np.nan
-    # The border of the contact with the zone on half of it: a zone at the edge of a punch.
-    length = perimeter(contact, grid)
-    return float(np.count_nonzero(zone) * grid.cell_area / length) if length else np.nan
+    return float(distance_transform_edt(~contact, sampling=grid.spacing)[outermost].mean())
 
 
 class Steps:

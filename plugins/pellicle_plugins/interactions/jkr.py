@@ -19,7 +19,7 @@ from .linear import Linear
 from .zone import softening_strength
 
 # Width of the zone in cells. Below 1.5 cells it is pinned by the lattice.
-_CELLS = 2.5
+_CELLS = 2.25
 
 
 class JKR(Interaction):

@@ -17,7 +17,7 @@ from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.problem import Depth, Problem
 from pellicle.numerics.solution import Progress, Solution, State, Stop
 
-from .adhesion import Adhesion
+from .adhesion import AdhesionSolver
 from .contact_cg import InnerSolution, inner_solve
 from .preconditioner import OnContact, Preconditioner
 from .relaxation import relaxed
@@ -137,9 +137,9 @@ class ActiveSet(ScaledSolver):
         return ""
 
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
-        """Return the solution of a load step; with a law by `Adhesion`."""
+        """Return the solution of a load step; with a law by `AdhesionSolver`."""
         if problem.law:
-            adhesion = Adhesion(tolerance=self.tolerance, max_iterations=self.max_iterations)
+            adhesion = AdhesionSolver(tolerance=self.tolerance, max_iterations=self.max_iterations)
             return adhesion.solve(problem, start, monitor)
         return super().solve(problem, start, monitor)
 

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 import scipy.fft
+from scipy.ndimage import distance_transform_edt
 
 from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
@@ -26,7 +27,9 @@ _CONTACT_SHARE: Final = 0.05
 # Rounds whose tractions are extrapolated.
 _MEMORY: Final = 8
 # A front moves by at most this many cells in a round; beyond, the linear estimate says nothing.
-_MOST_CELLS: Final = 2.0
+_MOST_CELLS: Final = 3.0
+# Shift in cells above which the zone is continued to both sides.
+_EXTENDED: Final = 0.3
 # Energy by which a front of unit length resists a wave of unit wavenumber, over the work of
 # adhesion: 1 on a half-space (Rice 1985), 2 on a membrane.
 _FRONT_STIFFNESS: Final = 1.25
@@ -34,18 +37,19 @@ _FRONT_STIFFNESS: Final = 1.25
 _LONGEST: Final = 0.5
 # Bounds of the factor on the shift of the fronts, and its growth in a round.
 _LEAST_GAIN: Final = 1 / 16
-_GREATEST_GAIN: Final = 4.0
+_GREATEST_GAIN: Final = 1.5
 _FASTER: Final = 1.5
+_LINEAR_GAIN: Final = 1.0
 # Sign-certainty factors of inner solves, and the set changes after which the strict one applies.
 _SIGN_CERTAINTY: Final = 1.0
 _STRICT_SIGN_CERTAINTY: Final = 30.0
 _LOOSE_CHANGES: Final = 6
 # Set changes of one round after which the next round begins.
-_MOST_CHANGES: Final = 40
+_MOST_CHANGES: Final = 2
 _CHANGES: Final = 40
 # Rounds without a smaller residual after which the solve is abandoned.
 _STAGNATION: Final = 60
-_FLOOR: Final = 0.4
+_FLOOR: Final = 0.05
 _COARSE_TOLERANCE: Final = 1e-5
 _COARSEST: Final = 48
 
@@ -82,8 +86,12 @@ class _Round:
 
     @property
     def residual(self) -> float:
+        if self.problem.prescribed == "force" and not self.contact.any():
+            return 1.0
         magnitude = float(np.abs(self.wall + self.traction).sum())
         missed = float(np.abs(self.missed).sum()) / magnitude if magnitude else 0.0
+        work = float(np.abs(self.wall[self.contact] * self.gap[self.contact]).sum())
+        missed = max(missed, work / magnitude / self.scale if magnitude else 0.0)
         return max(self.error / self.scale, missed, 0.0 if self.settled else 1e-3)
 
     @property
@@ -108,7 +116,7 @@ class _Round:
         return height_range if height_range > 1e-3 * greatest else greatest or 1.0
 
 
-class Adhesion(ScaledSolver):
+class AdhesionSolver(ScaledSolver):
     """Solver of problems with a law, for `ActiveSet`.
 
     In each round the hard contact under given tractions t across the gap is closed by the inner
@@ -128,7 +136,7 @@ class Adhesion(ScaledSolver):
         """Return the round from the last state; without one, from that of a coarser grid."""
         assert problem.law
         preconditioner = Preconditioner(problem.operator)
-        if start is not None and start.pressure.any():
+        if start is not None and (start.wall.any() or start.pressure.any()):
             traction = start.pressure - start.wall
             return self._closed(problem, preconditioner.on(start.contact), start.wall, traction)
         pressure = self._prolonged(problem)
@@ -146,16 +154,10 @@ class Adhesion(ScaledSolver):
         if not state.contact.any() and not state.traction.any():
             return state
         traction, missed, wall = _extrapolated(state)
-        contact, law = state.contact, problem.law
-        assert law
-        strength = law.strength()
-        following = traction + missed + state.gain * _front_shift(state, missed)
-        following = np.clip(following, -strength, 0.0, where=~contact, out=following)
-        following[contact] = -strength
-        # The contact takes up what the change of the tractions off it lifts.
-        change = np.where(contact, wall, traction - following)
-        wall = state.on_contact.transferred(change)
-        wall[~contact] = 0.0
+        following = _with_shifted_fronts(state, traction + missed, missed)
+        # The contact takes up what the change of the tractions lifts.
+        wall = state.on_contact.transferred(wall + traction - following)
+        wall[~state.contact] = 0.0
         after = self._closed(problem, state.on_contact, wall, following, state)
         return replace(after, gain=_gain(state, after))
 
@@ -318,6 +320,8 @@ def _gain(before: _Round, after: _Round) -> float:
     The missed tractions along the step fall linearly with its length on a smooth front, to 0 at the
     length at which the energy is least.
     """
+    if after.history:
+        return _LINEAR_GAIN
     step = after.traction - before.traction
     one, other = (float((step * part.missed).sum()) for part in (before, after))
     best = one / (one - other) if other < one and one > 0 else 2.0
@@ -371,35 +375,49 @@ def _extrapolated(state: _Round) -> tuple[Array, Array, Array]:
     return one, two, three
 
 
-def _front_shift(state: _Round, missed: Array) -> Array:
-    """Return the change of the tractions [Pa] if the fronts move by what is missed.
+def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> Array:
+    """Return tractions [Pa] after the fronts have moved by what is missed.
 
-    A front that moves by v changes the tractions by v times their slope. Missed tractions push it
-    with the force per length ∫ (dg/dn) r dn over the width of the zone, which waves κ along the
-    front resist with w|κ|; on the plane this is the potential of charges in two dimensions.
+    A front that moves by v changes the tractions by v times their slope across it. Missed tractions
+    r push it with the force per length ∫ (dg/dn) r dn over the width of the zone, which waves κ
+    along the front resist with w|κ|; on the plane this is the potential of charges in two
+    dimensions.
     """
     problem, contact = state.problem, state.contact
-    law = problem.law
+    law, grid = problem.law, problem.grid
     assert law
+    strength = law.strength()
     if not contact.any():
-        return np.zeros(contact.shape)
-    grid = problem.grid
+        return np.clip(traction, -strength, 0.0)
     dx, dy = edges(grid)
-    gap = np.where(contact, 0.0, state.gap)
-    exerted = attracted(law, gap, contact, grid.boundary)
-    zone = (exerted < 0) & ~contact | (missed != 0) & ~contact
+    exerted = attracted(law, state.gap, contact, grid.boundary)
+    zone = ((exerted < 0) | (missed != 0)) & ~contact
+    # The gap is infinite where there is no indenter.
+    gap = np.clip(np.where(contact, 0.0, state.gap), 0.0, 2 * law.cutoff())
     gap_slope = np.where(zone, _slope(gap, dx, dy), 0.0)
-    traction_slope = np.where(zone, _slope(exerted, dx, dy), 0.0)
-    length = np.count_nonzero(contact) * grid.cell_area / perimeter(contact, grid)
-    push = gap_slope * missed
+    slope = np.where(zone, _slope(exerted, dx, dy), 0.0)
+    extent = np.count_nonzero(contact) * grid.cell_area / perimeter(contact, grid)
     qx = 2 * np.pi * scipy.fft.fftfreq(grid.shape[0], dx)[:, None]
     qy = 2 * np.pi * scipy.fft.rfftfreq(grid.shape[1], dy)
     stiffness = 0.5 * _FRONT_STIFFNESS * law.work_of_adhesion()
-    stiffness = stiffness * (qx**2 + qy**2 + 1 / (_LONGEST * length) ** 2)
-    shift = scipy.fft.irfft2(scipy.fft.rfft2(push) / stiffness, s=grid.shape)
+    stiffness = stiffness * (qx**2 + qy**2 + 1 / (_LONGEST * extent) ** 2)
+    push = scipy.fft.rfft2(gap_slope * missed)
+    shift = state.gain * scipy.fft.irfft2(push / stiffness, s=grid.shape)
     limit = _MOST_CELLS * max(dx, dy)
-    limited: Array = np.clip(shift, -limit, limit)
-    return traction_slope * limited
+    np.clip(shift, -limit, limit, out=shift)
+    following = traction + slope * shift
+    greatest = float(np.abs(shift).max(where=zone, initial=0.0))
+    if greatest > _EXTENDED * max(dx, dy):
+        # The slope of the zone is continued into the contact and beyond the zone.
+        for inside, side in ((contact, -1.0), (~(contact | zone), 1.0)):
+            distance, (i, j) = distance_transform_edt(
+                inside, sampling=grid.spacing, return_indices=True
+            )
+            ring = inside & (distance <= greatest)
+            i, j = i[ring], j[ring]
+            moved = shift[i, j] + side * distance[ring]
+            following[ring] = traction[i, j] + slope[i, j] * moved
+    return np.asarray(np.clip(following, -strength, 0.0))
 
 
 def _slope(values: Array, dx: float, dy: float) -> Array:
