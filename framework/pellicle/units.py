@@ -35,6 +35,7 @@ _EXAMPLES = {
     "N": "2 uN",
     "m**2": "0.01 mm**2",
     "rad": "70 degree",
+    "s": "1 s",
 }
 _NUMBER_AND_UNIT = re.compile(
     r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)", re.DOTALL | re.IGNORECASE
@@ -350,5 +351,7 @@ FoundationStiffness = Annotated[float, Quantity("Pa/m", above=0)]
 """A stiffness per area > 0 [Pa/m]."""
 Force = Annotated[float, Quantity("N", at_least=0)]
 """A force ≥ 0 [N]."""
+Time = Annotated[float, Quantity("s", above=0)]
+"""A time > 0 [s]."""
 PoissonsRatio = Annotated[float, Quantity("1", above=-1, at_most=0.5)]
 """Poisson's ratio, above −1 and at most ½."""

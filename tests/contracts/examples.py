@@ -35,6 +35,13 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
             ],
             "substrate": {"youngs_modulus": "100 kPa", "poissons_ratio": 0.4},
         },
+        "viscoelastic": {
+            "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
+            "relaxation": [
+                {"fraction": 0.5, "time": "1 s"},
+                {"fraction": 0.3, "time": "1 min"},
+            ],
+        },
         "winkler": {"foundation": "100 Pa/um"},
         "coated": {
             "tension": "0.2 N/m",

@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 from pellicle.cli import app
 from pellicle.config.study import Study, from_toml
+from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.outputs.compliance import of_cells_along_x
@@ -213,3 +214,23 @@ def test_layers_a_stiff_film_counts_at_small_depths(tmp_path: Path) -> None:
     assert (soft > 40 / 3).all()
     assert stiff[1] < stiff[0] < stiff[2]
     assert (stiff > 1.5 * soft).all()
+
+
+def test_pull_off_goes_from_elastic_to_liquid(tmp_path: Path) -> None:
+    """The bead pulls off at the force of the closed theory to 2 %, with and without tension."""
+    vary = 'study.vary={"kernel.tension"=[0.0,0.02]}'
+    run("pull_off.toml", tmp_path, "grid.points=96", vary)
+    rows = drawn(tmp_path / "study-adhesive_curve-summary.csv")
+    for row, tension in zip(rows, (0.0, 0.02), strict=True):
+        theory = Adhesion(Paraboloid(radius=0.2e-3), 1e3, tension, 0.5e-3)
+        force = float(row["pull_off_force [N]"])
+        assert force == pytest.approx(float(theory.instability().force), rel=0.02)
+
+
+def test_a_thin_layer_is_harder_to_pull_off(tmp_path: Path) -> None:
+    """The force grows as the layer gets thinner, towards that of separate springs, 2πwR."""
+    vary = 'study.vary={"kernel.substrate.thickness"=[10e-6,500e-6]}'
+    run("sticky_layer.toml", tmp_path, "grid.points=96", vary)
+    thin, thick = column(drawn(tmp_path / "study-adhesive_curve-summary.csv"), "pull_off_force [N]")
+    assert thin / thick > 1.1
+    assert -2 < thin / (np.pi * 0.5e-3 * 0.2e-3) < thick / (np.pi * 0.5e-3 * 0.2e-3) < -1

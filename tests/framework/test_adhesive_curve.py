@@ -41,6 +41,21 @@ def test_on_a_half_space_it_is_the_theory_of_johnson_kendall_and_roberts() -> No
     assert jkr.depth == pytest.approx(a**2 / R - np.sqrt(2 * pi * a * W / E), rel=1e-8, abs=1e-10)
 
 
+def test_on_separate_springs_it_pulls_off_at_the_force_of_a_rigid_sphere() -> None:
+    """On p = Cu a paraboloid pulls off at −2πwR, at a depth of 0."""
+    foundation = 7.0
+    a = np.geomspace(0.2, 3, 12) * (8 * W / foundation) ** 0.25 * sqrt(R)
+    springs = curve(
+        depth=a**2 / (2 * R),
+        force=pi * foundation * a**4 / (4 * R),
+        contact_radius=a,
+        stiffness=pi * foundation * a**2,
+    )
+    pull_off = springs.instability()
+    assert pull_off.force == pytest.approx(-2 * pi * W * R, rel=1e-5)
+    assert pull_off.depth == pytest.approx(0, abs=1e-3 * sqrt(2 * W / foundation))
+
+
 def test_points_of_the_curve_are_those_of_johnson_kendall_and_roberts() -> None:
     """Pull-off is −1.5 πwR; no load and the lowest depth are at their radii."""
     jkr = curve()

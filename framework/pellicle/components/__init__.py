@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from pellicle.errors import PluginError
 from pellicle.numerics.problem import Depth as Depth
 from pellicle.numerics.problem import Force as Force
+from pellicle.numerics.relaxation import Branch as Branch
 
 from .base import Component as Component
 from .correction import AreaCorrection as AreaCorrection
@@ -30,6 +31,7 @@ from .indenter import HasForceCurve as HasForceCurve
 from .indenter import Indenter as Indenter
 from .indenter import IsShallowLimit as IsShallowLimit
 from .interaction import Interaction as Interaction
+from .kernel import HasRelaxation as HasRelaxation
 from .kernel import Kernel as Kernel
 from .output import Output as Output
 from .output import Runs as Runs

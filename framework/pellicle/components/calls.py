@@ -6,6 +6,7 @@ far below that of the call. `pellicle.operators` calls kernels in the same way.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
@@ -28,13 +29,14 @@ from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import LARGEST, Grid
 from pellicle.numerics.gap_law import GapLaw, Law
 from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
+from pellicle.numerics.relaxation import Branch
 from pellicle.numerics.solution import Solution, State, Stop
 
 from .correction import AreaCorrection
 from .executor import AnyTask, Executor, Outcome, Report, Say
 from .indenter import Footprint, ForceCurve, HasForceCurve, Indenter
 from .interaction import Interaction
-from .kernel import Kernel
+from .kernel import HasRelaxation, Kernel
 from .output import Output, Runs, stem_of
 from .prescription import Prescription, Search, Setting
 from .solver import Monitor, Solver
@@ -122,6 +124,32 @@ def _hidden_height(profile: Array, footprint: Footprint) -> float:
         return np.inf
     lowest_around = np.min([profile[i + a, j + b] for a in range(3) for b in range(3)], axis=0)
     return top - float(lowest_around.max())
+
+
+def branches_of(kernel: Kernel) -> tuple[Branch, ...]:
+    """Return the branches of a kernel that relaxes; none of one that is elastic.
+
+    Raises
+    ------
+    PluginError
+        The branches are not pairs of a positive share and a positive finite time, or their shares
+        sum to more than 1.
+    """
+    if not isinstance(kernel, HasRelaxation):
+        return ()
+    with errors_attributed_to(kernel):
+        value = tuple(Branch(*branch) for branch in kernel.branches())
+    branches = tuple(
+        Branch(*(real_number(kernel, f"branches() {name}", v) for name, v in b._asdict().items()))
+        for b in value
+    )
+    total = math.fsum(branch.share for branch in branches)
+    if not all(b.share > 0 and 0 < b.time < math.inf for b in branches) or total > 1 + _ROUNDING:
+        raise PluginError(
+            f"{component_name(kernel)}: branches() returned {shown(branches)}; shares and times "
+            "have to be positive and finite, and the shares sum to at most 1"
+        )
+    return branches
 
 
 def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> ForceCurve:
@@ -218,7 +246,12 @@ def solution_of(
         wall = real_array(solver, "solve().state.wall", value.state.wall, problem.grid.shape)
         depth = real_number(solver, "solve().state.depth", value.state.depth)
         state = State(pressure, wall.copy(), depth)
-    return Solution(state, int(value.iterations), value.stop, bool(value.jumped))
+    jumped = bool(value.jumped) or (adheres and _in_contact(state) != _in_contact(start))
+    return Solution(state, int(value.iterations), value.stop, jumped)
+
+
+def _in_contact(state: State | Array | None) -> bool:
+    return isinstance(state, State) and bool(state.contact.any())
 
 
 def check_solver(solver: Solver, problem: Problem) -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import ClassVar
+from typing import ClassVar, Protocol, runtime_checkable
 
 from pellicle.arrays import Array
+from pellicle.numerics.relaxation import Branch
 
 from .base import Component
 
@@ -24,3 +25,35 @@ class Kernel(Component):
     @abstractmethod
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa], of the shape of ``q`` > 0 [rad/m]."""
+
+
+@runtime_checkable
+class HasRelaxation(Protocol):
+    """A kernel whose solid relaxes in time; its ``compliance(q)`` is the instantaneous response.
+
+    A skin on the solid does not relax: at a time t after a jump the stiffness is
+    1/G(q) − Σ gⱼ (1 − e^(−t/τⱼ))/G₀(q), with G₀ the compliance of `without_skin`, and shares gⱼ and
+    times τⱼ of `branches`.
+    """
+
+    def compliance(self, q: Array) -> Array:
+        """Return G(q) [m/Pa] of the instantaneous response."""
+        ...
+
+    def branches(self) -> tuple[Branch, ...]:
+        """Return the branches of the solid; none if it is elastic.
+
+        Their shares sum to at most 1. If they sum to 1, the solid is a liquid.
+        """
+        ...
+
+    def scaled(self, share: float) -> Kernel:
+        """Return the elastic kernel of a solid ``share`` > 0 times as stiff under the same skin.
+
+        Its compliance is 1/(1/G + (share − 1)/G₀).
+        """
+        ...
+
+    def without_skin(self) -> Kernel:
+        """Return the kernel of the solid alone: this kernel itself if it has no skin."""
+        ...

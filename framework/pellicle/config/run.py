@@ -22,6 +22,7 @@ from pydantic import (
 )
 
 from pellicle.components import AreaCorrection, Indenter, Interaction, Kernel, Output, Solver
+from pellicle.components.calls import branches_of
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid, grid_of_run
@@ -89,6 +90,26 @@ class Run(FromFile):
                 'is not defined on an infinite surface (grid.boundary = "free"); prescribe force '
                 'or depth, or set grid.boundary = "periodic"',
                 f"loading.{self.loading.prescribed}",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _kernel_is_elastic(self) -> Self:
+        if branches_of(self.kernel):
+            raise ConfigError(
+                f"{self.kernel.type_name!r} relaxes in time, and load steps have no times; use an "
+                "elastic kernel, such as the solid alone for its instantaneous response",
+                "kernel",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _stiffness_of_hard_contact(self) -> Self:
+        if self.interaction is not None and self.loading.stiffness:
+            raise ConfigError(
+                "the contact stiffness is known only without an interaction; leave it out, and "
+                "take dF/dδ from neighbouring steps in depth",
+                "loading.stiffness",
             )
         return self
 

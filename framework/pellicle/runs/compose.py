@@ -5,7 +5,6 @@ from __future__ import annotations
 from pellicle.checks import errors_attributed_to
 from pellicle.components import Force, Prescription, Search, Setting
 from pellicle.components.calls import check_solver, check_value, law_of, profile_of, target_of
-from pellicle.components.prescription import in_unit
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
 from pellicle.numerics.grid_checks import warn_of_cells, warn_of_period
@@ -35,24 +34,16 @@ def compose(run: Run) -> Setting:
         field = f"loading.{run.loading.prescribed}.{index}"
         check_value(run.loading.prescription, setting, value, field)
         if law:
-            _check_pull(run.loading.prescription, setting, value, field, first=index == 0)
+            _check_search(run.loading.prescription, setting, value, field)
     return setting
 
 
-def _check_pull(
-    prescription: Prescription, setting: Setting, value: float, field: str, first: bool
-) -> None:
-    """Refuse what has no solution where a contact sticks."""
+def _check_search(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
+    """Refuse a search by force, which cannot follow a contact that sticks."""
     target = target_of(prescription, setting, value)
     if isinstance(target, Search) and target.control is Force:
         raise ConfigError(
             "is searched by force, along which a contact that sticks jumps; prescribe depth or "
             "base_displacement where there is an interaction",
-            field,
-        )
-    if first and isinstance(target, Force) and target.value < 0:
-        raise ConfigError(
-            f"{in_unit(value, prescription.unit)} pulls an indenter that has not touched yet; "
-            "begin with a value ≥ 0",
             field,
         )

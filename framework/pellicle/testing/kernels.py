@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.components import Kernel
+from pellicle.components import HasRelaxation, Kernel
+from pellicle.components.calls import branches_of
 from pellicle.grid import Grid
 from pellicle.numerics.operators import HasClosedForm, displacement, mean_compliance
 
@@ -26,7 +28,8 @@ def check_kernel(kernel: Kernel) -> None:
     Besides the rules of all components: ``compliance`` is vectorised, pure, positive and finite for
     10⁻³ to 10¹² rad/m, and does not grow towards ever shorter waves; a closed form, if the kernel
     has one, agrees with it; so do the operators of both boundaries; a small indentation converges
-    on both.
+    on both. A kernel with ``branches`` has valid ones, and its ``scaled`` kernels are those of a
+    stiffer or softer solid under the same skin; the indentation is then that of ``scaled(1)``.
 
     Raises
     ------
@@ -120,6 +123,9 @@ def free_run_converges(kernel: Kernel) -> None:
 
 
 def _indent(kernel: Kernel, boundary: str) -> None:
+    # A run of a kernel that relaxes would need times.
+    if isinstance(kernel, HasRelaxation):
+        kernel = kernel.scaled(1.0)
     solved(
         {
             "grid": {"points": 24, "size": "1 mm", "boundary": boundary},
@@ -227,11 +233,74 @@ def _integral(function: Callable[[Array], float]) -> float:
     return float(quad(integrand, 0, 9, epsabs=0, epsrel=1e-11, limit=200, full_output=1)[0])
 
 
+def branches_have_shares_and_times(kernel: Kernel) -> None:
+    """branches() returns pairs of a share > 0 and a time > 0, whose shares sum to at most 1."""
+    branches_of(kernel)
+
+
+def scaled_by_one_is_the_kernel(kernel: Kernel) -> None:
+    """scaled(1) is elastic, with the compliance and the mean compliance of the kernel."""
+    if not isinstance(kernel, HasRelaxation):
+        return
+    elastic = kernel.scaled(1.0)
+    require(not branches_of(elastic), f"scaled(1) has the branches {branches_of(elastic)}")
+    require_close(
+        elastic.compliance(_wavenumbers()),
+        kernel.compliance(_wavenumbers()),
+        "the compliance [m/Pa] of scaled(1)",
+        relative=1e-12,
+    )
+    require(
+        math.isclose(mean_compliance(elastic), mean_compliance(kernel), rel_tol=1e-12),
+        f"mean_compliance() of scaled(1) is {mean_compliance(elastic):g} m/Pa; expected "
+        f"{mean_compliance(kernel):g}",
+    )
+
+
+def scaled_stiffens_the_solid_alone(kernel: Kernel) -> None:
+    """The stiffness of scaled(share) is 1/G + (share − 1)/G₀, with G₀ of without_skin()."""
+    if not isinstance(kernel, HasRelaxation):
+        return
+    q = _wavenumbers()
+    whole, solid = 1 / kernel.compliance(q), 1 / kernel.without_skin().compliance(q)
+    for share in (0.01, 0.5, 3.0):
+        require_close(
+            1 / kernel.scaled(share).compliance(q),
+            whole + (share - 1) * solid,
+            f"the stiffness [Pa/m] of scaled({share:g})",
+            # The two terms cancel for small shares.
+            relative=1e-11,
+        )
+
+
+def without_skin_has_no_skin(kernel: Kernel) -> None:
+    """The solid without its skin relaxes as the kernel does, and has no skin to take off."""
+    if not isinstance(kernel, HasRelaxation):
+        return
+    solid = kernel.without_skin()
+    if not isinstance(solid, HasRelaxation):
+        require(not branches_of(kernel), "without_skin() does not relax")
+        return
+    require(
+        branches_of(solid) == branches_of(kernel), "without_skin() relaxes as another kernel does"
+    )
+    require_close(
+        solid.without_skin().compliance(_wavenumbers()),
+        solid.compliance(_wavenumbers()),
+        "the compliance [m/Pa] of without_skin().without_skin()",
+        relative=1e-12,
+    )
+
+
 RULES: list[Rule] = [
     compliance_is_vectorised,
     compliance_leaves_its_argument,
     compliance_is_positive_and_finite,
     compliance_does_not_grow_for_short_waves,
+    branches_have_shares_and_times,
+    scaled_by_one_is_the_kernel,
+    scaled_stiffens_the_solid_alone,
+    without_skin_has_no_skin,
     periodic_operator_is_the_compliance,
     periodic_run_converges,
     uniform_pressure_sinks_by_the_mean_compliance,

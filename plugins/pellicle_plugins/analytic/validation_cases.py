@@ -21,11 +21,12 @@ _MODULUS = 10e3
 _RADIUS = 1e-3
 _DEPTH = 50e-6
 _TENSION = 1.0
+_WORK = 50e-3
 
 
 def closed_forms() -> Iterator[Case]:
     """Yield every case; cases that share a run follow each other."""
-    for make in (_hertz, _ellipse, _cone, _flat_punch, _tensed_paraboloid, _sine):
+    for make in (_hertz, _ellipse, _cone, _flat_punch, _tensed_paraboloid, _adhesion, _sine):
         yield from make()
 
 
@@ -84,6 +85,49 @@ def _tensed_paraboloid() -> Iterator[Case]:
     yield case("corrected area", pi * true.contact_radius**2, "m²", 5e-3, _area)
     centre = float(true.pressure(np.array(0.0)))
     yield case("highest pressure", centre, "Pa", 5e-3, _highest_pressure)
+
+
+def _adhesion() -> Iterator[Case]:
+    from pellicle_plugins.indenters.paraboloid import Paraboloid
+
+    from .adhesion import Adhesion
+    from .axisymmetric import indent
+
+    paraboloid = Paraboloid(radius=_RADIUS)
+    for name, tension, source in (
+        ("adhesive paraboloid", 0.0, "Johnson, Kendall & Roberts 1971"),
+        ("adhesive tensed paraboloid", _TENSION, "integral equation and superposition"),
+    ):
+        theory = Adhesion(paraboloid, _MODULUS, tension, _WORK)
+        pull_off, unloaded = theory.instability(), theory.at_force(0.0)
+        low, high = 0.5 * float(pull_off.contact_radius), 1.1 * float(unloaded.contact_radius)
+        start, stop = (
+            indent(paraboloid, _MODULUS, tension, contact_radius=a).depth for a in (low, high)
+        )
+        configuration = {
+            "grid": {"points": 128, "size": 2.6 * high},
+            "kernel": _kernel(tension),
+            "indenter": {"type": "paraboloid", "radius": _RADIUS},
+            "loading": {"depth": {"start": start, "stop": stop, "num": 10}, "stiffness": True},
+        }
+        yield Case(
+            f"{name}: pull-off",
+            configuration,
+            _pull_off,
+            float(pull_off.force),
+            "N",
+            1e-2,
+            source,
+        )
+        yield Case(
+            f"{name}: contact radius without load",
+            configuration,
+            _unloaded_radius,
+            float(unloaded.contact_radius),
+            "m",
+            1e-2,
+            source,
+        )
 
 
 def _sine() -> Iterator[Case]:
@@ -149,6 +193,18 @@ def _force(result: Result) -> float:
 
 def _area(result: Result) -> float:
     return float(result.dataset["contact_area_yastrebov"][-1])
+
+
+def _pull_off(result: Result) -> float:
+    from .adhesive_path import curve_of
+
+    return float(curve_of(result.dataset, _WORK).instability().force)
+
+
+def _unloaded_radius(result: Result) -> float:
+    from .adhesive_path import curve_of
+
+    return float(curve_of(result.dataset, _WORK).at_zero_load().contact_radius)
 
 
 def _highest_pressure(result: Result) -> float:

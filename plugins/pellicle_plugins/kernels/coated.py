@@ -9,11 +9,12 @@ from pydantic import Field
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Kernel
+from pellicle.components import Branch, HasRelaxation, Kernel
 from pellicle.config.component_field import FromRegistry
 from pellicle.numerics.operators import mean_compliance
 
 from .skin import Skin
+from .stiffened import stiffened
 
 
 class Coated(Skin):
@@ -36,6 +37,20 @@ class Coated(Skin):
     def mean_compliance(self) -> float:
         """Return G(0) of the substrate [m/Pa]: a uniform displacement does not bend the skin."""
         return mean_compliance(self.substrate)
+
+    def branches(self) -> tuple[Branch, ...]:
+        """Return the branches of the substrate: the skin is elastic."""
+        return self.substrate.branches() if isinstance(self.substrate, HasRelaxation) else ()
+
+    def scaled(self, share: float) -> Kernel:
+        """Return the skin on an elastic substrate ``share`` times as stiff."""
+        return self.model_copy(update={"substrate": stiffened(self.substrate, share)})
+
+    def without_skin(self) -> Kernel:
+        """Return the substrate, without any skin of its own."""
+        if isinstance(self.substrate, HasRelaxation):
+            return self.substrate.without_skin()
+        return self.substrate
 
 
 @hookimpl

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from math import inf, pi
+from dataclasses import dataclass, replace
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -12,14 +13,13 @@ import numpy as np
 from pydantic import Field
 
 from pellicle import analysis, hookimpl
-from pellicle.arrays import Mask
 from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError, StorageError
 from pellicle.grid import Grid
 from pellicle.report.plotting import save_figure
 from pellicle.results.result import Result
 from pellicle.units import Quantity, axis_unit
-from pellicle_plugins.corrections.yastrebov import Yastrebov
+from pellicle_plugins.analytic.adhesive_path import curve_of
 
 from .base import TableFigure, set_scales, write_csv
 
@@ -41,9 +41,11 @@ _SUMMARY_HEADS = (
     "fixed_depth_depth [m]",
     "status",
 )
+_CELLS = 12
+"""Contact radius in cells below which force and radius may be off by more than 2 %."""
+_LINE = 70
+"""Letters of a line of text across the figure."""
 _MARKERS = {"pull-off": "o", "no load": "s", "last at fixed depth": "v"}
-_ROUND = 0.02
-"""Relative difference of the semi-axes, or of the area from that of an ellipse, of a circle."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,7 @@ class AdhesiveCurve(TableFigure):
     steps; the curve covers the contact radii of the path. The figure ends at a push as large as the
     strongest pull; the whole curve is written as CSV beside it. ``-summary.csv`` has pull-off, the
     contact without load and the last contact at a fixed depth, with NaN and a status for what the
-    path does not contain.
+    path does not contain, or its cells do not resolve.
     """
 
     type: Literal["adhesive_curve"] = "adhesive_curve"
@@ -125,19 +127,8 @@ class AdhesiveCurve(TableFigure):
             curve = curve_of(path, self.work_of_adhesion)
         except ConfigError as error:
             return _Drawn(name, colour, path, None, str(error))
-        missing = [
-            what
-            for what, contact in _Drawn(name, colour, path, curve, "").points().items()
-            if np.isnan(contact.force)
-        ]
-        status = "computed"
-        if missing:
-            low, high = curve.contact_radius[[0, -1]]
-            status = (
-                f"{', '.join(missing)}: not at a contact radius from {low:.3g} to {high:.3g} m, "
-                "those of the path"
-            )
-        return _Drawn(name, colour, path, curve, status)
+        drawn = _Drawn(name, colour, path, curve, "")
+        return replace(drawn, status=_status(curve, drawn.points(), Result(path).grid))
 
     def _summary(self, drawn: _Drawn) -> dict[str, object]:
         pull_off, zero_load, fixed_depth = drawn.points().values()
@@ -192,34 +183,34 @@ class AdhesiveCurve(TableFigure):
         axes.text(
             0.02,
             0.02,
-            "\n".join(problems),
+            "\n".join(textwrap.fill(problem, _LINE) for problem in problems),
             color="red",
             fontsize="small",
             transform=axes.transAxes,
-            wrap=True,
         )
 
 
-def curve_of(path: xr.Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurve:
-    """Return the adhesive curve of the load steps of a run, for a work of adhesion [J/m²].
-
-    Raises
-    ------
-    ConfigError
-        The contact is not a circle, or `pellicle.analysis.adhesive_curve` refuses the path.
-    """
-    grid = Result(path).grid
-    contacts = [path["contact"][step].values for step in range(path.sizes["step"])]
-    if contacts:
-        _require_circle(max(contacts, key=np.count_nonzero), grid)
-    areas = np.array([Yastrebov().area(contact, grid.spacing) for contact in contacts])
-    return analysis.adhesive_curve(
-        path["depth"].values,
-        path["force"].values,
-        np.sqrt(areas / pi),
-        path["stiffness"].values,
-        work_of_adhesion,
-    )
+def _status(
+    curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], grid: Grid
+) -> str:
+    """Return which points the path does not contain, and which its cells do not resolve."""
+    radii = {what: float(contact.contact_radius) for what, contact in points.items()}
+    cells = {what: radius / max(grid.spacing) for what, radius in radii.items()}
+    missing = [what for what, radius in radii.items() if np.isnan(radius)]
+    coarse = [what for what, count in cells.items() if count < _CELLS]
+    low, high = curve.contact_radius[[0, -1]]
+    problems = []
+    if missing:
+        problems.append(
+            f"{', '.join(missing)}: not at a contact radius from {low:.3g} to {high:.3g} m, those "
+            "of the path"
+        )
+    if coarse:
+        problems.append(
+            f"{', '.join(coarse)}: a contact radius of {min(cells[what] for what in coarse):.1f} "
+            "cells is good to some per cent; use more points"
+        )
+    return "; ".join(problems) or "computed"
 
 
 def _zoom(axes: Axes, curves: list[analysis.AdhesiveCurve], length: float, newton: float) -> None:
@@ -261,25 +252,6 @@ def _refuse(run: xr.Dataset) -> None:
         )
     if "stiffness" not in run:
         raise ConfigError("needs the stiffness of each step; set loading.stiffness = true")
-
-
-def _require_circle(contact: Mask, grid: Grid) -> None:
-    """Refuse a contact that is not a full circle, to a cell or 2 %.
-
-    Raises
-    ------
-    ConfigError
-        The semi-axes differ, or the contact does not fill its ellipse.
-    """
-    shape = analysis.ellipse(contact, grid)
-    major, minor = shape.semi_major_axis, shape.semi_minor_axis
-    allowed = _ROUND + max(grid.spacing) / major
-    filled = np.count_nonzero(contact) * grid.cell_area / (pi * major * minor)
-    if not (major <= minor * (1 + allowed) and abs(filled - 1) <= allowed):
-        raise ConfigError(
-            f"the contact is not a circle: its semi-axes are {major:.3g} and {minor:.3g} m, and it "
-            f"fills {filled:.3g} of that ellipse; an adhesive curve needs an axisymmetric indenter"
-        )
 
 
 @hookimpl

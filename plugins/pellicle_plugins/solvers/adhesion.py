@@ -39,7 +39,7 @@ _LONGEST: Final = 0.5
 _LEAST_GAIN: Final = 1 / 16
 _GREATEST_GAIN: Final = 1.5
 _FASTER: Final = 1.5
-_LINEAR_GAIN: Final = 0.5
+_LINEAR_GAIN: Final = 1.0
 # Sign-certainty factors of inner solves, and the set changes after which the strict one applies.
 _SIGN_CERTAINTY: Final = 1.0
 _STRICT_SIGN_CERTAINTY: Final = 30.0

@@ -144,7 +144,68 @@ class OverwritingRadii(Kernel):
         return values
 
 
+class Relaxing(Kernel):
+    """Half of it relaxes in a second."""
+
+    def branches(self) -> Any:
+        return ((0.5, 1.0),)
+
+    def scaled(self, share: float) -> Any:
+        return HalfSpace(reduced_modulus=share * self.reduced_modulus)
+
+    def without_skin(self) -> Any:
+        return self
+
+
+class Overdrawn(Relaxing):
+    """Relaxes by more than it has."""
+
+    def branches(self) -> Any:
+        return ((0.5, 1.0), (0.6, 2.0))
+
+
+class Timeless(Relaxing):
+    """Relaxes in no time."""
+
+    def branches(self) -> Any:
+        return ((0.5, 0.0),)
+
+
+class Forgetful(Relaxing):
+    """Relaxes when it is scaled, too."""
+
+    def scaled(self, share: float) -> Any:
+        return Relaxing(reduced_modulus=share * self.reduced_modulus)
+
+
+class Softer(Relaxing):
+    """Is 1 % softer when it is scaled by 1."""
+
+    def scaled(self, share: float) -> Any:
+        return super().scaled(0.99 * share)
+
+
+class StretchedSkin(Relaxing):
+    """Scales a skin with the solid."""
+
+    def without_skin(self) -> Any:
+        return Relaxing(reduced_modulus=0.5 * self.reduced_modulus)
+
+
+class Elastic(Relaxing):
+    """Is elastic under its skin."""
+
+    def without_skin(self) -> Any:
+        return HalfSpace(reduced_modulus=self.reduced_modulus)
+
+
 KERNELS = {
+    Overdrawn: "branches_have_shares_and_times",
+    Timeless: "branches_have_shares_and_times",
+    Forgetful: "scaled_by_one_is_the_kernel",
+    Softer: "scaled_by_one_is_the_kernel",
+    StretchedSkin: "scaled_stiffens_the_solid_alone",
+    Elastic: "without_skin_has_no_skin",
     Complex: "compliance_is_vectorised",
     Whole: "compliance_is_vectorised",
     OverwritingRadii: "closed_form_leaves_its_argument",
@@ -179,6 +240,7 @@ def test_mutant_is_caught(mutant: Any, rule: str) -> None:
 def test_what_the_mutants_are_made_of_is_whole() -> None:
     """Without its fault each mutant breaks nothing but that no plugin registers it."""
     check_base("kernel", Kernel(reduced_modulus=1e4))
+    check_base("kernel", Relaxing(reduced_modulus=1e4))
 
 
 def test_each_rule_has_a_mutant(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,131 @@
+"""One step in time of a linear solid that relaxes.
+
+The stiffness of the solid is k₀ (gₑ + Σ gⱼ e^(−t/τⱼ)), with the instantaneous stiffness k₀ and
+shares g of it. A skin adds a stiffness that does not relax. If the displacement is linear in time
+over a step, the problem at its end is exactly that of an elastic solid, γ times as stiff as the
+instantaneous one, whose surface the steps before have displaced. Without a skin the memory of the
+solid consists of displacements, cell by cell; under a skin, of pressures that the solid carries.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from pellicle.arrays import Array
+
+
+class Branch(NamedTuple):
+    """A share of a solid's stiffness that relaxes as e^(−t/τ)."""
+
+    share: float
+    """Share g of the instantaneous stiffness."""
+    time: float
+    """Relaxation time τ [s]."""
+
+
+@dataclass(frozen=True)
+class TimeStep:
+    """What one step in time makes of the branches of a solid, in their order."""
+
+    decays: tuple[float, ...]
+    """e^(−Δ/τ) of each branch, of a step of duration Δ."""
+    weights: tuple[float, ...]
+    """g (τ/Δ)(1 − e^(−Δ/τ)) of each branch; its share g in a jump, where Δ = 0."""
+    stiffness: float
+    """γ: the stiffness of the solid in this step over its instantaneous stiffness."""
+
+    @classmethod
+    def of(cls, branches: Sequence[Branch], duration: float) -> Self:
+        """Return the step of ``duration`` ≥ 0 [s] of a solid with these branches.
+
+        The shares are positive and sum to at most 1, up to rounding. The solid is a liquid if they
+        sum to 1; γ then falls as 1/Δ.
+        """
+        ratios = [duration / branch.time for branch in branches]
+        weights = [b.share * _mean_decay(x) for b, x in zip(branches, ratios, strict=True)]
+        permanent = max(0.0, 1.0 - math.fsum(branch.share for branch in branches))
+        return cls(
+            tuple(math.exp(-x) for x in ratios),
+            tuple(weights),
+            math.fsum([permanent, *weights]),
+        )
+
+
+def _mean_decay(x: float) -> float:
+    """Return (1 − e^(−x))/x, the mean of e^(−t) over 0 < t < x; 1 for x = 0."""
+    return -math.expm1(-x) / x if x else 1.0
+
+
+@dataclass(frozen=True)
+class Memory:
+    """The state of a solid with m branches at the end of a step, in units of its strain.
+
+    The strain is the displacement u [m] of a solid without a skin. Under a skin it is s = k₀ u
+    [Pa], the pressure that the solid would carry if it did not relax.
+    """
+
+    strain: Array
+    """The strain at the end of the step, of the grid's shape."""
+    branches: Array
+    """The part of the strain that each branch still carries, times its share; (m, nx, ny)."""
+
+    @classmethod
+    def at_rest(cls, branches: Sequence[Branch], shape: tuple[int, ...]) -> Self:
+        """Return the memory of a solid that has never been deformed."""
+        return cls(np.zeros(shape), np.zeros((len(branches), *shape)))
+
+    def history(self, step: TimeStep) -> Array:
+        """Return the stress at the end of ``step`` less γ times the strain there, whatever it is.
+
+        It is Σ (e vⱼ − c gⱼ · strain), with the part vⱼ that a branch carries and the decay e and
+        weight c gⱼ of the step.
+        """
+        history = np.zeros_like(self.strain)
+        for part, decay, weight in zip(self.branches, step.decays, step.weights, strict=True):
+            history += decay * part
+            history -= weight * self.strain
+        return history
+
+    def after(self, step: TimeStep, strain: Array) -> Memory:
+        """Return the memory at the end of ``step``, where the strain is ``strain``."""
+        growth = strain - self.strain
+        shape = (-1,) + (1,) * strain.ndim
+        branches = np.reshape(step.decays, shape) * self.branches
+        branches += np.reshape(step.weights, shape) * growth
+        return Memory(strain, branches)
+
+
+def left_behind(memory: Memory, step: TimeStep) -> Array:
+    """Return the displacement [m] at the end of a step without pressure, of a solid without skin.
+
+    The displacement is ``left_behind + A p``, with A the operator of the instantaneous response
+    over γ.
+    """
+    left: Array = memory.history(step) / -step.stiffness
+    return left
+
+
+def left_behind_under_skin(
+    memory: Memory, step: TimeStep, displacement: Callable[[Array], Array]
+) -> Array:
+    """Return the displacement [m] at the end of a step without pressure, of a solid under a skin.
+
+    ``displacement`` is the operator A = 1/(k_skin + γ k₀) of the step [m/Pa], applied once. The
+    displacement is ``left_behind_under_skin + A p``.
+    """
+    return -displacement(memory.history(step))
+
+
+def strain_under_skin(
+    memory: Memory, step: TimeStep, pressure: Array, carried: Callable[[Array], Array]
+) -> Array:
+    """Return the strain s = k₀ u [Pa] at the end of a step, of a solid under a skin.
+
+    ``carried`` is the operator B = k₀/(k_skin + γ k₀), without unit, applied once.
+    """
+    return carried(pressure - memory.history(step))

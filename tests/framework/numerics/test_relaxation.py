@@ -1,0 +1,188 @@
+"""Steps in time of a solid that relaxes, against convolutions and closed forms of one wave."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import numpy as np
+import pytest
+
+from pellicle.arrays import Array
+from pellicle.components import Branch
+from pellicle.numerics.relaxation import (
+    Memory,
+    TimeStep,
+    left_behind,
+    left_behind_under_skin,
+    strain_under_skin,
+)
+
+STIFFNESS, SKIN = 3e7, 1e7  # [Pa/m] of one wave
+SOLID = (Branch(0.4, 1.0), Branch(0.3, 0.05), Branch(0.1, 40.0))
+LIQUID = (Branch(0.7, 1.0), Branch(0.3, 20.0))
+SLS = (Branch(0.8, 2.0),)
+
+Stepper = Callable[[Sequence[Branch], Memory, TimeStep, Array], tuple[Array, Memory]]
+
+
+def press_bare(
+    branches: Sequence[Branch], memory: Memory, step: TimeStep, displacement: Array
+) -> tuple[Array, Memory]:
+    """Return the pressure that makes a displacement, and the memory, without a skin."""
+    left = left_behind(memory, step)
+    pressure = STIFFNESS * step.stiffness * (displacement - left)
+    return pressure, memory.after(step, displacement)
+
+
+def press_skin(
+    branches: Sequence[Branch], memory: Memory, step: TimeStep, displacement: Array
+) -> tuple[Array, Memory]:
+    """Return the pressure that makes a displacement, and the memory, under a skin."""
+    stiffness = SKIN + step.stiffness * STIFFNESS
+    left = left_behind_under_skin(memory, step, lambda p: p / stiffness)
+    pressure = stiffness * (displacement - left)
+    strain = strain_under_skin(memory, step, pressure, lambda p: p * (STIFFNESS / stiffness))
+    np.testing.assert_allclose(strain, STIFFNESS * displacement, rtol=1e-12, atol=1e-15)
+    return pressure, memory.after(step, strain)
+
+
+def path(stepper: Stepper, branches: Sequence[Branch], times: Array, displacement: Array) -> Array:
+    """Return the pressure [Pa] at each time, the first of which is a jump."""
+    memory, before, pressures = Memory.at_rest(branches, (1, 1)), times[0], []
+    for t, u in zip(times, displacement, strict=True):
+        step = TimeStep.of(branches, t - before)
+        pressure, memory = stepper(branches, memory, step, np.full((1, 1), u))
+        pressures.append(pressure.item())
+        before = t
+    return np.array(pressures)
+
+
+def modulus(branches: Sequence[Branch], t: Array) -> Array:
+    """Return E(t) over E(0)."""
+    relaxed = sum((-g * np.expm1(-t / tau) for g, tau in branches), np.zeros_like(t))
+    return np.asarray(1 - relaxed)
+
+
+def convolution(branches: Sequence[Branch], times: Array, displacement: Array) -> Array:
+    """Return ∫ E(t − t′) du of a displacement that is linear between the times."""
+    stress = displacement[0] * modulus(branches, times - times[0])
+    for i in range(len(times) - 1):
+        rise, duration = displacement[i + 1] - displacement[i], times[i + 1] - times[i]
+        until = times[i + 1 :] - times[i + 1]
+        mean = np.full_like(until, 1 - sum(g for g, _ in branches))
+        for g, tau in branches:
+            x = duration / tau
+            mean += g * np.exp(-until / tau) * (-np.expm1(-x) / x if x else 1.0)
+        stress[i + 1 :] += rise * mean
+    return np.asarray(stress)
+
+
+@pytest.mark.parametrize("branches", [SOLID, LIQUID, SLS, ()], ids=["solid", "liquid", "SLS", "0"])
+@pytest.mark.parametrize(("stepper", "skin"), [(press_bare, 0.0), (press_skin, SKIN)])
+def test_path_of_straight_lines_is_exact(
+    branches: tuple[Branch, ...], stepper: Stepper, skin: float
+) -> None:
+    """Steps of 1e-6 to 1e3 s and jumps among them give the convolution to rounding."""
+    rng = np.random.default_rng(4)
+    durations = np.where(rng.random(40) < 0.2, 0.0, 10 ** rng.uniform(-6, 3, 40))
+    times = np.cumsum(durations)
+    displacement = rng.normal(size=40)
+    expected = skin * displacement + STIFFNESS * convolution(branches, times, displacement)
+    pressure = path(stepper, branches, times, displacement)
+    np.testing.assert_allclose(pressure, expected, rtol=0, atol=1e-11 * STIFFNESS)
+
+
+@pytest.mark.parametrize("number", [1, 2, 7, 100])
+def test_relaxation_at_a_displacement_is_exact_at_any_step(number: int) -> None:
+    """After a jump the pressure is k₀ E(t), whatever the steps."""
+    times = np.linspace(0.0, 10.0, number + 1)
+    pressure = path(press_bare, SLS, times, np.ones_like(times))
+    np.testing.assert_allclose(pressure, STIFFNESS * (0.2 + 0.8 * np.exp(-times / 2)), rtol=1e-13)
+
+
+def creep(stepper: Stepper, skin: float, number: int) -> float:
+    """Return the displacement at t = 5 s under 1 Pa from t = 0, by ``number`` equal steps."""
+    memory, displacement = Memory.at_rest(SLS, (1, 1)), np.zeros((1, 1))
+    for duration in [0.0] + [5.0 / number] * number:
+        step = TimeStep.of(SLS, duration)
+        stiffness = skin + step.stiffness * STIFFNESS
+        if skin:
+            left = left_behind_under_skin(memory, step, partial(np.multiply, 1 / stiffness))
+        else:
+            left = left_behind(memory, step)
+        displacement = left + 1 / stiffness
+        _, memory = stepper(SLS, memory, step, displacement)
+    return displacement.item()
+
+
+@pytest.mark.parametrize(("stepper", "skin"), [(press_bare, 0.0), (press_skin, SKIN)])
+def test_creep_converges_at_second_order(stepper: Stepper, skin: float) -> None:
+    """Under a force the displacement is no straight line: halved steps give a quarter of the error.
+
+    A standard linear solid in parallel with a spring is one too: with the stiffness K at once and R
+    relaxed, u = 1/R − (1/R − 1/K) e^(−(R/K)t/τ).
+    """
+    instantaneous, relaxed = skin + STIFFNESS, skin + 0.2 * STIFFNESS
+    decay = math.exp(-relaxed / instantaneous * 5 / 2)
+    exact = 1 / relaxed - (1 / relaxed - 1 / instantaneous) * decay
+    errors = [abs(creep(stepper, skin, n) / exact - 1) for n in (5, 10, 20, 40)]
+    orders = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert errors[0] < 0.02
+    np.testing.assert_allclose(orders, 2.0, atol=0.1)
+
+
+def test_step_in_parts_is_the_same_step() -> None:
+    """A straight line in seven parts leaves the memory of the whole, of every cell its own."""
+    rng = np.random.default_rng(5)
+    start, end = rng.normal(size=(2, 4, 3))
+    first = Memory.at_rest(SOLID, (4, 3)).after(TimeStep.of(SOLID, 0.0), start)
+    whole = first.after(TimeStep.of(SOLID, 0.7), end)
+    parts = first
+    for i in range(1, 8):
+        parts = parts.after(TimeStep.of(SOLID, 0.1), start + (end - start) * i / 7)
+    np.testing.assert_allclose(parts.branches, whole.branches, rtol=0, atol=1e-14)
+    assert whole.branches.shape == (3, 4, 3)
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e6])
+def test_unit_of_time_does_not_matter(scale: float) -> None:
+    """Times in other units give the same step, to rounding."""
+    scaled = [Branch(g, tau * scale) for g, tau in SOLID]
+    step, other = TimeStep.of(SOLID, 0.3), TimeStep.of(scaled, 0.3 * scale)
+    np.testing.assert_allclose(other.decays, step.decays, rtol=1e-14)
+    np.testing.assert_allclose(other.weights, step.weights, rtol=1e-14)
+    assert other.stiffness == pytest.approx(step.stiffness, rel=1e-14)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 5e-324, 1e-300, 1e-12, 1e-8])
+def test_step_far_below_the_times_is_instantaneous(ratio: float) -> None:
+    """As x = Δ/τ → 0, c = 1 − x/2, and 1 in a jump: the response is instantaneous."""
+    step = TimeStep.of((Branch(0.8, 1.0),), ratio)
+    assert step.weights[0] == pytest.approx(0.8 * (1 - ratio / 2), rel=1e-15)
+    assert step.decays[0] == pytest.approx(1 - ratio, rel=1e-15)
+    assert step.stiffness == pytest.approx(1.0, abs=1e-8)
+
+
+@pytest.mark.parametrize("ratio", [1e3, 1e10, 1e300, math.inf])
+def test_step_far_above_the_times_is_relaxed(ratio: float) -> None:
+    """As x = Δ/τ → ∞, c = 1/x: the branches carry nothing that lasts, and nothing overflows."""
+    step = TimeStep.of((Branch(0.8, 1.0),), ratio)
+    assert step.weights[0] == pytest.approx(0.8 / ratio, rel=1e-15)
+    assert step.decays[0] == 0.0
+    assert step.stiffness == pytest.approx(0.2, abs=0.9 / ratio + 1e-15)
+
+
+def test_liquid_resists_a_long_step_by_its_viscosity() -> None:
+    """γ Δ → Σ g τ if the shares sum to 1, in decimals that do not add up exactly, too."""
+    branches = tuple(Branch(0.1, 1.0) for _ in range(10))
+    assert TimeStep.of(branches, 1e9).stiffness == pytest.approx(1e-9, rel=1e-12)
+    assert TimeStep.of(LIQUID, 1e9).stiffness == pytest.approx((0.7 + 6.0) / 1e9, rel=1e-7)
+
+
+def test_small_shares_are_elastic() -> None:
+    """Branches of no share leave nothing behind."""
+    branches = (Branch(1e-12, 1.0),)
+    memory = Memory.at_rest(branches, (1, 1)).after(TimeStep.of(branches, 0.0), np.ones((1, 1)))
+    assert abs(left_behind(memory, TimeStep.of(branches, 1.0)).item()) < 1e-11

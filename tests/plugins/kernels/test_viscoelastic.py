@@ -1,0 +1,237 @@
+"""Solids that relax: their branches, what a skin on them makes of them, and what is refused."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+from pellicle.arrays import Array
+from pellicle.components import Branch
+from pellicle.numerics.relaxation import (
+    Memory,
+    TimeStep,
+    left_behind_under_skin,
+    strain_under_skin,
+)
+from pellicle.operators import HasClosedForm, make_operator, mean_compliance
+from pellicle_plugins.kernels.power_law import power_law_series
+
+HALF_SPACE = {"type": "half_space", "reduced_modulus": "10 kPa"}
+LAYER = {"type": "bonded_layer", "youngs_modulus": 9e3, "poissons_ratio": 0.3, "thickness": 1e-4}
+RELAXATION = [{"fraction": 0.5, "time": "1 s"}, {"fraction": 0.3, "time": "1 min"}]
+Q = np.geomspace(1.0, 1e9, 30)
+
+
+def viscoelastic(**fields: Any) -> Any:
+    """Return a solid that relaxes."""
+    law = {} if "power_law" in fields else {"relaxation": RELAXATION}
+    return pl.kernel("viscoelastic", **{"solid": HALF_SPACE, **law, **fields})
+
+
+def modulus(branches: tuple[Branch, ...], t: Array) -> Array:
+    """Return E(t) over E(0)."""
+    return np.asarray(1 - sum(g * -np.expm1(-t / tau) for g, tau in branches))
+
+
+def test_solid_is_the_instantaneous_response() -> None:
+    """Compliances are those of the solid, the branches those that are given, times in seconds."""
+    for table in (HALF_SPACE, LAYER):
+        kernel = viscoelastic(solid=table)
+        solid = kernel.solid
+        np.testing.assert_array_equal(kernel.compliance(Q), solid.compliance(Q))
+        assert mean_compliance(kernel) == mean_compliance(solid)
+    assert viscoelastic().branches() == (Branch(0.5, 1.0), Branch(0.3, 60.0))
+    assert viscoelastic().without_skin() == viscoelastic()
+
+
+def test_scaled_half_space_keeps_its_closed_form() -> None:
+    """On a free grid a solid γ times as stiff is the half-space of that modulus, to rounding."""
+    scaled = viscoelastic().scaled(0.3)
+    assert isinstance(scaled, HasClosedForm)
+    grid = pl.Grid(points=16, size="1 mm", boundary="free")
+    pressure = np.random.default_rng(0).random(grid.shape)
+    expected = pl.displacement(
+        pressure, kernel=pl.kernel("half_space", reduced_modulus=3e3), grid=grid
+    )
+    np.testing.assert_allclose(
+        pl.displacement(pressure, kernel=scaled, grid=grid), expected, rtol=1e-13
+    )
+
+
+def test_scaled_layer_has_no_closed_form() -> None:
+    """A kernel without a Green's function in closed form does not get one by being scaled."""
+    scaled = viscoelastic(solid=LAYER).scaled(0.3)
+    assert not isinstance(scaled, HasClosedForm)
+    np.testing.assert_allclose(
+        scaled.compliance(Q), pl.kernel("bonded_layer", **_fields(LAYER, 0.3)).compliance(Q), 1e-13
+    )
+
+
+def _fields(table: dict[str, Any], factor: float) -> dict[str, Any]:
+    fields = {name: value for name, value in table.items() if name != "type"}
+    return fields | {"youngs_modulus": factor * table["youngs_modulus"]}
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e6])
+@pytest.mark.parametrize("exponent", [0.1, 0.2, 0.3, 0.5, 0.99])
+def test_power_law_is_the_solid_at_its_time(exponent: float, scale: float) -> None:
+    """Within the span E(t) is that of the solid times (t/t₀)^(−α), to the error that is stated."""
+    law = {"exponent": exponent, "time": scale, "shortest": 1e-4 * scale, "longest": 1e2 * scale}
+    kernel = viscoelastic(power_law=law)
+    t = scale * np.geomspace(1e-4, 1e2, 1999)
+    instantaneous = kernel.solid.compliance(Q[:1]) / kernel.compliance(Q[:1])
+    error = instantaneous * modulus(kernel.branches(), t) / (t / scale) ** -exponent - 1
+    stated = kernel.power_law.series.error
+    assert 0.9 * stated < np.abs(error).max() < 1.01 * stated
+    assert stated < 3e-3
+    np.testing.assert_allclose(kernel.scaled(0.5).compliance(Q), 2 * kernel.compliance(Q), 1e-13)
+
+
+@pytest.mark.parametrize(
+    ("exponent", "bound"), [(0.1, 6e-5), (0.2, 1.5e-4), (0.5, 6e-4), (0.99, 3e-3)]
+)
+def test_error_of_a_power_law_hardly_depends_on_its_span(exponent: float, bound: float) -> None:
+    """Over 1 to 9 decades it is as the docstring states, with two branches per decade."""
+    for decades in (1, 3, 6, 9):
+        series = power_law_series(exponent, 10.0**decades)
+        assert series.error < bound
+        assert len(series.weights) <= 2 * decades + 3
+        assert min(series.weights) > 0
+        assert series.constant >= 0
+
+
+def test_power_law_spans_six_decades_unless_given() -> None:
+    """The span reaches a thousand times each way, and each end may be given alone."""
+    law = viscoelastic(power_law={"exponent": 0.2, "time": "2 s"}).power_law
+    assert law.span == pytest.approx((2e-3, 2e3))
+    law = viscoelastic(power_law={"exponent": 0.2, "time": "2 s", "longest": "1 h"}).power_law
+    assert law.span == pytest.approx((2e-3, 3600.0))
+
+
+def coated(**fields: Any) -> Any:
+    """Return a tensed skin on a solid that relaxes."""
+    return kernel_of("coated", tension="50 mN/m", substrate=viscoelastic(**fields))
+
+
+@pytest.mark.parametrize("table", [HALF_SPACE, LAYER])
+def test_skin_on_a_solid_that_relaxes_is_elastic(table: dict[str, Any]) -> None:
+    """The branches are those of the substrate, and scaling it leaves the tension as it is."""
+    kernel = coated(solid=table)
+    assert kernel.branches() == viscoelastic().branches()
+    assert kernel.without_skin() == kernel.substrate
+    stiffness = 0.05 * Q**2 + 0.3 / kernel.substrate.compliance(Q)
+    np.testing.assert_allclose(1 / kernel.scaled(0.3).compliance(Q), stiffness, rtol=1e-12)
+    twice = kernel_of("coated", tension="20 mN/m", substrate=kernel)
+    assert twice.without_skin() == kernel.substrate
+    np.testing.assert_allclose(
+        1 / twice.scaled(0.3).compliance(Q), stiffness + 0.02 * Q**2, rtol=1e-12
+    )
+
+
+def kernel_of(type_: str, **fields: Any) -> Any:
+    """Return a kernel."""
+    return pl.kernel(type_, **fields)
+
+
+def test_skin_on_an_elastic_solid_has_no_branches() -> None:
+    """An elastic substrate stays one."""
+    assert kernel_of("coated", tension="50 mN/m", substrate=LAYER).branches() == ()
+
+
+class Carried:
+    """The operator from the load less its history to what the solid carries, k₀/k."""
+
+    def __init__(self, kernel: Any, share: float) -> None:
+        self.whole, self.solid = kernel.scaled(share), kernel.without_skin()
+
+    def compliance(self, q: Array) -> Array:
+        """Return k₀/(k_skin + γ k₀)."""
+        return np.asarray(self.whole.compliance(q) / self.solid.compliance(q))
+
+
+def test_full_contact_under_a_tensed_skin_is_exact_in_time() -> None:
+    """A sine pressed in at constant speed: p = (q/2) E∗du/dt + τ₀ q² u, through the operators."""
+    kernel, grid = coated(), pl.Grid(points=[16, 8], size="0.1 mm", boundary="periodic")
+    x, y = grid.coordinates()
+    wave = np.cos(2 * np.pi * x / grid.size[0]) + 0 * y
+    q = 2 * np.pi / grid.size[0]
+    branches, speed = kernel.branches(), 1e-7
+    memory, before = Memory.at_rest(branches, grid.shape), 0.0
+    for t in (0.0, 0.3, 0.4, 2.0, 90.0):
+        step = TimeStep.of(branches, t - before)
+        operator = make_operator(kernel.scaled(step.stiffness), grid)
+        left = left_behind_under_skin(memory, step, operator)
+        # One wave, so that the pressure follows from its compliance.
+        stiffness = 1 / kernel.scaled(step.stiffness).compliance(np.array([q])).item()
+        pressure = (speed * t * wave - left) * stiffness
+        strain = strain_under_skin(
+            memory, step, pressure, make_operator(Carried(kernel, step.stiffness), grid)
+        )
+        memory, before = memory.after(step, strain), t
+        integral = 0.2 * t + sum(g * tau * -np.expm1(-t / tau) for g, tau in branches)
+        expected = speed * (5e3 * q * integral + 0.05 * q**2 * t) * wave
+        np.testing.assert_allclose(pressure, expected, rtol=0, atol=1e-12 * speed * 1e9)
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        (
+            {"relaxation": [{"fraction": 0.7, "time": 1}, {"fraction": 0.4, "time": 2}]},
+            "sum to 1.1",
+        ),
+        ({"relaxation": [{"fraction": 0.7, "time": 0}]}, "relaxation.0.time"),
+        ({"relaxation": [{"fraction": 0.7, "time": "-1 s"}]}, "relaxation.0.time"),
+        ({"relaxation": [{"fraction": -0.1, "time": 1}]}, "relaxation.0.fraction"),
+        ({"relaxation": [{"fraction": 0.1, "time": "1 m"}]}, "not"),
+        ({"relaxation": []}, "relaxation"),
+        ({"relaxation": None}, "neither of relaxation and power_law"),
+        (
+            {"relaxation": RELAXATION, "power_law": {"exponent": 0.2, "time": 1}},
+            "both of relaxation and power_law",
+        ),
+        ({"power_law": {"exponent": 0.0, "time": 1}}, "power_law.exponent"),
+        ({"power_law": {"exponent": 1.0, "time": 1}}, "power_law.exponent"),
+        ({"power_law": {"exponent": 0.2, "time": 0}}, "power_law.time"),
+        ({"power_law": {"exponent": 0.2, "time": 1, "shortest": 1e4}}, "begin before it ends"),
+        (
+            {"power_law": {"exponent": 0.99, "time": 1, "shortest": 1e-9, "longest": 1e6}},
+            "shorten the span",
+        ),
+        ({"solid": {"type": "coated", "tension": 1, "substrate": HALF_SPACE}}, "coated has a skin"),
+        (
+            {"solid": {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 1}},
+            'type = "coated"',
+        ),
+        (
+            {"solid": {"type": "viscoelastic", "solid": HALF_SPACE, "relaxation": RELAXATION}},
+            "relaxes already",
+        ),
+    ],
+)
+def test_refuses(fields: dict[str, Any], message: str) -> None:
+    """What makes no solid is refused, and the message names it."""
+    with pytest.raises(pl.ConfigError) as caught:
+        viscoelastic(**fields)
+    assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("fractions", [(0.7, 0.3), (0.1,) * 10])
+def test_liquid_is_allowed(fractions: tuple[float, ...]) -> None:
+    """Fractions that sum to 1 in decimals are a liquid."""
+    kernel = viscoelastic(relaxation=[{"fraction": f, "time": 1} for f in fractions])
+    assert TimeStep.of(kernel.branches(), 1e9).stiffness == pytest.approx(1e-9)
+
+
+def test_run_without_times_is_refused() -> None:
+    """A run would show the instantaneous response as if nothing relaxed."""
+    with pytest.raises(pl.ConfigError, match="relaxes in time"):
+        pl.Run(
+            grid={"points": 16, "size": "1 mm", "boundary": "free"},
+            kernel=coated(),
+            indenter={"type": "paraboloid", "radius": "1 mm"},
+            loading={"depth": "10 um"},
+        )
