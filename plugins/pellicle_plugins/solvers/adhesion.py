@@ -39,6 +39,8 @@ _LONGEST: Final = 0.5
 _LEAST_GAIN: Final = 1 / 16
 _GREATEST_GAIN: Final = 1.5
 _FASTER: Final = 1.5
+# The same where the state is unstable.
+_UNSTABLE_GAIN: Final = 256.0
 _LINEAR_GAIN: Final = 1.0
 # Sign-certainty factors of inner solves, and the set changes after which the strict one applies.
 _SIGN_CERTAINTY: Final = 1.0
@@ -324,7 +326,10 @@ def _gain(before: _Round, after: _Round) -> float:
         return _LINEAR_GAIN
     step = after.traction - before.traction
     one, other = (float((step * part.missed).sum()) for part in (before, after))
-    best = one / (one - other) if other < one and one > 0 else 2.0
+    if other >= one > 0:
+        # Past a stable position the energy falls ever faster, however slowly at first.
+        return min(2 * before.gain, _UNSTABLE_GAIN)
+    best = one / (one - other) if one > 0 else _FASTER
     return float(np.clip(before.gain * np.clip(best, 0.5, _FASTER), _LEAST_GAIN, _GREATEST_GAIN))
 
 
@@ -372,7 +377,9 @@ def _extrapolated(state: _Round) -> tuple[Array, Array, Array]:
         one -= weight * (b[0] - a[0])
         two -= weight * (b[1] - a[1])
         three -= weight * (b[2] - a[2])
-    return one, two, three
+    # The missed traction is the direction of falling energy: a step against it leads to a saddle.
+    falls = float(((one + two - latest[0]) * latest[1]).ravel()[cells].sum()) > 0
+    return (one, two, three) if falls else latest
 
 
 def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> Array:
