@@ -32,7 +32,7 @@ class JKR(Interaction):
     """
 
     needs_contact: ClassVar[bool] = True
-    least_cells: ClassVar[float] = 1.5
+    least_cells: ClassVar[float] = 1.25
 
     type: Literal["jkr"] = "jkr"
     work_of_adhesion: Annotated[

@@ -21,7 +21,7 @@ class Linear(Adhesive):
     1.5 of them wide or more.
     """
 
-    least_cells: ClassVar[float] = 1.5
+    least_cells: ClassVar[float] = 1.25
     _SHAPE: ClassVar[float] = 0.5
 
     type: Literal["linear"] = "linear"

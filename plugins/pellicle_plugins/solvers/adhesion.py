@@ -98,7 +98,7 @@ class _Round:
 
     @property
     def energy(self) -> float:
-        """Energy over that of closed cells, to as many digits as show that a state still moves."""
+        """Energy over that of closed cells all over, to the digits that show an advance."""
         law = self.problem.law
         assert law
         acts = self.traction != 0
@@ -107,8 +107,8 @@ class _Round:
         load = 0.0
         if self.problem.prescribed == "force":
             load = self.depth * self.problem.value / self.problem.grid.cell_area
-        unit = law.work_of_adhesion() * (int(np.count_nonzero(acts)) or 1)
-        return round((elastic + bound - load) / unit, 8)
+        unit = law.work_of_adhesion() * self.gap.size
+        return round((elastic + bound - load) / unit, 9)
 
     @property
     def scale(self) -> float:
@@ -394,7 +394,8 @@ def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> Array
     law, grid = problem.law, problem.grid
     assert law
     strength = law.strength()
-    if not contact.any():
+    border = perimeter(contact, grid)
+    if not border:
         return np.clip(traction, -strength, 0.0)
     dx, dy = edges(grid)
     exerted = attracted(law, state.gap, contact, grid.boundary)
@@ -403,7 +404,7 @@ def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> Array
     gap = np.clip(np.where(contact, 0.0, state.gap), 0.0, 2 * law.cutoff())
     gap_slope = np.where(zone, _slope(gap, dx, dy), 0.0)
     slope = np.where(zone, _slope(exerted, dx, dy), 0.0)
-    extent = np.count_nonzero(contact) * grid.cell_area / perimeter(contact, grid)
+    extent = np.count_nonzero(contact) * grid.cell_area / border
     qx = 2 * np.pi * scipy.fft.fftfreq(grid.shape[0], dx)[:, None]
     qy = 2 * np.pi * scipy.fft.rfftfreq(grid.shape[1], dy)
     stiffness = 0.5 * _FRONT_STIFFNESS * law.work_of_adhesion()
