@@ -49,6 +49,7 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
     "other": (("mean_pressure", "Pa", "force over the area of the domain"),),
     "requested": (
         ("stiffness", "N/m", "contact stiffness dF/dδ, where loading.stiffness asks for it"),
+        ("time", "s", "time at the end of the step, where loading.time gives it"),
         ("wall_pressure", "Pa", "pressure of the indenter without the traction across the gap"),
         ("zone_area", "m2", "area off the contact where the traction exceeds 1 % of the strength"),
         ("zone_width", "m", "mean distance from the contact to the outer edge of the zone"),

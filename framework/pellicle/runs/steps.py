@@ -24,6 +24,7 @@ from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable
 
 from .progress import Bar
+from .relaxation import Relaxation
 from .target_search import Reached, reach
 from .verdict import judge
 
@@ -36,9 +37,12 @@ def solve_steps(
 ) -> Generator[xr.Dataset, None, None]:
     """Solve the load steps missing from ``steps``; add and yield each as soon as it is solved."""
     origin = provenance(run)
+    solid = Relaxation.of(run)
     for index in range(len(steps), len(run.loading.values)):
         # Only the copy in ``steps`` outlives a solve; the next one starts from its state.
         here = replace(setting, state=steps.state)
+        if solid:
+            here = solid.setting(here, steps.displacements)
         yield steps.append(_solved_step(run, here, index, bar.step(index)).assign_attrs(origin))
 
 
@@ -63,6 +67,7 @@ def _solved_step(run: Run, setting: Setting, index: int, monitor: Monitor) -> xr
         **{variable.name: area for variable, area in areas.items()},
         **report,
         **({"stiffness": stiffness.value} if stiffness else {}),
+        **({"time": run.loading.time[index]} if run.loading.time else {}),
         "iterations": step.iterations,
         "operator_applications": used,
         "converged": status.converged,
