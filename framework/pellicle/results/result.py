@@ -8,11 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from pellicle.errors import ConfigError, StorageError
 from pellicle.grid import Grid
 
 from . import storage
-from .status import Status
+from .path import path_variables
+from .status import CAVEATS, Status
 from .variables import FIELDS, REQUIRED, damage
 
 if TYPE_CHECKING:
@@ -48,6 +51,15 @@ class Result:
         """Whether every step converged."""
         return bool(self.dataset["converged"].all())
 
+    @property
+    def path_summary(self) -> dict[str, float]:
+        """Pull-off, loss and gain of contact, and work of the path; empty without an interaction.
+
+        The names, units and meanings are those of `pellicle.analysis.PathSummary`; events that the
+        path does not contain are NaN.
+        """
+        return path_variables(self.dataset)
+
     def failures(self) -> list[tuple[int, str]]:
         """Return number, counted from 1, and status of each step that did not converge."""
         failed = self.dataset.isel(step=~self.dataset["converged"].values)
@@ -55,8 +67,25 @@ class Result:
 
     def coarse(self) -> list[tuple[int, str]]:
         """Return number and status of each step whose cells are too coarse."""
-        coarse = self.dataset["status_code"].values == Status.COARSE.name
-        return _statuses(self.dataset.isel(step=coarse))
+        return self._of([status for status in Status if status.is_coarse])
+
+    def steep(self) -> list[tuple[int, str]]:
+        """Return number and status of each step with slopes beyond those of the theory."""
+        return self._of([Status.STEEP])
+
+    def _of(self, statuses: list[Status]) -> list[tuple[int, str]]:
+        codes = self.dataset["status_code"].values
+        among = np.isin(codes.astype(str), [status.name for status in statuses])
+        return _statuses(self.dataset.isel(step=among))
+
+    def caveats(self) -> dict[str, list[tuple[int, str]]]:
+        """Return number and status of the steps with a caveat of `CAVEATS`, by its phrase."""
+        codes = self.dataset["status_code"].values
+        steps = {
+            phrase: _statuses(self.dataset.isel(step=codes == status.name))
+            for status, phrase in CAVEATS.items()
+        }
+        return {phrase: statuses for phrase, statuses in steps.items() if statuses}
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook."""

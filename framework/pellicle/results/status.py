@@ -61,6 +61,14 @@ class Status(Enum):
         "the traction across the gap misses that of the interaction by {measure:.1e}, over the "
         "tolerance {tolerance:.1e}; {remedy}"
     )
+    PULLED_OFF = (
+        "no contact carries a force of {force:.4g} N: that of the step before is lost between "
+        "{carried:.4g} and {lost:.4g} N; a softer holder follows it further: prescribe depth, or "
+        "base_displacement with a spring_constant"
+    )
+    NOTHING_TO_PULL = (
+        "there is no contact that could carry a force of {force:.4g} N; press before you pull"
+    )
     STIFFNESS = (
         "the contact stiffness is not known: its displacement misses by {measure:.1e}, over the "
         "tolerance {tolerance:.1e}; loosen solver.tolerance, or leave loading.stiffness out"
@@ -86,8 +94,20 @@ class Status(Enum):
         )
 
     @property
+    def is_coarse(self) -> bool:
+        """Whether the cells are too coarse for the contact, or for the zone around it."""
+        return self in (Status.COARSE, Status.COARSE_ZONE)
+
+    @property
     def verdict(self) -> str:
         """The status in one or two words, for tables."""
         if self.converged:
             return "converged"
         return {Status.NOT_RUN: "not run", Status.FAILED: "failed"}.get(self, "NOT CONVERGED")
+
+
+CAVEATS = {
+    Status.COARSE_ZONE: "the zone in which the interaction pulls is narrow for the cells",
+    Status.STEEP: "slopes in contact are beyond the theory",
+}
+"""What holds for a step with an interaction that converged with a caveat."""

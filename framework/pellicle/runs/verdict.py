@@ -10,6 +10,7 @@ from pellicle.components import Interaction
 from pellicle.components.prescription import Search, in_unit
 from pellicle.config.run import Run
 from pellicle.numerics.problem import Equilibrium, Stiffness
+from pellicle.numerics.solution import Stop
 from pellicle.results.status import Status
 from pellicle.results.step import zone_width
 
@@ -30,6 +31,11 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
     tolerance = run.solver.tolerance
     if not np.isfinite(equilibrium.force):
         return Status.NOT_FINITE, Status.NOT_FINITE.value
+    if step.stop is Stop.PULLED_OFF:
+        carried, lost = step.between
+        status = Status.NOTHING_TO_PULL if carried == lost else Status.PULLED_OFF
+        force = equilibrium.problem.control.value
+        return status, status.value.format(force=force, carried=carried, lost=lost)
     if (lowest := float(equilibrium.wall.min())) < 0:
         share = -lowest / float(np.abs(equilibrium.wall).max())
         return Status.NEGATIVE_PRESSURE, Status.NEGATIVE_PRESSURE.value.format(measure=share)
@@ -59,13 +65,13 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
         return _not_met(step, step.search)
     cells = int(np.count_nonzero(equilibrium.contact))
     enough = _RESOLVED_ACROSS if min(equilibrium.contact.shape) == 1 else _RESOLVED
-    if run.interaction:
-        return _doubt(run, run.interaction, equilibrium)
     problem = equilibrium.problem
     # A surface that was left behind may be out of the indenter's reach at a depth above 0.
     least = problem.first_touch if problem.prescribed == "depth" else 0.0
     if problem.control.value > least and cells < min(enough, equilibrium.contact.size):
         return Status.COARSE, Status.COARSE.value.format(cells=cells or "none")
+    if run.interaction:
+        return _doubt(run, run.interaction, equilibrium)
     return Status.CONVERGED, Status.CONVERGED.value
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle import Run, analysis
-from pellicle.arrays import Mask
+from pellicle.arrays import Array, Mask
 from pellicle.components import Kernel
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
@@ -40,13 +40,25 @@ def curve_of(path: xr.Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurv
     return analysis.adhesive_curve(
         path["depth"].values,
         path["force"].values,
-        np.sqrt(area / pi) - _excess_radius(kernel, sqrt(grid.cell_area)),
+        np.sqrt(area / pi) - excess_radius(kernel, sqrt(grid.cell_area)),
         path["stiffness"].values,
         work_of_adhesion,
     )
 
 
-def _excess_radius(kernel: Kernel, spacing: float) -> float:
+def steepest_slopes(path: xr.Dataset) -> Array:
+    """Return the largest slope of the indenter in the contact of each load step, shape (step,)."""
+    last = path.isel(step=-1)
+    profile = last["displacement"].values - last["depth"].item() - last["gap"].values
+    spacing = Result(path).grid.spacing
+    # Where the indenter ends the profile is −inf.
+    with np.errstate(invalid="ignore"):
+        slope = np.hypot(*np.gradient(profile, *spacing))
+    contacts = path["contact"].values
+    return np.array([np.nanmax(slope[contact], initial=0.0) for contact in contacts])
+
+
+def excess_radius(kernel: Kernel, spacing: float) -> float:
     """Return how much the contact radius counted in cells exceeds that of equal stiffness [m].
 
     Measured for flat punches of nine radii: 0 cells on springs, 0.115 on a half-space, whose

@@ -48,7 +48,9 @@ def ran(folder: Path, **changed: Any) -> tuple[list[dict[str, str]], list[dict[s
 def test_summary_and_curve_are_those_of_the_bead(tmp_path: Path) -> None:
     """On a grid of 48 cells pull-off is right to 0.03 πwR, and the lowest force of the curve."""
     curve, (summary,) = ran(tmp_path)
-    assert summary["status"].startswith("pull-off, last at fixed depth: a contact radius of 5.")
+    assert summary["status"].startswith("contact radius in cells: pull-off 11.0, last at fixed")
+    # The slope of a paraboloid at the rim is a/R.
+    assert "slope of the indenter at the rim: no load 0.3" in summary["status"]
     pull_off = float(summary["pull_off_force [N]"])
     assert pull_off == pytest.approx(-1.5 * FORCE, abs=0.03 * FORCE)
     assert min(float(row["force [N]"]) for row in curve) == pytest.approx(pull_off, rel=1e-4)
