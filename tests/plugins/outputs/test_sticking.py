@@ -26,7 +26,9 @@ from tests.pictures import pixels
 
 # A coarse grid makes pictures in seconds; the units E* = R = w = 1 make slopes steep.
 pytestmark = [
-    pytest.mark.filterwarnings("ignore:.*(cells wide|slopes in contact):pellicle.ConvergenceWarning"),
+    pytest.mark.filterwarnings(
+        "ignore:.*(cells wide|slopes in contact):pellicle.ConvergenceWarning"
+    ),
     pytest.mark.filterwarnings("ignore:of . runs, in . the cells are too coarse:UserWarning"),
 ]
 
