@@ -53,11 +53,12 @@ def print_steps(result: Result) -> None:
 
 
 def print_contact(result: Result) -> None:
-    """Print the shape of the contact at each step."""
+    """Print the shape of the contact at each step, and of the zone around it."""
     from pellicle.results.variables import names_of
 
     # Files of earlier versions lack them.
-    if names := [name for name in names_of("contact") if name in result.dataset]:
+    names = [name for name in names_of("contact", "interaction") if name in result.dataset]
+    if names := [name for name in names if not name.startswith("residual_")]:
         typer.echo("contact:")
         _print_steps(result.dataset, names, {})
 
