@@ -136,6 +136,8 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
         # The surface rises above the undeformed plane, and the indenter hangs over it.
         height = max(abs(float(data["depth"])), float(np.abs(line["displacement"].values).max()))
     near = gap <= height * 2
+    if pulls and not near.any():
+        near = np.isfinite(gap)
     length, length_name = axis_unit(line["x"].values, "m")
     scale, name = axis_unit(line["pressure"].values, "Pa")
     opens = bool(gap[near].any())
@@ -151,7 +153,7 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     gap_axes.set_ylabel(f"gap [{gap_name}]", color="C1")
     if pulls:
         axes.axhline(0.0, color="C0", linewidth=0.6)
-        axes.fill_between(
+        shade = axes.fill_between(
             x,
             0,
             1,
@@ -161,6 +163,8 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
             color="0.9",
             zorder=0,
         )
+        # Otherwise 0 and 1 are edges of the pressure's axis.
+        shade.sticky_edges.y.clear()
     for side in (gap_axes,) if pulls else (axes, gap_axes):
         side.set_ylim(bottom=0.0)
     if not opens and float(data["depth"]) > 0:
