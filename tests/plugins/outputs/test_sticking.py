@@ -24,6 +24,14 @@ from pellicle.results.variables import VARIABLES, names_of
 from pellicle.units import readable
 from tests.pictures import pixels
 
+# A coarse grid makes pictures in seconds; the units E* = R = w = 1 make slopes steep.
+pytestmark = [
+    pytest.mark.filterwarnings(
+        "ignore:.*(cells wide|slopes in contact):pellicle.ConvergenceWarning"
+    ),
+    pytest.mark.filterwarnings("ignore:of . runs, in . the cells are too coarse:UserWarning"),
+]
+
 BEAD: dict[str, Any] = {
     "grid": {"points": 24, "size": "5 m"},
     "kernel": {"type": "half_space", "reduced_modulus": "1 Pa"},
