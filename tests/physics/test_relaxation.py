@@ -97,6 +97,36 @@ def test_full_contact_of_a_sine_relaxes(solver: str) -> None:
     np.testing.assert_allclose(amplitudes, expected, rtol=1e-9)
 
 
+@pytest.mark.parametrize("boundary", ["half_space", "bonded_layer"])
+def test_full_contact_of_a_sine_under_a_tensed_skin(boundary: str, solver: str) -> None:
+    """The wave carries (1/G₀) E(t) Δ + τ₀ q² Δ: the tension does not relax, to 1e-9."""
+    grid = pl.Grid(points=[24, 6], size="1 mm", boundary="periodic")
+    x, y = grid.coordinates()
+    q, amplitude, tension = 2 * np.pi / 1e-3, 1e-6, 2.0
+    wave = np.cos(q * x) + 0 * y
+    times = [0.0, 0.1, 0.1, 1.0, 30.0]
+    fields: dict[str, Any] = {"reduced_modulus": MODULUS}
+    if boundary == "bonded_layer":
+        fields |= {"poissons_ratio": 0.3, "thickness": 3e-4}
+    elastic = pl.kernel(boundary, **fields)
+    stiffness = 1 / elastic.compliance(np.array([q])).item()
+    relaxing = {"type": "viscoelastic", "solid": elastic, "relaxation": SLS}
+    data = solved(
+        grid=grid,
+        kernel={"type": "coated", "tension": tension, "substrate": relaxing},
+        indenter={"type": "heights", "values": amplitude * wave, "unit": 1.0},
+        loading={
+            "mean_pressure": [2 * (stiffness + tension * q**2) * amplitude] * 5,
+            "time": times,
+        },
+        solver={"type": solver, "tolerance": 1e-11},
+    )
+    amplitudes = 2 * (data["pressure"].values * wave).mean(axis=(1, 2))
+    modulus = 0.2 + 0.8 * np.exp(-np.array(times) / 2)
+    expected = (stiffness * modulus + tension * q**2) * amplitude
+    np.testing.assert_allclose(amplitudes, expected, rtol=1e-9)
+
+
 def power_law_triangle(exponent: float, points: int, number: int) -> Any:
     """Return a paraboloid pressed in for 1 s and drawn back at the same speed."""
     depth = 1e-5
@@ -166,6 +196,57 @@ def test_limits_are_elastic(relaxation: list[dict[str, Any]], share: float) -> N
         np.testing.assert_allclose(data[name][after], elastic[name][after], rtol=1e-8)
 
 
+@pytest.mark.parametrize(("time", "share"), [(1e12, 1.0), (1e-12, 0.2)])
+def test_limits_under_a_skin_are_elastic(time: float, share: float) -> None:
+    """Under a force, in contacts that grow and shrink on a periodic tensed skin, too."""
+    forces = [2e-6, 8e-6, 5e-6, 3e-6]
+    grid = {"points": 32, "size": "0.4 mm", "boundary": "periodic"}
+    relaxing = solid([{"fraction": 0.8, "time": time}])
+    data, elastic = (
+        solved(
+            grid=grid,
+            indenter=PARABOLOID,
+            kernel={"type": "coated", "tension": 0.05, "substrate": substrate},
+            loading={"force": forces, **times},
+        )
+        for substrate, times in (
+            (relaxing, {"time": [0.0, 1.0, 1.5, 7.0]}),
+            ({"type": "half_space", "reduced_modulus": share * MODULUS}, {}),
+        )
+    )
+    after = slice(1, None) if share < 1 else slice(None)
+    for name in ("depth", "contact_area"):
+        np.testing.assert_allclose(data[name][after], elastic[name][after], rtol=1e-8)
+
+
+@pytest.mark.parametrize("tension", [0.0, 0.05])
+def test_every_wave_obeys_the_convolution(tension: float) -> None:
+    """While the contact grows and shrinks, p̂ = τ₀ q² û + (E* q/2) ∫ E(t − t′) dû, û linear."""
+    times = np.array([0.0, 0.5, 0.5, 2.0, 7.0, 7.3])
+    grid = pl.Grid(points=32, size="0.4 mm", boundary="periodic")
+    kernel = {"type": "coated", "tension": tension, "substrate": solid()} if tension else solid()
+    data = solved(
+        grid=grid,
+        indenter=PARABOLOID,
+        kernel=kernel,
+        loading={"force": [2e-6, 5e-6, 8e-6, 8e-6, 3e-6, 6e-6], "time": list(times)},
+    )
+    q = np.hypot(*grid.wavenumbers())
+    u, p = np.fft.rfft2(data["displacement"].values), np.fft.rfft2(data["pressure"].values)
+    assert np.ptp(data["contact_area"].values) > 0
+    for n, t in enumerate(times):
+        relaxed = u[0] * (0.2 + 0.8 * np.exp(-t / 2))
+        for k in range(n):
+            x = (times[k + 1] - times[k]) / 2
+            mean = -np.expm1(-x) / x if x else 1.0
+            relaxed += (u[k + 1] - u[k]) * (0.2 + 0.8 * np.exp(-(t - times[k + 1]) / 2) * mean)
+        expected = tension * q**2 * u[n] + MODULUS * q / 2 * relaxed
+        scale = np.abs(p[n].ravel()[1:]).max()
+        np.testing.assert_allclose(
+            p[n].ravel()[1:], expected.ravel()[1:], rtol=0, atol=1e-10 * scale
+        )
+
+
 def test_liquid_flows_out_of_the_way() -> None:
     """Fractions that sum to 1 carry nothing in the end, and the solver copes with the decay."""
     times = [0.0, 1.0, 5.0, 20.0]
@@ -189,9 +270,20 @@ def path() -> dict[str, Any]:
     )
 
 
-def test_resumed_run_has_the_same_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("tension", [0.0, 0.05])
+def test_resumed_run_has_the_same_numbers(
+    tension: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A run that is killed after six steps goes on bit by bit as one that is not."""
-    whole = pl.run(path(), progress=False).dataset
+    run = path() | {"outputs": []}
+    if tension:
+        run["kernel"] = {"type": "coated", "tension": tension, "substrate": solid()}
+        run["grid"] = run["grid"] | {"boundary": "periodic"}
+        run["loading"] = {
+            "force": [2e-6 * (1 + n % 4) for n in range(10)],
+            "time": run["loading"]["time"],
+        }
+    whole = pl.run(run | {"outputs": None}, progress=False).dataset
     solve_step, solved_steps = steps.solve_step, 0
 
     def killed(*arguments: Any) -> Any:
@@ -204,8 +296,8 @@ def test_resumed_run_has_the_same_numbers(tmp_path: Path, monkeypatch: pytest.Mo
     with monkeypatch.context() as patch:
         patch.setattr(steps, "solve_step", killed)
         with pytest.raises(KeyboardInterrupt):
-            pl.run(path() | {"outputs": []}, directory=tmp_path, progress=False)
-    resumed = pl.run(path() | {"outputs": []}, directory=tmp_path, progress=False).dataset
+            pl.run(run, directory=tmp_path, progress=False)
+    resumed = pl.run(run, directory=tmp_path, progress=False).dataset
     for name in ("pressure", "displacement", "force", "depth", "time"):
         np.testing.assert_array_equal(resumed[name], whole[name])
 

@@ -25,7 +25,6 @@ def print_origin(data: xr.Dataset) -> None:
 
 def print_steps(result: Result) -> None:
     """Print a row for each step."""
-    from pellicle.results.result import first_message
     from pellicle.results.variables import names_of
 
     data = result.dataset
@@ -43,13 +42,10 @@ def print_steps(result: Result) -> None:
         for n in numbers
     ]
     _print_steps(data, names, {"status": verdicts})
-    caveats = result.caveats().values()
-    several = {*coarse, *(number for steps in caveats for number, _ in steps)}
+    several = {**coarse, **dict(result.steep())}
     for number, status in zip(numbers, data["status"].values.tolist(), strict=True):
         if converged[number] and status != "converged" and number not in several:
             typer.echo(f"step {number}: {for_document(status)}", err=True)
-    for steps in caveats:
-        typer.echo(for_document(first_message(steps)), err=True)
 
 
 def print_contact(result: Result) -> None:
@@ -99,7 +95,7 @@ def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
 
 def print_runs(table: xr.Dataset) -> None:
     """Print parameters, last step and verdict of each run of a study, and its path."""
-    from pellicle.studies.summary import caveats, paths, rows
+    from pellicle.studies.summary import paths, rows, steep
 
     for caption, lines in (("", rows(table)), ("path:", paths(table))):
         if lines:
@@ -107,18 +103,19 @@ def print_runs(table: xr.Dataset) -> None:
                 typer.echo(caption)
             names = list(lines[0])
             print_table(names, lines, _heads(table, [name for name in names if name in table]))
-    for message in caveats(table):
+    for message in steep(table):
         typer.echo(message, err=True)
 
 
 def exit_by_convergence(result: Result) -> None:
-    """Print which steps did not converge or are too coarse; exit unless all converged."""
+    """Print which steps did not converge, or have a caveat; exit unless all converged."""
     from pellicle.results.result import first_message
 
     for step, message in result.failures():
         typer.echo(f"step {step} did not converge: {for_document(message)}", err=True)
-    if coarse := result.coarse():
-        print_warning(first_message(coarse))
+    for steps in (result.coarse(), result.steep()):
+        if steps:
+            print_warning(first_message(steps))
     if not result.converged:
         raise typer.Exit(NOT_CONVERGED)
 

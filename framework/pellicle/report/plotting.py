@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.analysis import Leg, legs
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.components import Solver
 from pellicle.files import for_document, storage_errors
 from pellicle.numerics.problem import height_scale
@@ -153,22 +153,29 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     gap_axes.set_ylabel(f"gap [{gap_name}]", color="C1")
     if pulls:
         axes.axhline(0.0, color="C0", linewidth=0.6)
+        _shade(axes, x, line["contact"].values)
+    for side in (gap_axes,) if pulls else (axes, gap_axes):
+        side.set_ylim(bottom=0.0)
+    if not opens and float(data["depth"]) > 0:
+        gap_axes.set_ylim(top=float(data["depth"]) * gap_scale)
+
+
+def _shade(axes: Axes, x: Array, where: Mask) -> None:
+    """Shade the cells at ``x`` where a mask holds, over the whole height of the axes."""
+    # An empty shade would set the limits of the axes to round-off.
+    if where.any():
         shade = axes.fill_between(
             x,
             0,
             1,
-            where=line["contact"].values,
+            where=where,
             step="mid",
             transform=axes.get_xaxis_transform(),
             color="0.9",
             zorder=0,
         )
-        # Otherwise 0 and 1 are edges of the pressure's axis.
+        # Otherwise 0 and 1 are edges of the vertical axis.
         shade.sticky_edges.y.clear()
-    for side in (gap_axes,) if pulls else (axes, gap_axes):
-        side.set_ylim(bottom=0.0)
-    if not opens and float(data["depth"]) > 0:
-        gap_axes.set_ylim(top=float(data["depth"]) * gap_scale)
 
 
 def force_depth(result: Result, axes: Axes) -> None:

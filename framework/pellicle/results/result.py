@@ -15,7 +15,7 @@ from pellicle.grid import Grid
 
 from . import storage
 from .path import path_variables
-from .status import CAVEATS, Status
+from .status import Status
 from .variables import FIELDS, REQUIRED, damage
 
 if TYPE_CHECKING:
@@ -77,15 +77,6 @@ class Result:
         codes = self.dataset["status_code"].values
         among = np.isin(codes.astype(str), [status.name for status in statuses])
         return _statuses(self.dataset.isel(step=among))
-
-    def caveats(self) -> dict[str, list[tuple[int, str]]]:
-        """Return number and status of the steps with a caveat of `CAVEATS`, by its phrase."""
-        codes = self.dataset["status_code"].values
-        steps = {
-            phrase: _statuses(self.dataset.isel(step=codes == status.name))
-            for status, phrase in CAVEATS.items()
-        }
-        return {phrase: statuses for phrase, statuses in steps.items() if statuses}
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook."""

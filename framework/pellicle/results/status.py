@@ -104,10 +104,3 @@ class Status(Enum):
         if self.converged:
             return "converged"
         return {Status.NOT_RUN: "not run", Status.FAILED: "failed"}.get(self, "NOT CONVERGED")
-
-
-CAVEATS = {
-    Status.COARSE_ZONE: "the zone in which the interaction pulls is narrow for the cells",
-    Status.STEEP: "slopes in contact are beyond the theory",
-}
-"""What holds for a step with an interaction that converged with a caveat."""

@@ -144,13 +144,12 @@ class Steps:
             wall = self._fields["wall_pressure"].values[len(self) - 1]
         return State(pressure, wall, self._scalars[-1]["depth"].item())
 
-    @property
-    def displacements(self) -> Array:
-        """The displacements [m] at the end of the steps, in order; (step, nx, ny), a view."""
+    def field(self, name: str) -> Array:
+        """Return a field at the end of each step, in order; (step, nx, ny), a view."""
         if not self._scalars:
             return np.empty((0, 0, 0))
-        displacements: Array = self._fields["displacement"].values[: len(self)]
-        return displacements
+        values: Array = self._fields[name].values[: len(self)]
+        return values
 
     def append(self, step: xr.Dataset) -> xr.Dataset:
         """Copy a step of `step_dataset` into the arrays, and return it as views of them."""

@@ -63,7 +63,6 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         ("stiffness", "N/m", "contact stiffness dF/dδ, where loading.stiffness asks for it"),
         ("time", "s", "time at the end of the step, where loading.time gives it"),
         ("wall_pressure", "Pa", "pressure of the indenter without the traction across the gap"),
-        ("jumped", "1", "whether a contact was lost or gained at once", "truth"),
     ),
     "interaction": (
         ("zone_area", "m2", "area off the contact where the traction exceeds 1 % of the strength"),

@@ -44,7 +44,7 @@ def solve_steps(
         # Only the copy in ``steps`` outlives a solve; the next one starts from its state.
         here = replace(setting, state=steps.state)
         if solid:
-            here = solid.setting(here, steps.displacements)
+            here = solid.setting(here, steps.field("pressure"), steps.field("displacement"))
         yield steps.append(_solved_step(run, here, index, bar.step(index)).assign_attrs(origin))
 
 

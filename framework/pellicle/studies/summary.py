@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellicle.results.status import CAVEATS, Status
+from pellicle.results.status import Status
 from pellicle.results.variables import names_of
 
 if TYPE_CHECKING:
@@ -109,12 +109,11 @@ def coarse(table: xr.Dataset) -> Iterator[str]:
         yield f"of {len(statuses)} runs, in {count} the cells are too coarse for this contact"
 
 
-def caveats(table: xr.Dataset) -> Iterator[str]:
-    """Yield a message with the number of runs for each caveat of `CAVEATS` that occurs."""
+def steep(table: xr.Dataset) -> Iterator[str]:
+    """Yield a message with the number of runs with slopes beyond those of the theory, if any."""
     statuses = _statuses(table)
-    for status, phrase in CAVEATS.items():
-        if count := sum(status in run for run in statuses):
-            yield f"of {len(statuses)} runs, in {count} {phrase}"
+    if count := sum(Status.STEEP in run for run in statuses):
+        yield f"of {len(statuses)} runs, in {count} slopes in contact are beyond the theory"
 
 
 def _statuses(table: xr.Dataset) -> list[list[Status]]:
