@@ -64,7 +64,7 @@ def test_under_tension_it_is_the_closed_theory(length: float, size: float) -> No
         indent(PARABOLOID, 1.0, length / 2, contact_radius=a).depth for a in (lowest, highest)
     )
     kernel = {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": length / 2}
-    curve = solved_curve(kernel, PARABOLOID, (depths[0], depths[1]), size, 256)
+    curve = solved_curve(kernel, PARABOLOID, (depths[0], depths[1]), size, 128)
     for contact in (theory.equilibrium(1.5), theory.at_force(0.0)):
         assert abs(force_at(curve, float(contact.depth)) - contact.force) < 0.01 * FORCE
     assert abs(curve.instability().force - theory.instability().force) < 0.01 * FORCE
@@ -86,7 +86,7 @@ def test_on_a_bonded_layer_it_is_the_dense_solution(thickness: float) -> None:
         return contact.depth - retraction, contact.force - contact.stiffness * retraction
 
     curve = solved_curve(
-        kernel.model_dump(), PARABOLOID, (hard(0.8).depth, hard(2.2).depth), 5.0, 256
+        kernel.model_dump(), PARABOLOID, (hard(0.8).depth, hard(2.2).depth), 5.0, 128
     )
     depth, force = sticky(1.5)
     assert abs(force_at(curve, depth) - force) < 0.01 * FORCE
@@ -110,7 +110,7 @@ def test_the_oracle_gives_known_stiffnesses() -> None:
 
 
 def test_on_a_cone_it_is_the_closed_theory() -> None:
-    """Force and radius of pull-off of a cone under tension are right to 2 % at 32 cells."""
+    """Force and radius of pull-off of a cone under tension are right to 1 % at 32 cells."""
     cone = Cone(half_angle=1.2)
     theory = Adhesion(cone, 1.0, 0.25, 0.1)
     pull_off = theory.instability()
@@ -118,5 +118,5 @@ def test_on_a_cone_it_is_the_closed_theory() -> None:
     low, high = (indent(cone, 1.0, 0.25, contact_radius=a * share).depth for share in (0.4, 1.6))
     kernel = {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.25}
     curve = solved_curve(kernel, cone, (low, high), 4 * a, 128, 0.1)
-    assert curve.instability().force == pytest.approx(pull_off.force, rel=0.02)
-    assert curve.instability().contact_radius == pytest.approx(a, rel=0.02)
+    assert curve.instability().force == pytest.approx(pull_off.force, rel=0.01)
+    assert curve.instability().contact_radius == pytest.approx(a, rel=0.01)

@@ -12,6 +12,7 @@ from .distribution import Distribution, distribution
 from .ellipse import Ellipse, ellipse
 from .extrapolation import Extrapolation, extrapolate
 from .patches import Patches, coordination, patches
+from .path import Leg, PathSummary, legs, path_summary
 from .perimeter import perimeter
 from .spectrum import Spectrum, spectrum
 
@@ -21,14 +22,18 @@ __all__ = [
     "Distribution",
     "Ellipse",
     "Extrapolation",
+    "Leg",
     "Patches",
+    "PathSummary",
     "Spectrum",
     "adhesive_curve",
     "coordination",
     "distribution",
     "ellipse",
     "extrapolate",
+    "legs",
     "patches",
+    "path_summary",
     "perimeter",
     "spectrum",
 ]

@@ -57,6 +57,25 @@ def print_contact(result: Result) -> None:
         _print_steps(result.dataset, names, {})
 
 
+def print_path(result: Result) -> None:
+    """Print the events on the path and its work, where there is an interaction."""
+    import math
+
+    from pellicle.results.variables import VARIABLES
+
+    if summary := result.path_summary:
+        typer.echo("path:")
+        rows = [
+            {
+                "name": name,
+                "value": "none" if math.isnan(value) else f"{value:.6g} {VARIABLES[name].unit}",
+                "meaning": VARIABLES[name].meaning,
+            }
+            for name, value in summary.items()
+        ]
+        print_table(["name", "value", "meaning"], rows)
+
+
 def _print_steps(data: xr.Dataset, names: list[str], texts: dict[str, list[str]]) -> None:
     """Print a row for each step: numbers by their names, and further columns of texts."""
     columns = {"step": [str(number) for number in data["step"].values.tolist()]}
@@ -72,12 +91,15 @@ def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
 
 
 def print_runs(table: xr.Dataset) -> None:
-    """Print parameters, last step and verdict of each run of a study."""
-    from pellicle.studies.summary import rows
+    """Print parameters, last step and verdict of each run of a study, and its path."""
+    from pellicle.studies.summary import paths, rows
 
-    lines = rows(table)
-    names = list(lines[0])
-    print_table(names, lines, _heads(table, [name for name in names if name in table]))
+    for caption, lines in (("", rows(table)), ("path:", paths(table))):
+        if lines:
+            if caption:
+                typer.echo(caption)
+            names = list(lines[0])
+            print_table(names, lines, _heads(table, [name for name in names if name in table]))
 
 
 def exit_by_convergence(result: Result) -> None:

@@ -249,7 +249,12 @@ def solution_of(
         wall = real_array(solver, "solve().state.wall", value.state.wall, problem.grid.shape)
         depth = real_number(solver, "solve().state.depth", value.state.depth)
         state = State(pressure, wall.copy(), depth)
-    return Solution(state, int(value.iterations), value.stop, bool(value.jumped))
+    jumped = bool(value.jumped) or (adheres and _in_contact(state) != _in_contact(start))
+    return Solution(state, int(value.iterations), value.stop, jumped)
+
+
+def _in_contact(state: State | Array | None) -> bool:
+    return isinstance(state, State) and bool(state.contact.any())
 
 
 def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:

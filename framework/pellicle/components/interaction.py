@@ -28,7 +28,6 @@ class Interaction(Component):
     family: ClassVar[str] = "interaction"
     needs_contact: ClassVar[bool] = False
     """Whether it acts only on cells that are joined to a contact by cells within the cutoff."""
-
     least_cells: ClassVar[float] = 3.0
     """Cells across the zone around a contact below which the cells pin its edge."""
 
@@ -58,3 +57,10 @@ class Interaction(Component):
         states. A law that is resolved is continuous, and its slope is bounded.
         """
         return self
+
+    def wider(self, factor: float) -> Interaction | None:
+        """Return the interaction with a zone ``factor`` times as wide, to estimate an error.
+
+        None, the default, if its range is its own and not that of the grid.
+        """
+        return None

@@ -238,6 +238,8 @@ class Study(FromFile):
         texts = {name for name, variable in VARIABLES.items() if variable.type == "text"}
         known = {*VARIABLES, *constants(json.loads(run.to_json()))}
         known -= texts | {*names_of("requested")}
+        if all(point.run.interaction is None for point in self.points):
+            known -= {*names_of("interaction", "path")}
         known |= run.loading.variables
         known |= {corrected_area(correction.type_name).name for correction in run.corrections}
         known |= {*self.vary, *itertools.chain.from_iterable(self.zip)}

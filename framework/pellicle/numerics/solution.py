@@ -39,10 +39,7 @@ class Stop(Enum):
         "the solver makes no progress any more, and not because of round-off: try another solver, "
         "another load, or cells that resolve the heights"
     )
-    PULLED_OFF = (
-        "no contact carries this pull; prescribe base_displacement with a soft spring_constant to "
-        "find the greatest one"
-    )
+    PULLED_OFF = "no contact carries this pull"
     NOT_FINITE = "the iteration met a value that is not finite"
 
 
@@ -57,7 +54,7 @@ class Solution:
     stop: Stop = Stop.DONE
     """Why the solver stopped."""
     jumped: bool = False
-    """Whether the state is not on the same branch as the start: a contact was lost or gained."""
+    """Whether all contact was gained or lost since the start; only with a law."""
 
     @property
     def pressure(self) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import zlib
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from math import sqrt
 from typing import Any, ClassVar, NamedTuple
@@ -32,6 +32,8 @@ class Field(NamedTuple):
     """Whether cells where it is 0 stay empty."""
     power: float = 1.0
     """Exponent applied to the values before colours are assigned: 0.5 separates small ones."""
+    centred: bool = False
+    """Whether the colours reach as far below 0 as above it."""
 
 
 class _Packed(NamedTuple):
@@ -60,13 +62,23 @@ def side(points: int, maps: int) -> int:
     return min(points, max(_FEWEST, int(sqrt(_PIXELS / max(maps, 1)))))
 
 
-def frame(label: str, grid: Grid, fields: Sequence[Array], points: int) -> Frame:
+def frame(
+    label: str,
+    grid: Grid,
+    fields: Sequence[Array],
+    points: int,
+    empty: Collection[int] = (),
+) -> Frame:
     """Return fields of the grid's shape as maps of at most ``points`` pixels a side.
 
-    A pixel is the mean of the finite values in a block of cells; without any it is empty.
+    A pixel is the mean of the finite values in a block of cells; without any it is empty. In the
+    fields with an index in ``empty`` pixels of 0 are empty too: packed beside negative values, 0 is
+    rounded.
     """
     nx, ny = (-(-n // points) for n in grid.shape)
     coarse = [_means(field, (nx, ny)) for field in fields]
+    for index in empty:
+        coarse[index][coarse[index] == 0] = np.nan
     packed = tuple(map(_pack, coarse))
     return Frame(label, grid, (nx, ny), (-(-grid.shape[0] // nx), -(-grid.shape[1] // ny)), packed)
 
@@ -112,6 +124,7 @@ class Maps:
                     "unit": unit,
                     "blank": field.blank,
                     "power": field.power,
+                    **({"centred": True} if field.centred else {}),
                     "colours": _colours(field.colours),
                     "low": min(low for low, _ in ends) * scale,
                     "high": max(high for _, high in ends) * scale,

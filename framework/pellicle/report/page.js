@@ -88,6 +88,12 @@ function makeMaps(figure, data) {
 
   // The range of the colours: of all frames, of this one, or of the pixels in view.
   function range(number) {
+    const [low, high] = rangeOfValues(number);
+    const most = Math.max(-low, high);
+    return data.fields[number].centred ? [-most, most] : [low, high];
+  }
+
+  function rangeOfValues(number) {
     const { low: least, high: most } = (data.shared ? data : frame).fields[number];
     if (!alone.checked) return [least, most];
     const [nx, ny] = frame.shape;

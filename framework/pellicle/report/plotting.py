@@ -8,14 +8,16 @@ from contextlib import contextmanager
 from functools import partial
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle.analysis import Leg, legs
 from pellicle.arrays import Array
 from pellicle.components import Solver
 from pellicle.files import for_document, storage_errors
 from pellicle.numerics.problem import height_scale
+from pellicle.results.path import has_interaction
 from pellicle.results.result import Result
 from pellicle.units import axis_unit
 
@@ -25,6 +27,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MOST_NAMED = 10
+DIVERGING = "RdBu_r"
+"""The colours of fields that are negative where an interaction pulls."""
+RETRACTION = (0, (2.5, 1.2))
+"""Line style of retraction; its markers are filled, those of approach are open."""
 
 
 def without_round_off(step: xr.Dataset) -> xr.Dataset:
@@ -43,37 +49,93 @@ def without_round_off(step: xr.Dataset) -> xr.Dataset:
     return step.assign(gap=(step["gap"].dims, np.where(closed, 0.0, gap), step["gap"].attrs))
 
 
-def pressure_map(result: Result, axes: Axes, step: int = -1) -> None:
-    """Draw the pressure of a load step over the domain."""
+def default_step(steps: xr.Dataset) -> int:
+    """Return the index of the load step of a run that is drawn: -1, which is the last.
+
+    With an interaction a path often ends out of contact; it is then the last step in contact.
+    """
+    if not has_interaction(steps):
+        return -1
+    in_contact = np.flatnonzero(steps["contact_area"].values > 0)
+    return int(in_contact[-1]) if in_contact.size else -1
+
+
+def pressure_map(result: Result, axes: Axes, step: int | None = None) -> None:
+    """Draw the pressure of a load step over the domain, by default of `default_step`.
+
+    Where there is tension, colours are centred at 0, a line encloses the contact and a dotted line
+    the zone in which an interaction pulls.
+    """
+    step = default_step(result.dataset) if step is None else step
     data = result.dataset.isel(step=step)
     pressure = data["pressure"].values
     length, length_name = axis_unit(np.append(data["x"].values, data["y"].values), "m")
     scale, name = axis_unit(pressure, "Pa")
+    tensile = has_interaction(data)
     image = axes.imshow(
         np.ma.masked_equal(pressure.T * scale, 0.0),
         origin="lower",
         extent=extent(data["x"].values * length, data["y"].values * length),
-        cmap="viridis",
-        vmin=0.0,
+        **(diverging(pressure * scale) if tensile else {"cmap": "viridis", "vmin": 0.0}),
         interpolation="nearest",
         # The stage "rgba" converts every cell to a colour before it resamples.
         interpolation_stage="data",
     )
     axes.set_facecolor("0.93")
+    if tensile:
+        outline_contact(data, axes, length)
     axes.set(xlabel=f"x [{length_name}]", ylabel=f"y [{length_name}]")
     axes.set_title(_caption(result, step))
+    label = "pressure, negative where it pulls" if tensile else "contact pressure"
     figure = axes.get_figure()
     if figure is not None:
-        figure.colorbar(image, ax=axes, label=f"contact pressure [{name}]", shrink=0.85)
+        figure.colorbar(image, ax=axes, label=f"{label} [{name}]", shrink=0.85)
 
 
-def profile(result: Result, axes: Axes, step: int = -1) -> None:
-    """Draw pressure and gap along x through the centre of the domain."""
+def diverging(values: Array) -> dict[str, Any]:
+    """Return keywords of ``Axes.imshow`` for colours centred at 0, blue where negative."""
+    highest = float(np.abs(values[np.isfinite(values)]).max(initial=0.0)) or 1.0
+    return {"cmap": DIVERGING, "vmin": -highest, "vmax": highest}
+
+
+def outline_contact(step: xr.Dataset, axes: Axes, length: float) -> None:
+    """Draw a line around the contact and a dotted one around the zone in which a traction acts.
+
+    ``length`` is the factor from metres to the unit of the axes.
+    """
+    contact = step["contact"].transpose("x", "y").values
+    acts = contact | (step["pressure"].transpose("x", "y").values != 0)
+    x, y = step["x"].values * length, step["y"].values * length
+    for mask, style in ((contact, "solid"), (acts, "dotted")):
+        # matplotlib warns of a contour that does not exist.
+        if mask.any() and not mask.all() and min(mask.shape) > 1:
+            axes.contour(
+                x,
+                y,
+                mask.T.astype(float),
+                levels=[0.5],
+                colors="black",
+                linewidths=0.8,
+                linestyles=style,
+            )
+
+
+def profile(result: Result, axes: Axes, step: int | None = None) -> None:
+    """Draw pressure and gap along x through the centre of the domain, by default of `default_step`.
+
+    With an interaction the contact is shaded.
+    """
+    step = default_step(result.dataset) if step is None else step
     data = without_round_off(result.dataset.isel(step=step))
     centre = data.sizes["y"] // 2
     line = data.isel(y=centre)
     gap = line["gap"].values
-    near = gap <= max(float(data["depth"]), 0.0) * 2
+    pulls = has_interaction(data)
+    height = max(float(data["depth"]), 0.0)
+    if pulls:
+        # The surface rises above the undeformed plane, and the indenter hangs over it.
+        height = max(abs(float(data["depth"])), float(np.abs(line["displacement"].values).max()))
+    near = gap <= height * 2
     length, length_name = axis_unit(line["x"].values, "m")
     scale, name = axis_unit(line["pressure"].values, "Pa")
     opens = bool(gap[near].any())
@@ -82,12 +144,24 @@ def profile(result: Result, axes: Axes, step: int = -1) -> None:
     x = line["x"].values * length
     axes.plot(x, line["pressure"].values * scale, color="C0")
     axes.set(xlabel=f"x [{length_name}] at y = {line['y'].item() * length:.3g} {length_name}")
-    axes.set_ylabel(f"contact pressure [{name}]", color="C0")
+    axes.set_ylabel(f"{'' if pulls else 'contact '}pressure [{name}]", color="C0")
     axes.set_title(_caption(result, step))
     gap_axes = axes.twinx()
     gap_axes.plot(x, np.where(near, gap * gap_scale, np.nan), color="C1", linestyle="--")
     gap_axes.set_ylabel(f"gap [{gap_name}]", color="C1")
-    for side in (axes, gap_axes):
+    if pulls:
+        axes.axhline(0.0, color="C0", linewidth=0.6)
+        axes.fill_between(
+            x,
+            0,
+            1,
+            where=line["contact"].values,
+            step="mid",
+            transform=axes.get_xaxis_transform(),
+            color="0.9",
+            zorder=0,
+        )
+    for side in (gap_axes,) if pulls else (axes, gap_axes):
         side.set_ylim(bottom=0.0)
     if not opens and float(data["depth"]) > 0:
         gap_axes.set_ylim(top=float(data["depth"]) * gap_scale)
@@ -95,7 +169,7 @@ def profile(result: Result, axes: Axes, step: int = -1) -> None:
 
 def force_depth(result: Result, axes: Axes) -> None:
     """Draw force against depth over the load steps."""
-    _curve(result, axes, [("force", "force", "o-")], "force", "N", "depth", "m")
+    _curve(result, axes, [("force", None, "o-")], "force", "N", "depth", "m")
 
 
 def area_force(result: Result, axes: Axes) -> None:
@@ -107,7 +181,8 @@ def area_force(result: Result, axes: Axes) -> None:
     ]
     series = [("contact_area", "cells in contact", "o-"), *corrected]
     _curve(result, axes, series, "contact area", "m2", "force", "N")
-    axes.legend()
+    if not has_interaction(result.dataset):
+        axes.legend()
 
 
 FIGURES: dict[str, Callable[[Result, Axes], None]] = {
@@ -171,6 +246,7 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     x_scale, x_name = _unit_near_one(table[against])
     stacked = [d for d in table["status"].dims if d not in (along, *compared)]
     many = table.sizes[compared[0]] if compared else 1
+    pulls, paths = has_interaction(table), list[list[Leg]]()
     for number, part in enumerate(_parts(table, compared)):
         colour = _colour(number, many)
         # Of many values only some are named: colours change evenly between them.
@@ -178,7 +254,22 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
         label = _label(part, compared[0]) if named else ""
         for line in _parts(part, stacked):
             x, y = line[against].values * x_scale, line[variable].values * scale
-            axes.plot(x, y, "o-", color=colour, label=label, markersize=4, mfc="white")
+            if pulls and against == "depth":
+                finished = np.isfinite(line["depth"].values)
+                paths.append(legs(line["depth"].values[finished]))
+                draw_legs(
+                    axes,
+                    paths[-1],
+                    x[finished],
+                    y[finished],
+                    color=colour,
+                    marker="o",
+                    linestyle="-",
+                    label=label,
+                    markersize=4,
+                )
+            else:
+                axes.plot(x, y, "o-", color=colour, label=label, markersize=4, mfc="white")
             good = line["converged"].values
             axes.plot(x[~good], y[~good], "x", color="red", markersize=9)
             label = ""
@@ -187,9 +278,13 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
         ylabel=f"{variable.replace('_', ' ')} [{name}]" if name else variable.replace("_", " "),
         title=table.attrs.get("title", ""),
     )
-    axes.set_ylim(bottom=0.0)
+    if pulls:
+        axes.axhline(0.0, color="0.4", linewidth=0.6)
+        name_legs(axes, paths)
+    else:
+        axes.set_ylim(bottom=0.0)
     axes.grid(alpha=0.3)
-    if compared:
+    if compared or axes.get_legend_handles_labels()[1]:
         # matplotlib takes long to find the best place among many curves.
         axes.legend(fontsize="small", loc="upper left" if many > _MOST_NAMED else "best")
 
@@ -289,7 +384,7 @@ def _colour(number: int, count: int) -> str | tuple[float, float, float, float]:
 def _curve(
     result: Result,
     axes: Axes,
-    series: list[tuple[str, str, str]],
+    series: Sequence[tuple[str, str | None, str]],
     what: str,
     unit: str,
     against: str,
@@ -299,18 +394,90 @@ def _curve(
     scale, name = axis_unit(data[series[0][0]].values, unit)
     x_scale, x_name = axis_unit(data[against].values, against_unit)
     good = data["converged"].values.astype(bool)
-    for variable, label, style in series:
+    pulls = has_interaction(data)
+    for number, (variable, label, style) in enumerate(series):
         x, y = data[against].values * x_scale, data[variable].values * scale
-        (line,) = axes.plot(x, y, style, label=label, markersize=4)
+        if pulls:
+            draw_legs(
+                axes,
+                legs(data["depth"].values),
+                x,
+                y,
+                color=f"C{number}",
+                marker=style[0],
+                linestyle=style[1:],
+                label=label,
+                markersize=4,
+            )
+        else:
+            (line,) = axes.plot(x, y, style, label=label, markersize=4)
+            line.set_markerfacecolor("white")
         axes.plot(x[~good], y[~good], "x", color="red", markersize=9, label="_not converged")
-        line.set_markerfacecolor("white")
     axes.set(xlabel=f"{against} [{x_name}]", ylabel=f"{what} [{name}]")
-    axes.set_xlim(left=0.0)
-    axes.set_ylim(bottom=0.0)
+    if pulls:
+        axes.axhline(0.0, color="0.4", linewidth=0.6)
+        name_legs(axes, [legs(data["depth"].values)])
+        if axes.get_legend_handles_labels()[1]:
+            axes.legend(fontsize="small")
+    else:
+        axes.set_xlim(left=0.0)
+        axes.set_ylim(bottom=0.0)
     axes.grid(alpha=0.3)
     axes.set_title(result.dataset.attrs.get("title", ""))
     if not good.all():
         axes.annotate("× not converged", (0.02, 0.95), xycoords="axes fraction", color="red")
+
+
+def draw_legs(
+    axes: Axes, path: Iterable[Leg], x: Array, y: Array, *, arrows: bool = True, **style: Any
+) -> None:
+    """Draw a curve over the steps of a path, approach and retraction in different styles.
+
+    Approach has the given style of ``Axes.plot``, which needs a color, with open markers;
+    retraction has short dashes and filled markers. ``arrows`` point in the order of the steps; on
+    logarithmic axes they might begin at values that are not positive. `name_legs` names both parts
+    in the legend.
+    """
+    label = style.pop("label", None)
+    # The legend shows the plain style if there is an approach.
+    for leg in sorted(path, key=lambda leg: leg.direction):
+        drawn = {**style, "markerfacecolor": "white"}
+        if leg.direction == "retraction":
+            drawn["markerfacecolor"] = style["color"]
+            if style.get("linestyle") != "none":
+                drawn["linestyle"] = RETRACTION
+        axes.plot(x[leg.steps], y[leg.steps], label=label, **drawn)
+        if arrows:
+            _point_along(axes, x[leg.steps], y[leg.steps], style["color"])
+        label = None
+
+
+def name_legs(axes: Axes, paths: Iterable[Iterable[Leg]]) -> None:
+    """Name approach and retraction in the legend to come, if the paths have both."""
+    if len({leg.direction for path in paths for leg in path}) > 1:
+        style: dict[str, Any] = {"color": "0.4", "marker": "o", "markersize": 4}
+        axes.plot([], [], label="approach", markerfacecolor="white", **style)
+        axes.plot([], [], label="retraction", linestyle=RETRACTION, **style)
+
+
+def _point_along(axes: Axes, x: Array, y: Array, colour: Any) -> None:
+    """Draw an arrow in the middle of the part of a line in which y changes, in its order."""
+    finite = np.isfinite(x) & np.isfinite(y)
+    starts = np.flatnonzero(finite[:-1] & finite[1:] & (y[1:] != y[:-1]))
+    if starts.size:
+        start = int(starts[starts.size // 2])
+        axes.annotate(
+            "",
+            xy=((x[start] + x[start + 1]) / 2, (y[start] + y[start + 1]) / 2),
+            xytext=(x[start], y[start]),
+            arrowprops={
+                "arrowstyle": "-|>",
+                "mutation_scale": 15,
+                "color": colour,
+                "shrinkA": 0,
+                "shrinkB": 0,
+            },
+        )
 
 
 def _caption(result: Result, step: int) -> str:

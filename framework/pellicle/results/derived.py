@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from pellicle.model.expression import evaluate
+from pellicle.model.expression import evaluate, names_in
 from pellicle.model.paths import walk
 
 if TYPE_CHECKING:
@@ -51,13 +51,23 @@ def names(data: xr.Dataset) -> dict[str, Any]:
 def derive(table: xr.Dataset, expressions: Mapping[str, str]) -> xr.Dataset:
     """Return the table of a study with derived columns, which may use earlier ones.
 
+    A column has a value for each step, or one for each run if it uses variables of the path only.
+
     Raises
     ------
     ConfigError
         An expression is not arithmetic, or a name in it is unknown.
     """
     for name, text in expressions.items():
-        table = table.assign({name: 0.0 * table["converged"] + evaluate(text, names(table))})
+        per_run = {
+            str(name)
+            for name, variable in table.data_vars.items()
+            if "step" not in variable.dims and variable.dtype.kind == "f"
+        }
+        like = table["converged"]
+        if names_in(text) & per_run:
+            like = like.isel(step=0, drop=True)
+        table = table.assign({name: 0.0 * like + evaluate(text, names(table))})
         table[name].attrs = {"long_name": text}
     return table
 

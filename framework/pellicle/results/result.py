@@ -12,6 +12,7 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle.grid import Grid
 
 from . import storage
+from .path import path_variables
 from .status import Status
 from .variables import FIELDS, REQUIRED, damage
 
@@ -47,6 +48,15 @@ class Result:
     def converged(self) -> bool:
         """Whether every step converged."""
         return bool(self.dataset["converged"].all())
+
+    @property
+    def path_summary(self) -> dict[str, float]:
+        """Pull-off, loss and gain of contact, and work of the path; empty without an interaction.
+
+        The names, units and meanings are those of `pellicle.analysis.PathSummary`; events that the
+        path does not contain are NaN.
+        """
+        return path_variables(self.dataset)
 
     def failures(self) -> list[tuple[int, str]]:
         """Return number, counted from 1, and status of each step that did not converge."""

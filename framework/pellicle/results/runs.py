@@ -15,7 +15,8 @@ from pellicle.model.expression import evaluate, names_in
 
 from . import storage
 from .derived import CELLS, REDUCTIONS, as_array, names
-from .variables import FIELDS
+from .path import with_path
+from .variables import FIELDS, WALL_PRESSURE
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +29,8 @@ class Runs:
     table: xr.Dataset
     """Numbers of each run and step, over ``step`` and, in a study, over its axes.
 
-    The variable ``run`` names the runs; numbers of missing steps are NaN.
+    The variable ``run`` names the runs; numbers of missing steps are NaN. Where there is an
+    interaction, variables of kind ``path`` have one value for each run.
     """
     source: Callable[[str], xr.Dataset]
     """Function that returns the dataset of a run by name, or raises StorageError."""
@@ -38,7 +40,8 @@ class Runs:
     @classmethod
     def of_run(cls, dataset: xr.Dataset, configuration: str = "{}") -> Runs:
         """Return a single run, given its result."""
-        return cls(dataset.drop_dims(CELLS).assign(run=((), "")), lambda _: dataset, configuration)
+        table = with_path(dataset.drop_dims(CELLS)).assign(run=((), ""))
+        return cls(table, lambda _: dataset, configuration)
 
     @classmethod
     def of_study(cls, table: xr.Dataset, directory: Path, configuration: str = "{}") -> Runs:
@@ -79,7 +82,7 @@ class Runs:
         ConfigError
             The text is not arithmetic, or names an unknown variable.
         """
-        if names_in(text) & {*FIELDS, *CELLS}:
+        if names_in(text) & {*FIELDS, WALL_PRESSURE, *CELLS}:
             return self.from_each(lambda run: _by_step(text, run))
         return as_array(text, self.table)
 

@@ -10,10 +10,22 @@ from .status import Status
 if TYPE_CHECKING:
     import xarray as xr
 
-Kind = Literal["field", "main", "requested", "other", "contact", "effort", "residual", "status"]
+Kind = Literal[
+    "field",
+    "main",
+    "requested",
+    "other",
+    "interaction",
+    "contact",
+    "path",
+    "effort",
+    "residual",
+    "status",
+]
 """``field`` has a value for each cell; ``main`` is listed for each run of a study; ``requested``
 exists only if the loading requests it, like variables of a prescription; ``contact`` describes the
-shape of the contact."""
+shape of the contact; ``interaction`` exists only with an interaction; so does ``path``, which has
+one value for all steps of a run."""
 Type = Literal["number", "count", "truth", "text"]
 
 
@@ -50,10 +62,14 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
     "requested": (
         ("stiffness", "N/m", "contact stiffness dF/dδ, where loading.stiffness asks for it"),
         ("wall_pressure", "Pa", "pressure of the indenter without the traction across the gap"),
+        ("jumped", "1", "whether a contact was lost or gained at once", "truth"),
+    ),
+    "interaction": (
         ("zone_area", "m2", "area off the contact where the traction exceeds 1 % of the strength"),
         ("zone_width", "m", "mean distance from the contact to the outer edge of the zone"),
         ("energy", "J", "elastic energy plus energy of the interaction"),
-        ("jumped", "1", "whether a contact was lost or gained at once", "truth"),
+        ("force_error", "N", "estimated error of the force, from a wider zone"),
+        ("jumped", "1", "whether all contact was gained or lost in this step", "truth"),
         ("residual_traction", "1", "error of the traction across the gap over all tractions"),
     ),
     "contact": (
@@ -72,6 +88,25 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         ("major_axis_angle", "rad", "angle from x to the major axis"),
         ("patches", "1", "parts of the contact; cells that share an edge are of one part", "count"),
         ("perimeter", "m", "length of the border of the contact"),
+    ),
+    "path": (
+        ("pull_off", "N", "lowest force on the path, if the path retracts beyond it"),
+        ("pull_off_depth", "m", "depth of the step of lowest force"),
+        ("pull_off_radius", "m", "contact radius at the step of lowest force"),
+        ("detach", "m", "depth of the last step in contact before contact is first lost"),
+        ("detach_force", "N", "force at the last step in contact before contact is first lost"),
+        ("detach_accuracy", "m", "distance in depth from there to the next step"),
+        (
+            "jump_in",
+            "m",
+            "depth of the first step in contact after one out of contact; that of jkr depends on "
+            "the range that the cells give it, and goes to 0 with them",
+        ),
+        ("jump_in_force", "N", "force at the first step in contact after one out of contact"),
+        ("jump_in_accuracy", "m", "distance in depth from there to the step before"),
+        ("work", "J", "∫F dδ over the path, by the trapezoidal rule"),
+        ("work_accuracy", "J", "Σ|ΔF Δδ|/2 of the steps in which contact is lost or gained"),
+        ("dissipated_energy", "J", "work less the change of the energy over the path"),
     ),
     "effort": (
         ("iterations", "1", "iterations of the solver", "count"),
@@ -102,6 +137,8 @@ def names_of(*kinds: Kind) -> tuple[str, ...]:
 
 
 FIELDS = names_of("field")
+WALL_PRESSURE = "wall_pressure"
+"""The field that a result has beside `FIELDS` if there is an interaction."""
 REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "iterations")
 """Variables in the result files of every version."""
 

@@ -20,9 +20,11 @@ from pellicle.components.calls import (
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
 from pellicle.numerics.problem import Equilibrium, Stiffness, equilibrium_of, measure_stiffness
+from pellicle.numerics.solution import Stop
 from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable
 
+from .adhesion import force_error, greatest_pull
 from .progress import Bar
 from .target_search import Reached, reach
 from .verdict import judge
@@ -49,6 +51,7 @@ def _solved_step(run: Run, setting: Setting, index: int, monitor: Monitor) -> xr
     value, prescription = run.loading.values[index], run.loading.prescription
     step = solve_step(run, setting, value, monitor)
     used = setting.operator.applications - applied
+    error = force_error(run, step.equilibrium, monitor)
     stiffness = _stiffness(run, step.equilibrium, monitor) if run.loading.stiffness else None
     status, message = judge(run, value, step, stiffness)
     report = report_of(prescription, setting, step.equilibrium)
@@ -63,6 +66,8 @@ def _solved_step(run: Run, setting: Setting, index: int, monitor: Monitor) -> xr
         **{variable.name: area for variable, area in areas.items()},
         **report,
         **({"stiffness": stiffness.value} if stiffness else {}),
+        **({"jumped": step.jumped} if setting.law else {}),
+        **({} if error is None else {"force_error": error}),
         "iterations": step.iterations,
         "operator_applications": used,
         "converged": status.converged,
@@ -81,7 +86,16 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Re
         return reach(setting, target, run.solver, monitor)
     problem = setting.problem(target)
     solution = solution_of(run.solver, problem, setting.state, monitor)
-    return Reached(equilibrium_of(problem, solution), solution.iterations, solution.stop)
+    step = Reached(
+        equilibrium_of(problem, solution),
+        solution.iterations,
+        solution.stop,
+        jumped=solution.jumped,
+    )
+    if step.stop is Stop.PULLED_OFF:
+        pull = greatest_pull(setting, run.solver, problem.control.value, monitor)
+        step = step._replace(between=pull)
+    return step
 
 
 def _stiffness(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> Stiffness:

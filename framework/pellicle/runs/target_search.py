@@ -37,7 +37,9 @@ class Reached(NamedTuple):
     how: Literal["met", "nearest", "not found"] = "met"
     """"nearest" if the quantity jumps across the goal, "not found" if no control passes it."""
     between: tuple[float, float] = (-math.inf, math.inf)
-    """The values of the trials next below and above the goal."""
+    """The values next below and above the goal, or forces carried and not carried by a pull."""
+    jumped: bool = False
+    """Whether all contact was gained or lost since the start."""
 
 
 def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) -> Reached:
@@ -68,6 +70,7 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
         trials.missed,
         "met" if 0.0 in trials.excess.values() else how,
         (trials.below, trials.above),
+        trials.solution.jumped,
     )
 
 

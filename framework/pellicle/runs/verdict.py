@@ -10,6 +10,7 @@ from pellicle.components import Interaction
 from pellicle.components.prescription import Search, in_unit
 from pellicle.config.run import Run
 from pellicle.numerics.problem import Equilibrium, Stiffness
+from pellicle.numerics.solution import Stop
 from pellicle.results.status import Status
 from pellicle.results.step import zone_width
 
@@ -30,6 +31,11 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
     tolerance = run.solver.tolerance
     if not np.isfinite(equilibrium.force):
         return Status.NOT_FINITE, Status.NOT_FINITE.value
+    if step.stop is Stop.PULLED_OFF:
+        carried, lost = step.between
+        status = Status.NOTHING_TO_PULL if carried == lost else Status.PULLED_OFF
+        force = equilibrium.problem.control.value
+        return status, status.value.format(force=force, carried=carried, lost=lost)
     if (lowest := float(equilibrium.wall.min())) < 0:
         share = -lowest / float(np.abs(equilibrium.wall).max())
         return Status.NEGATIVE_PRESSURE, Status.NEGATIVE_PRESSURE.value.format(measure=share)

@@ -20,6 +20,7 @@ _FAILURES = {
     "not run": "were not finished",
 }
 """Phrases for messages such as "3 did not converge", by verdict."""
+_EVENTS = "pull_off", "detach", "jump_in", "dissipated_energy"
 _WORST_FIRST = "failed", "not run", "NOT CONVERGED"
 
 
@@ -32,6 +33,7 @@ def rows(table: xr.Dataset) -> list[dict[str, str]]:
         last = {
             name: f"{run[name].values[done - 1]:.6g}" if done and name in run else ""
             for name in (*names_of("main"), *derived)
+            if name not in run or "step" in run[name].dims
         }
         lines.append(
             {
@@ -43,6 +45,21 @@ def rows(table: xr.Dataset) -> list[dict[str, str]]:
             }
         )
     return lines
+
+
+def paths(table: xr.Dataset) -> list[dict[str, str]]:
+    """Return a row for each run with the events on its path; none without an interaction."""
+    derived = json.loads(table.attrs["configuration"])["study"].get("derived", {})
+    per_run = [n for n in derived if n in table and "step" not in table[n].dims]
+    names = [n for n in (*_EVENTS, *per_run) if n in table]
+    return [
+        {
+            "run": str(run["run"].item()),
+            **{name: "" if np.isnan(run[name]) else f"{run[name].item():.6g}" for name in names},
+        }
+        for run in runs_of(table)
+        if names
+    ]
 
 
 def progress_of(run: xr.Dataset) -> tuple[int, int, str]:

@@ -14,6 +14,7 @@ from pellicle.config.study import Study
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN, derive
+from pellicle.results.path import with_path
 from pellicle.results.status import Status
 from pellicle.results.variables import VARIABLES, header
 from pellicle.results.variables import damage as damage_of
@@ -89,7 +90,7 @@ class StudyTable:
             np.arange(1, self._texts["status"].shape[-1] + 1),
             {"long_name": "load step, counted from 1"},
         )
-        table = xr.Dataset(variables, coordinates, self._attributes)
+        table = with_path(xr.Dataset(variables, coordinates, self._attributes))
         return derive(table, self._study.derived) if self._numbers else table
 
 

@@ -40,13 +40,13 @@ def curve_of(path: xr.Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurv
     return analysis.adhesive_curve(
         path["depth"].values,
         path["force"].values,
-        np.sqrt(area / pi) - _excess_radius(kernel, sqrt(grid.cell_area)),
+        np.sqrt(area / pi) - excess_radius(kernel, sqrt(grid.cell_area)),
         path["stiffness"].values,
         work_of_adhesion,
     )
 
 
-def _excess_radius(kernel: Kernel, spacing: float) -> float:
+def excess_radius(kernel: Kernel, spacing: float) -> float:
     """Return how much the contact radius counted in cells exceeds that of equal stiffness [m].
 
     Measured for flat punches of nine radii: 0 cells on springs, 0.115 on a half-space, whose

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, PrivateAttr
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
@@ -39,6 +39,16 @@ class JKR(Interaction):
         WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m**2]")
     ]
 
+    estimate_error: Annotated[
+        bool,
+        Field(
+            description="whether to estimate the error of each force, by solving its step again "
+            "with a wider zone"
+        ),
+    ] = True
+
+    _cells: float = PrivateAttr(default=_CELLS)
+
     def energy(self, gap: Array) -> Array:
         """Return −w [J/m²] at contact and 0 across any gap."""
         return np.where(gap > 0, 0.0, -self.work_of_adhesion)
@@ -53,9 +63,17 @@ class JKR(Interaction):
 
     def resolved(self, kernel: Kernel, grid: Grid) -> GapLaw:
         """Return linear softening over about two to three cells on this kernel."""
-        width = _CELLS * max(grid.spacing)
+        width = self._cells * max(grid.spacing)
         strength = softening_strength(self.work_of_adhesion, width, kernel)
         return Joined(work_of_adhesion=self.work_of_adhesion, strength=strength)
+
+    def wider(self, factor: float) -> JKR | None:
+        """Return the interaction with a zone of more cells; None without `estimate_error`."""
+        if not self.estimate_error:
+            return None
+        wider = self.model_copy()
+        wider._cells = factor * self._cells
+        return wider
 
 
 class Joined(Linear):

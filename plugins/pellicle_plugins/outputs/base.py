@@ -155,12 +155,16 @@ def scaled(text: str, values: xr.DataArray, axis_label: str | None) -> tuple[flo
     return factor, f"{text} [{name}]" if name else text
 
 
-def set_scales(axes: Axes, log: Sequence[str]) -> None:
-    """Make the axes in ``log`` logarithmic if they show a positive value; begin others at 0."""
+def set_scales(axes: Axes, log: Sequence[str], *, signed: bool = False) -> None:
+    """Make the axes in ``log`` logarithmic if they show a positive value; begin others at 0.
+
+    With ``signed`` values, a logarithmic axis leaves out those that are not positive, and the lines
+    to them; otherwise such lines end at the edge.
+    """
     for which in ("x", "y"):
         low, _ = getattr(axes, f"get_{which}lim")()
         if which in log and np.isfinite(getattr(axes.dataLim, f"minpos{which}")):
-            getattr(axes, f"set_{which}scale")("log")
+            getattr(axes, f"set_{which}scale")("log", nonpositive="mask" if signed else "clip")
         elif low < 0 and getattr(axes.dataLim, f"{which}0") >= 0:
             getattr(axes, f"set_{which}lim")(**{"left" if which == "x" else "bottom": 0.0})
     axes.grid(alpha=0.3)

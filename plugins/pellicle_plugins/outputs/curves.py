@@ -11,12 +11,15 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle import hookimpl
-from pellicle.analysis import extrapolate
+from pellicle.analysis import Leg, extrapolate, legs
 from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError
 from pellicle.model.base import Model
 from pellicle.model.expression import names_in
+from pellicle.report.plotting import RETRACTION, draw_legs
+from pellicle.results.path import has_interaction
+from pellicle.results.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.analytic.reference import exact
 
 from .base import (
@@ -71,6 +74,10 @@ class Curves(XYFigure):
     by their dotted path, and fields (``x``, ``y``, ``pressure``, ``displacement``, ``gap``,
     ``contact``) inside ``mean``, ``sum``, ``min`` or ``max`` over the cells. The numbers drawn are
     written as CSV beside the figure.
+
+    Where there is an interaction, a curve over the steps distinguishes approach, open markers, and
+    retraction, filled markers and short dashes; numbers of a whole path, such as ``pull_off``, make
+    a curve over the runs.
     """
 
     type: Literal["curves"] = "curves"
@@ -114,10 +121,23 @@ class Curves(XYFigure):
         ``by`` is by default the only long axis beside step, or step if ``x`` is that axis.
         """
         sizes, by = runs.table.sizes, self.by
-        long = [str(dim) for dim, size in sizes.items() if size > 1 and dim != self.over]
-        if by is None and len(long) == 2 and long[1] == "step":
-            by = "step" if long[0] in names_in(self.x) else long[0]
+        steps = self._over_steps(runs.table)
+        long = [
+            str(dim)
+            for dim, size in sizes.items()
+            if size > 1 and dim != self.over and (steps or dim != "step")
+        ]
+        if by is None and len(long) == 2 and (long[1] == "step" or not steps):
+            by = long[1] if long[0] in names_in(self.x) else long[0]
         return super(Curves, self.model_copy(update={"by": by})).write(runs, stem)
+
+    def _over_steps(self, table: xr.Dataset) -> bool:
+        """Whether the expressions have a value for each step, not just one for each run."""
+        if not has_interaction(table):
+            return True
+        used = set[str]().union(*(names_in(text) for text in (self.x, *self.y)))
+        of_runs = {name for name in used & {*map(str, table.variables)} if _of_run(table[name])}
+        return bool(used & ({*map(str, table.variables), *FIELDS, WALL_PRESSURE} - of_runs))
 
     def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
         """Draw the curves, and yield the rows of the numbers drawn."""
@@ -128,11 +148,11 @@ class Curves(XYFigure):
         factor_y, y_label = scaled(self.y[0], ys[0], self.y_label)
         lines = list(self._lines(runs, x, ys))
         for line in lines:
-            line.draw(axes, factor_x, factor_y)
+            line.draw(axes, factor_x, factor_y, bool(self.log))
         published = list(self._draw_published(axes))
         y_label = y_label if len(ys) == 1 else self.y_label or ""
         axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
-        set_scales(axes, self.log)
+        set_scales(axes, self.log, signed=has_interaction(runs.table))
         if axes.get_legend_handles_labels()[1]:
             axes.legend(frameon=False, fontsize="small")
         for line in lines:
@@ -144,6 +164,7 @@ class Curves(XYFigure):
     ) -> Iterator[_Line | _Limit]:
         """Yield what is drawn, in order; entries that only the legend shows have no points."""
         reference = exact(runs) if self.reference else None
+        directions: set[str] = set()
         for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
             series = self.series[number] if self.series else text
             exact_x, exact_y = (
@@ -157,21 +178,25 @@ class Curves(XYFigure):
                 legend = "" if number else name
                 if not self.by and (self.series or len(ys) > 1):
                     legend = series
-                points = self._points(part, _at(x, point), _at(y, point))
-                yield _Line(points, style, legend, name, series)
+                points, path = self._points(part, _at(x, point), _at(y, point))
+                directions |= {leg.direction for leg in path}
+                yield _Line(points, style, legend, name, series, path)
                 if self.extrapolate:
                     _require_grids(_at(x, point))
                     # An interrupted study may lack some of them.
                     if np.unique(points.x).size >= _GRIDS:
                         yield _Limit(points, style, name, f"{series}, extrapolated")
                 if reference:
-                    points = self._points(part, _at(exact_x, point), _at(exact_y, point))
+                    points, _ = self._points(part, _at(exact_x, point), _at(exact_y, point))
                     thin = _Style(style.colour, None)
                     yield _Line(points.ordered(), thin, "", name, f"{series}, semi-analytic")
             if self.by and len(ys) > 1:
                 yield _Line(_NO_POINTS, _Style("0.4", number, reference is not None), series)
         if reference:
             yield _Line(_NO_POINTS, _Style("0.4", None), "semi-analytic")
+        if len(directions) > 1:
+            yield _Line(_NO_POINTS, _Style("0.4", 0), "approach")
+            yield _Line(_NO_POINTS, _Style("0.4", 0, retracts=True), "retraction")
 
     def _draw_published(self, axes: Axes) -> Iterator[dict[str, object]]:
         for number, other in enumerate(self.published):
@@ -188,11 +213,17 @@ class Curves(XYFigure):
             for x, y in zip(other.x, other.y, strict=True):
                 yield {"curve": other.label, "series": "published", "x": x, "y": y}
 
-    def _points(self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> _Points:
-        """Return the points of one curve, in the order of the table."""
+    def _points(
+        self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray
+    ) -> tuple[_Points, list[Leg]]:
+        """Return the points of one curve, in the order of the table, and the legs of its path."""
         import xarray as xr
 
-        x, y, good = xr.broadcast(x, y, table["converged"].astype(float))
+        converged = table["converged"]
+        if has_interaction(table) and "step" not in (*x.dims, *y.dims):
+            # Runs may have fewer steps than the table.
+            converged = (converged | (table["status"] == "")).all("step")
+        x, y, good = xr.broadcast(x, y, converged.astype(float))
         if self.over is not None:
             finished = (x + y).notnull()
             x, y, good = (column.where(finished) for column in (x, y, good))
@@ -214,7 +245,11 @@ class Curves(XYFigure):
                 "by",
             )
         values = np.array([column.values.ravel().astype(float) for column in columns])
-        return _Points(*values[:, np.isfinite(values).all(axis=0)])
+        finite = np.isfinite(values).all(axis=0)
+        path: list[Leg] = []
+        if has_interaction(table) and long == ["step"] and self.over is None:
+            path = legs(xr.broadcast(table["depth"], x)[0].values.ravel()[finite])
+        return _Points(*values[:, finite]), path
 
 
 @dataclass(frozen=True)
@@ -224,6 +259,8 @@ class _Style:
     """Index of the marker and line style; None for a plain thin line."""
     scattered: bool = False
     """Whether only markers are drawn, beside the line of a reference."""
+    retracts: bool = False
+    """Whether it is the retraction of a path, with short dashes and filled markers."""
 
     def keywords(self) -> dict[str, Any]:
         """Return keywords of ``Axes.plot``."""
@@ -232,9 +269,13 @@ class _Style:
         return {
             "color": self.colour,
             "marker": _MARKERS[self.number % len(_MARKERS)],
-            "linestyle": "none" if self.scattered else _LINES[self.number % len(_LINES)],
+            "linestyle": "none"
+            if self.scattered
+            else RETRACTION
+            if self.retracts
+            else _LINES[self.number % len(_LINES)],
             "markersize": 4,
-            "markerfacecolor": "white",
+            "markerfacecolor": self.colour if self.retracts else "white",
             "linewidth": 1.2,
         }
 
@@ -268,11 +309,18 @@ class _Line:
     legend: str
     curve: str = ""
     series: str = ""
+    path: Sequence[Leg] = ()
+    """The legs of a path, if approach and retraction are to be told apart."""
 
-    def draw(self, axes: Axes, factor_x: float, factor_y: float) -> None:
+    def draw(self, axes: Axes, factor_x: float, factor_y: float, log: bool) -> None:
         points, style = self.points, self.style
         x, y = points.x * factor_x, points.y * factor_y
-        axes.plot(x, y, label=self.legend or None, **style.keywords())
+        if self.path:
+            draw_legs(
+                axes, self.path, x, y, arrows=not log, label=self.legend or None, **style.keywords()
+            )
+        else:
+            axes.plot(x, y, label=self.legend or None, **style.keywords())
         if style.number is None:
             return
         bad = points.good < 1
@@ -284,10 +332,18 @@ class _Line:
 
     def rows(self) -> Iterator[dict[str, object]]:
         columns = (getattr(self.points, field.name) for field in fields(self.points))
-        for x, y, low, high, good, runs in zip(*columns, strict=True):
+        # A turn belongs to the leg that reaches it.
+        directions = {
+            step: leg.direction
+            for leg in reversed(self.path)
+            for step in range(leg.steps.start, leg.steps.stop)
+        }
+        for step, (x, y, low, high, good, runs) in enumerate(zip(*columns, strict=True)):
             row: dict[str, object] = {"curve": self.curve, "series": self.series, "x": x, "y": y}
             if runs > 1:
                 row |= {"y_lowest": low, "y_highest": high, "runs": int(runs)}
+            if step in directions:
+                row["direction"] = directions[step]
             yield row | {"converged": bool(good)}
 
 
@@ -299,7 +355,7 @@ class _Limit:
         self._fit = extrapolate(points.x, points.y)
         self._head = {"curve": curve, "series": series}
 
-    def draw(self, axes: Axes, factor_x: float, factor_y: float) -> None:
+    def draw(self, axes: Axes, factor_x: float, factor_y: float, _log: bool) -> None:
         fit, colour = self._fit, self._style.colour
         x = np.linspace(0, float(self._points.x.max()), 200)
         y = np.append(fit.limit, fit(x[1:]))
@@ -337,6 +393,11 @@ def _require_grids(x: xr.DataArray) -> None:
             f"vary the grid over at least {_GRIDS}",
             "extrapolate",
         )
+
+
+def _of_run(variable: xr.DataArray) -> bool:
+    """Whether a variable of a table has one value for all steps of a run."""
+    return "step" not in variable.dims
 
 
 def _at(column: xr.DataArray, point: dict[str, int]) -> xr.DataArray:

@@ -12,6 +12,7 @@ from pydantic import Field
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.report.plotting import save_figure
+from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit
 
 from .base import Log, TableFigure, set_scales, write_csv
@@ -31,7 +32,9 @@ class Distributions(TableFigure):
 
     Each is over the cells of its own part and integrates to 1; infinite gaps are left out. The bins
     are written as CSV beside the figure, with the mean of the values in each: mean pressure times
-    density times width, summed up and multiplied by the contact area, is the force.
+    density times width, summed up and multiplied by the contact area, is the force. With an
+    interaction the pressure is that of all cells with a traction, and their area takes the place of
+    the contact area.
     """
 
     type: Literal["distributions"] = "distributions"
@@ -46,7 +49,8 @@ class Distributions(TableFigure):
 
     def _densities(self, step: xr.Dataset) -> dict[str, analysis.Distribution]:
         contact = step["contact"].values
-        cells = {"pressure": contact, "gap": ~contact}
+        acts = contact | (step["pressure"].values != 0) if has_interaction(step) else contact
+        cells = {"pressure": acts, "gap": ~contact}
         return {
             name: analysis.distribution(step[name].values[cells[name]], self.bins)
             for name in _FIELDS

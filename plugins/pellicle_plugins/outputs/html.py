@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
+import numpy as np
 import tomli_w
 from pydantic import Field
 
@@ -33,18 +34,21 @@ from pellicle.report.page import (
 )
 from pellicle.report.page import Field as MapField
 from pellicle.report.plotting import (
+    DIVERGING,
     FIGURES,
     STUDY_FIGURES,
+    default_step,
     study_curves,
     svg,
     without_round_off,
 )
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
+from pellicle.results.path import has_interaction
 from pellicle.results.result import Result
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
-from pellicle.results.variables import names_of
+from pellicle.results.variables import VARIABLES, WALL_PRESSURE, names_of
 from pellicle.studies.summary import coarse, failures, progress_of, reasons, runs_of
 from pellicle.units import axis_unit, readable
 
@@ -57,6 +61,12 @@ FIELDS = {
     "gap": MapField("gap", "m", "Blues", power=0.5),
 }
 """The variables that are mapped."""
+_STICKING = {
+    "pressure": MapField("pressure", "Pa", DIVERGING, blank=True, centred=True),
+    WALL_PRESSURE: MapField("wall pressure", "Pa", blank=True),
+    "gap": FIELDS["gap"],
+}
+"""The variables that are mapped where there is an interaction."""
 _CURVES = {
     "profile": "Pressure and gap of the last step along x through the centre.",
     "force_depth": "Force against depth over the load steps.",
@@ -105,19 +115,19 @@ class Html(Output):
             result = Result(data)
             sections = [
                 Section("Status", [_status(result)]),
-                Section("Results", _steps(data)),
-                Section("Maps", [self._maps_of_steps(data, Grid(**run["grid"]))]),
+                Section("Results", [*_steps(data), *_path(result)]),
+                Section("Maps", [self._maps_of_steps(result, Grid(**run["grid"]))]),
                 Section("Curves", _pictures_of(result)),
                 Section("Inputs", [_inputs(list(inputs(run)))]),
             ]
         else:
             run = json.loads(table.attrs[FIRST_RUN])
             rows = list(runs_of(table))
-            frames = dict(self._frames_of_runs(rows, stem.parent / "runs"))
+            frames = dict(self._frames_of_runs(table, rows, stem.parent / "runs"))
             sections = [
                 Section("Status", [_status_of_study(table, len(rows))]),
-                Section("Runs", [_runs(table, rows, list(frames))]),
-                Section("Maps", _maps_of_runs(list(frames.values()), len(rows))),
+                Section("Runs", [_runs(table, rows, list(frames)), *_paths(table, rows)]),
+                Section("Maps", _maps_of_runs(table, list(frames.values()), len(rows))),
                 Section("Curves", _pictures_of_study(table)),
                 Section("Inputs", [_inputs(_varied(table, list(inputs(run))))]),
             ]
@@ -132,47 +142,56 @@ class Html(Output):
             part.write_text(text, encoding="utf-8")
         return (path,)
 
-    def _maps_of_steps(self, data: xr.Dataset, grid: Grid) -> Maps:
+    def _maps_of_steps(self, result: Result, grid: Grid) -> Maps:
+        data = result.dataset
         steps = data.sizes["step"]
         chosen = self._chosen(steps)
         factor, unit = axis_unit(data["depth"].values, "m")
-        points = side(self.points, len(chosen) * len(FIELDS))
+        mapped = _mapped(data)
+        points = side(self.points, len(chosen) * len(mapped))
         frames = []
         for index in chosen:
             step = without_round_off(data.isel(step=index))
             label = f"{index + 1}: depth {step['depth'].item() * factor:.4g} {unit}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
-            frames.append(frame(label, grid, [step[name].values for name in FIELDS], points))
-        caption = f"Contact pressure and gap in {_some(len(chosen), steps, 'load step')}."
-        return Maps(caption, "load step", tuple(FIELDS.values()), frames, begin=len(frames) - 1)
+            frames.append(_frame(label, grid, step, mapped, points))
+        shown = default_step(data) % steps
+        begin = int(np.searchsorted(chosen, shown, side="right")) - 1
+        *first, last = [f"{field.name}" for field in mapped.values()]
+        names = f"{', '.join(first)} and {last}".capitalize()
+        caption = f"{names} in {_some(len(chosen), steps, 'load step')}."
+        return Maps(caption, "load step", tuple(mapped.values()), frames, begin=max(begin, 0))
 
-    def _frames_of_runs(self, rows: list[xr.Dataset], folder: Path) -> Iterator[tuple[int, Frame]]:
-        """Yield the maps of the last step of runs, by their index among all."""
+    def _frames_of_runs(
+        self, table: xr.Dataset, rows: list[xr.Dataset], folder: Path
+    ) -> Iterator[tuple[int, Frame]]:
+        """Yield the maps of a step of runs, by their index among all."""
         import xarray as xr
 
+        mapped = _mapped(table)
         solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
         chosen = self._chosen(len(solved))
-        points = side(self.points, len(chosen) * len(FIELDS))
+        points = side(self.points, len(chosen) * len(mapped))
         for index in (solved[number] for number in chosen):
-            row = rows[index]
-            last = progress_of(row)[0] - 1
+            row = rows[index].isel(step=slice(progress_of(rows[index])[0]))
+            shown = default_step(row) % row.sizes["step"]
+            sticks = has_interaction(row) and bool(np.isfinite(row["zone_area"].values[shown]))
+            names = (*RESULT_FIELDS, *[WALL_PRESSURE] * sticks)
             try:
                 # Read only the step that is drawn.
                 attributes, fields = storage.fields(
-                    folder / f"{row['run'].item()}.h5", RESULT_FIELDS, last
+                    folder / f"{row['run'].item()}.h5", names, shown
                 )
             except StorageError:
                 continue
             grid = Grid(**json.loads(attributes["configuration"])["grid"])
             step = xr.Dataset(
-                {
-                    name: (("x", "y"), field)
-                    for name, field in zip(RESULT_FIELDS, fields, strict=True)
-                },
+                {name: (("x", "y"), field) for name, field in zip(names, fields, strict=True)},
                 attrs=attributes,
-            ).assign(depth=row["depth"][last])
-            drawn = without_round_off(step)
-            yield index, frame(_named(row), grid, [drawn[name].values for name in FIELDS], points)
+            ).assign(depth=row["depth"][shown])
+            if not sticks:
+                step = step.assign({WALL_PRESSURE: step["pressure"]})
+            yield index, _frame(_named(row), grid, without_round_off(step), mapped, points)
 
     def _chosen(self, count: int) -> list[int]:
         """Return the indices that are mapped: all, or evenly spaced ones up to the last."""
@@ -180,11 +199,24 @@ class Html(Output):
         return [(count * (index + 1) + number - 1) // number - 1 for index in range(number)]
 
 
-def _maps_of_runs(frames: list[Frame], count: int) -> list[Maps]:
-    caption = (
-        f"The last step of {_some(len(frames), count, 'run')}, each in colours over its own range."
-    )
-    maps = Maps(caption, "run", tuple(FIELDS.values()), frames, shared=False)
+def _mapped(data: xr.Dataset) -> dict[str, MapField]:
+    """Return the fields that are mapped, by variable."""
+    return _STICKING if has_interaction(data) else FIELDS
+
+
+def _frame(
+    label: str, grid: Grid, step: xr.Dataset, mapped: dict[str, MapField], points: int
+) -> Frame:
+    signed = any(field.centred for field in mapped.values())
+    empty = [index for index, field in enumerate(mapped.values()) if signed and field.blank]
+    return frame(label, grid, [step[name].values for name in mapped], points, empty)
+
+
+def _maps_of_runs(table: xr.Dataset, frames: list[Frame], count: int) -> list[Maps]:
+    mapped = _mapped(table)
+    which = "The last step in contact" if has_interaction(table) else "The last step"
+    caption = f"{which} of {_some(len(frames), count, 'run')}, each in colours over its own range."
+    maps = Maps(caption, "run", tuple(mapped.values()), frames, shared=False)
     return [maps] if frames else []
 
 
@@ -225,6 +257,41 @@ def _column(name: str, variable: xr.DataArray) -> tuple[Column, float]:
     head = name if "." in name else name.replace("_", " ")
     is_text = variable.dtype.kind not in "if"
     return Column(head, unit, variable.attrs.get("long_name", ""), is_text), factor
+
+
+def _path(result: Result) -> list[Table]:
+    """Return the numbers of the whole path, where there is an interaction."""
+    rows: list[list[str | Cell]] = [
+        [name.replace("_", " "), _shown(value, VARIABLES[name].unit), VARIABLES[name].meaning]
+        for name, value in result.path_summary.items()
+    ]
+    columns = [Column(head, words=True) for head in ("path", "value", "meaning")]
+    caption = "Events on the path, to a step, and its work."
+    return [Table(caption, columns, rows)] if rows else []
+
+
+def _paths(table: xr.Dataset, runs: list[xr.Dataset]) -> list[Table]:
+    """Return the numbers of the path of each run, where there is an interaction."""
+    names = [
+        str(name)
+        for name, variable in table.data_vars.items()
+        if "step" not in variable.dims and variable.dtype.kind == "f"
+    ]
+    if not names:
+        return []
+    axes = [str(name) for name in table.coords if name != "step"]
+    columns = [(name, *_column(name, table[name])) for name in (*axes, *names)]
+    rows: list[list[str | Cell]] = []
+    for run in runs:
+        values = ((run[name].item(), factor) for name, _, factor in columns)
+        texts = ["" if v != v else _text(v, factor) for v, factor in values]
+        rows.append([str(run["run"].item()), *texts])
+    heads = [Column("run", words=True), *(column for _, column, _ in columns)]
+    return [Table("The path of each run: its events, to a step, and its work.", heads, rows)]
+
+
+def _shown(value: float, unit: str) -> str:
+    return "none" if np.isnan(value) else readable(value, unit)
 
 
 def _numbers(data: xr.Dataset) -> list[str]:

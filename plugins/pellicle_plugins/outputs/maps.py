@@ -12,8 +12,10 @@ from pydantic import Field
 
 from pellicle import hookimpl
 from pellicle.components import Output, Runs
-from pellicle.report.plotting import extent, save_figure
+from pellicle.model.expression import names_in
+from pellicle.report.plotting import diverging, extent, outline_contact, save_figure
 from pellicle.results.derived import as_array
+from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit
 
 from .base import TableFigure, scaled
@@ -31,7 +33,9 @@ class Maps(TableFigure):
 
     Other axes of a study are at their first value, steps at the last. ``field`` is
     arithmetic over the fields and numbers of a run: ``contact`` is drawn black on white, and
-    ``displacement - depth - gap`` is the profile of the indenter.
+    ``displacement - depth - gap`` is the profile of the indenter. Where an interaction pulls,
+    colours of an expression with ``pressure`` are centred at 0, a line encloses the contact, and a
+    dotted line the zone in which a traction acts.
     """
 
     numbers: ClassVar[bool] = False
@@ -79,19 +83,23 @@ class Maps(TableFigure):
         if low == high:
             # matplotlib would centre a scale without range on its only value.
             low, high = min(low, 0.0), max(high, 0.0 if low else 1.0)
+        colours = {"cmap": "binary" if is_bool else "viridis", "vmin": low, "vmax": high}
+        pulls = any(has_interaction(run) for _, run, _ in panels) and not is_bool
+        if pulls and low < 0 and "pressure" in names_in(self.field):
+            colours = diverging(values)
         for axes, (title, run, field) in zip(all_axes, panels, strict=False):
             length, unit = axis_unit(np.append(run["x"].values, run["y"].values), "m")
             image = axes.imshow(
                 field.transpose("y", "x").values * factor,
                 origin="lower",
                 extent=extent(run["x"].values * length, run["y"].values * length),
-                cmap="binary" if is_bool else "viridis",
-                vmin=low,
-                vmax=high,
+                **colours,
                 interpolation="nearest" if is_bool else None,
                 # The stage "rgba" converts every cell to four colour values first.
                 interpolation_stage="data",
             )
+            if pulls:
+                outline_contact(run, axes, length)
             axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
             axes.set_title(title, fontsize="medium")
             axes.label_outer()

@@ -19,7 +19,7 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.files import atomic_write
-from pellicle.results.variables import FIELDS
+from pellicle.results.variables import FIELDS, WALL_PRESSURE
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,7 +31,8 @@ class Vtk(Output):
     """Displaced surface with pressure, gap and contact, for ParaView: a file each step, and a list.
 
     The .vts files are structured grids of the cell centres. The surface lies at z = −displacement,
-    so the solid is below it, and all fields are point data; the numbers of the step are field data.
+    so the solid is below it, and all fields are point data, with the wall pressure where there is
+    an interaction; the numbers of the step are field data.
     The .pvd file, which lists the steps in order, opens them all.
     """
 
@@ -65,7 +66,8 @@ def _write_step(step: xr.Dataset, path: Path) -> None:
     """Write the structured grid of one step, a block of rows at a time."""
     data = step.isel(step=0)
     x, y = data["x"].values, data["y"].values
-    fields = {name: data[name].transpose("y", "x").values for name in FIELDS}
+    names = [name for name in (*FIELDS, WALL_PRESSURE) if name in data]
+    fields = {name: data[name].transpose("y", "x").values for name in names}
     numbers = {
         str(name): np.atleast_1d(variable.values)
         for name, variable in data.data_vars.items()

@@ -1,0 +1,220 @@
+"""Figures, tables and pages of contacts that stick, along paths with negative depths."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import json
+import re
+import zlib
+from html import unescape
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle.cli import app
+from pellicle.report.plotting import default_step
+from pellicle.results.variables import names_of
+from tests.pictures import pixels
+
+BEAD: dict[str, Any] = {
+    "grid": {"points": 24, "size": "5 m"},
+    "kernel": {"type": "half_space", "reduced_modulus": "1 Pa"},
+    "indenter": {"type": "paraboloid", "radius": "1 m"},
+    "interaction": {"type": "jkr", "work_of_adhesion": "1 J/m^2"},
+    "loading": {"depth": {"start": "0.2 m", "stop": "-2.2 m", "num": 5, "back": True}},
+}
+OUTPUTS: list[dict[str, Any]] = [
+    {"type": "csv"},
+    {"type": "figures"},
+    {"type": "html"},
+    {"type": "vtk"},
+    {"type": "curves", "y": ["force", "contact_radius"]},
+    {"type": "curves", "name": "log", "x": "contact_area", "y": "depth", "log": ["x", "y"]},
+    {"type": "maps"},
+    {"type": "profiles"},
+    {"type": "distributions", "by": "step"},
+    {"type": "patches", "by": "step"},
+    {"type": "spectrum"},
+]
+STUDY: dict[str, Any] = {
+    **BEAD,
+    "outputs": [
+        {"type": "figures"},
+        {"type": "html"},
+        {"type": "curves"},
+        {
+            "type": "curves",
+            "name": "pull",
+            "x": "interaction.work_of_adhesion",
+            "y": ["pull_off", "share"],
+        },
+        {"type": "curves", "name": "wall", "y": "max(wall_pressure)"},
+    ],
+    "study": {
+        "vary": {"interaction.work_of_adhesion": ["0.7 J/m^2", "1 J/m^2"]},
+        "derived": {"share": "pull_off / (pi * interaction.work_of_adhesion)", "twice": "2*force"},
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def bead(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, pl.Result]:
+    """Return the folder of a path up, out of contact and back, and its result."""
+    folder = tmp_path_factory.mktemp("bead")
+    result = pl.run({**BEAD, "outputs": OUTPUTS}, directory=folder, progress=False, threads=1)
+    return folder, result
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
+    """Return the folder of a study of two works of adhesion, and its table."""
+    folder = tmp_path_factory.mktemp("study")
+    return folder, pl.run_study(STUDY, folder, progress=False, threads=1)
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    """Return the rows of a CSV file."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_path_is_summarised_where_the_result_is(bead: tuple[Path, pl.Result]) -> None:
+    """Result, page and terminal have the same numbers, which are those of the steps."""
+    folder, result = bead
+    data, summary = result.dataset, result.path_summary
+    assert tuple(summary) == names_of("path")
+    assert summary["pull_off"] == data["force"].min().item()
+    assert summary["pull_off"] == pytest.approx(-1.5 * pi, rel=0.15)
+    contact = data["contact_area"].values > 0
+    lost = int(np.argmin(contact)) - 1
+    assert summary["detach"] == data["depth"].values[lost]
+    assert summary["detach"] == pytest.approx(-1.6088, abs=0.6)
+    assert summary["detach_accuracy"] == pytest.approx(0.6)
+    assert summary["jump_in"] == pytest.approx(0.2)
+    assert summary["work"] == pytest.approx(summary["dissipated_energy"], rel=1e-6)
+    shown = CliRunner().invoke(app, ["show", str(folder / "run.h5")]).output
+    page = unescape((folder / "run.html").read_text(encoding="utf-8"))
+    for name, value in summary.items():
+        assert re.search(rf"^{name} +{re.escape(f'{value:.6g}')} [NmJ] ", shown, re.MULTILINE), name
+        assert f">{name.replace('_', ' ')}</td>" in page
+
+
+def test_the_last_step_in_contact_is_drawn(bead: tuple[Path, pl.Result]) -> None:
+    """A path that ends out of contact would otherwise have empty figures."""
+    data = bead[1].dataset
+    assert default_step(data) == data.sizes["step"] - 1
+    retraction = data.isel(step=slice(0, 5))
+    assert retraction["contact_area"].values[-1] == 0
+    assert retraction["contact_area"].values[default_step(retraction)] > 0
+    assert default_step(data.isel(step=[4])) == -1
+    assert default_step(data.drop_vars("zone_area").isel(step=slice(0, 5))) == -1
+
+
+def test_tension_is_blue_and_pressure_red(bead: tuple[Path, pl.Result]) -> None:
+    """Both signs occur, so the map has both colours, and no colour is that of an empty cell."""
+    for name in ("run-pressure.png", "run-maps.png"):
+        red, _, blue = np.moveaxis(pixels(bead[0] / name), -1, 0)
+        assert ((red - blue) > 0.15).mean() > 5e-3, name
+        assert ((blue - red) > 0.15).mean() > 5e-3, name
+
+
+def test_approach_and_retraction_are_told_apart(bead: tuple[Path, pl.Result]) -> None:
+    """Each row of a curve has its direction; a turn belongs to the leg that reaches it."""
+    rows = [r for r in rows_of(bead[0] / "run-curves.csv") if r["series"] == "force"]
+    assert [row["direction"] for row in rows] == ["retraction"] * 5 + ["approach"] * 4
+    np.testing.assert_allclose([float(r["y"]) for r in rows], bead[1].dataset["force"])
+    assert "direction" in rows_of(bead[0] / "run-log.csv")[0]
+
+
+def test_the_page_maps_both_pressures(bead: tuple[Path, pl.Result]) -> None:
+    """The traction in colours centred at 0, the wall pressure beside it; others are empty."""
+    text = (bead[0] / "run.html").read_text(encoding="utf-8")
+    (script,) = re.findall(r"<script[^>]*>(\{.*?\})</script>", text, re.DOTALL)
+    data = json.loads(script)
+    names = [field["name"] for field in data["fields"]]
+    assert names == ["pressure", "wall pressure", "gap"]
+    assert [field.get("centred", False) for field in data["fields"]] == [True, False, False]
+    assert data["fields"][0]["low"] < 0 < data["fields"][0]["high"]
+    first = data["frames"][0]["fields"][0]
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(first["data"])), np.uint8)
+    high, low = planes.reshape(2, -1).astype(np.uint16)
+    empty = np.cumsum(high << 8 | low, dtype=np.uint16) == 0xFFFF
+    np.testing.assert_array_equal(empty, bead[1].dataset["pressure"].values[0].ravel() == 0)
+
+
+def test_paraview_gets_the_wall_pressure(bead: tuple[Path, pl.Result]) -> None:
+    """It is a field beside the traction, and only where there is an interaction."""
+    assert b'Name="wall_pressure"' in (bead[0] / "run-0001.vts").read_bytes()
+
+
+def test_distribution_of_pressure_gives_the_force(bead: tuple[Path, pl.Result]) -> None:
+    """Mean times density times width, times the area with a traction, is the force."""
+    rows = rows_of(bead[0] / "run-distributions.csv")
+    data = bead[1].dataset.isel(step=0)
+    bins = [r for r in rows if r["curve"] == rows[0]["curve"] and r["series"] == "pressure"]
+    mean = sum(
+        float(r["mean"]) * float(r["density"]) * (float(r["upper"]) - float(r["lower"]))
+        for r in bins
+    )
+    area = (data["pressure"] != 0).sum().item() * bead[1].grid.cell_area
+    assert mean * area == pytest.approx(data["force"].item(), rel=1e-9)
+
+
+def test_a_path_that_never_touches_is_drawn(tmp_path: Path) -> None:
+    """At negative depths there is nothing to draw, and everything that draws it still ends."""
+    changes = {"loading": {"depth": ["-1 m", "-2 m", "-0.5 m"]}, "outputs": OUTPUTS}
+    result = pl.run({**BEAD, **changes}, directory=tmp_path, progress=False, threads=1)
+    assert result.dataset["contact_area"].max() == 0
+    assert np.isnan(result.path_summary["pull_off"])
+    shown = CliRunner().invoke(app, ["show", str(tmp_path / "run.h5")])
+    assert shown.exit_code == 0, shown.output
+    assert re.search(r"^pull_off +none ", shown.output, re.MULTILINE)
+    assert "<td" in (tmp_path / "run.html").read_text(encoding="utf-8")
+
+
+def test_a_study_has_one_path_for_each_run(study: tuple[Path, xr.Dataset]) -> None:
+    """Pull-off has no step: it is a curve against what varies, in table, CSV, page and terminal."""
+    folder, table = study
+    assert table["pull_off"].dims == table["share"].dims == table["run"].dims
+    assert table["twice"].dims == table["force"].dims
+    np.testing.assert_array_equal(table["pull_off"], table["force"].min("step"))
+    work = table["interaction.work_of_adhesion"]
+    np.testing.assert_array_equal(table["share"], table["pull_off"] / (np.pi * work))
+    drawn = rows_of(folder / "study-pull.csv")
+    assert [float(row["x"]) for row in drawn] == [0.7, 1.0] * 2
+    assert [float(row["y"]) for row in drawn[:2]] == table["pull_off"].values.tolist()
+    assert {row["converged"] for row in drawn} == {"True"}
+    by_step = rows_of(folder / "study.csv")
+    assert {float(row["pull_off [N]"]) for row in by_step} == {*table["pull_off"].values}
+    shown = CliRunner().invoke(app, ["show", str(folder)]).output.partition("path:")[2]
+    assert [line.split()[1] for line in shown.splitlines()[2:4]] == [
+        f"{value:.6g}" for value in table["pull_off"].values
+    ]
+    page = (folder / "study.html").read_text(encoding="utf-8")
+    assert "The path of each run" in page
+    highest = max(float(row["y"]) for row in rows_of(folder / "study-wall.csv"))
+    assert highest > 0
+
+
+def test_without_an_interaction_nothing_is_added(tmp_path: Path) -> None:
+    """There is no path, no wall pressure and no direction, even there and back."""
+    depth = {"start": "0.5 m", "stop": "1 m", "num": 2, "back": True}
+    hard = {k: v for k, v in BEAD.items() if k != "interaction"} | {"loading": {"depth": depth}}
+    outputs = [{"type": "curves"}, {"type": "html"}, {"type": "vtk"}]
+    result = pl.run({**hard, "outputs": outputs}, directory=tmp_path, progress=False, threads=1)
+    assert result.path_summary == {}
+    assert "direction" not in rows_of(tmp_path / "run-curves.csv")[0]
+    assert b"wall_pressure" not in (tmp_path / "run-0001.vts").read_bytes()
+    assert "pull off" not in (tmp_path / "run.html").read_text(encoding="utf-8")
+    assert "path:" not in CliRunner().invoke(app, ["show", str(tmp_path / "run.h5")]).output
+    with pytest.raises(pl.ConfigError, match="pull_off"):
+        pl.Study.of(
+            {**hard, "study": {"vary": {"indenter.radius": [1, 2]}, "derived": {"p": "pull_off"}}}
+        )
