@@ -222,7 +222,7 @@ def test_pull_off_goes_from_elastic_to_liquid(tmp_path: Path) -> None:
     run("pull_off.toml", tmp_path, "grid.points=96", vary)
     rows = drawn(tmp_path / "study-adhesive_curve-summary.csv")
     for row, tension in zip(rows, (0.0, 0.02), strict=True):
-        theory = Adhesion(Paraboloid(radius=0.2e-3), 1e3, tension, 0.5e-3)
+        theory = Adhesion(Paraboloid(radius=0.2e-3), 1e3, tension, 0.3e-3)
         force = float(row["pull_off_force [N]"])
         assert force == pytest.approx(float(theory.instability().force), rel=0.02)
 

@@ -198,10 +198,7 @@ def solution_of(
         ``start`` as an array, which it was in earlier versions.
     """
     name = component_name(solver)
-    with errors_attributed_to(solver):
-        reason = solver.refuses(problem)
-    if reason:
-        raise ConfigError(f"{name} {reason}", "solver.type")
+    check_solver(solver, problem)
     adheres = problem.law is not None
     sticks = adheres and start is not None and (start.wall.any() or start.pressure.any())
     if not problem.needs_solving and not sticks:
@@ -257,6 +254,20 @@ def _in_contact(state: State | Array | None) -> bool:
     return isinstance(state, State) and bool(state.contact.any())
 
 
+def check_solver(solver: Solver, problem: Problem) -> None:
+    """Let a solver refuse a problem.
+
+    Raises
+    ------
+    ConfigError
+        The solver cannot solve the problem.
+    """
+    with errors_attributed_to(solver):
+        reason = solver.refuses(problem)
+    if reason:
+        raise ConfigError(f"{component_name(solver)} {reason}", "solver.type")
+
+
 def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
     """Return the law of an interaction, resolved on a grid, with checked values.
 
@@ -275,7 +286,8 @@ def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
     cutoff = law.cutoff()
     if not 0 < cutoff < LARGEST:
         raise PluginError(
-            f"{component_name(interaction)}: cutoff() is {cutoff:g} m; it has to be positive"
+            f"{component_name(interaction)}: cutoff() is {cutoff:g} m; it has to be > 0 and "
+            f"< {LARGEST:g} m"
         )
     gaps = np.linspace(0.0, cutoff, _GAPS)
     energy, traction = law.energy(gaps), law.traction(gaps)
@@ -409,8 +421,9 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
         if number is None:
             continue
         number = real_number(prescription, f"{call}.{field}", number)
-        may_pull = isinstance(target, Depth) or setting.law is not None
-        signed = field in ("goal", "guess") or (field == "value" and may_pull)
+        signed = field in ("goal", "guess") or (
+            field == "value" and (isinstance(target, Depth) or setting.law is not None)
+        )
         if not np.isfinite(number) or (number < 0 and not signed):
             allowed = "finite" if signed else "finite and ≥ 0"
             raise PluginError(f"{name}: {call}.{field} is {number:g}; it has to be {allowed}")

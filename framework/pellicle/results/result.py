@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from pellicle.errors import ConfigError, StorageError
 from pellicle.grid import Grid
 
@@ -65,8 +67,16 @@ class Result:
 
     def coarse(self) -> list[tuple[int, str]]:
         """Return number and status of each step whose cells are too coarse."""
-        coarse = self.dataset["status_code"].values == Status.COARSE.name
-        return _statuses(self.dataset.isel(step=coarse))
+        return self._of([status for status in Status if status.is_coarse])
+
+    def steep(self) -> list[tuple[int, str]]:
+        """Return number and status of each step with slopes beyond those of the theory."""
+        return self._of([Status.STEEP])
+
+    def _of(self, statuses: list[Status]) -> list[tuple[int, str]]:
+        codes = self.dataset["status_code"].values
+        among = np.isin(codes.astype(str), [status.name for status in statuses])
+        return _statuses(self.dataset.isel(step=among))
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook."""

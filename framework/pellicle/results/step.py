@@ -101,11 +101,15 @@ def zone_width(equilibrium: Equilibrium) -> float:
     """Return the mean width [m] of the zone around the contact, where it has an outer edge.
 
     It is the mean distance from the contact of the outermost cells of the zone; NaN if there are
-    none, as between asperities so close that the zone fills the gap between them.
+    none, as between asperities so close that the zone fills the gap between them, and 0 if no cell
+    beside the contact is in a zone.
     """
     from scipy.ndimage import binary_erosion, distance_transform_edt
 
     contact, grid = equilibrium.contact, equilibrium.problem.grid
+    beside = np.isfinite(equilibrium.problem.profile) & ~contact
+    if contact.any() and beside.any() and not equilibrium.zone.any():
+        return 0.0
     reached = contact | equilibrium.zone
     outermost = reached & ~binary_erosion(reached, border_value=1) & ~contact
     if not contact.any() or not outermost.any():

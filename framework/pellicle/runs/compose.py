@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from pellicle.checks import errors_attributed_to
-from pellicle.components import Setting
-from pellicle.components.calls import check_value, law_of, profile_of
+from pellicle.components import Force, Prescription, Search, Setting
+from pellicle.components.calls import check_solver, check_value, law_of, profile_of, target_of
 from pellicle.config.run import Run
+from pellicle.errors import ConfigError
 from pellicle.numerics.grid_checks import warn_of_cells, warn_of_period
 from pellicle.numerics.operators import make_operator
 
@@ -16,7 +17,8 @@ def compose(run: Run) -> Setting:
     Raises
     ------
     ConfigError
-        The kernel, the indenter or the loading does not fit the grid.
+        The kernel, the indenter or the loading does not fit the grid, or the solver or the loading
+        not the interaction.
     """
     with errors_attributed_to(run.kernel):
         operator = make_operator(run.kernel, run.grid)
@@ -26,7 +28,22 @@ def compose(run: Run) -> Setting:
         warn_of_period(profile, run.grid)
     law = law_of(run.interaction, run.kernel, run.grid) if run.interaction else None
     setting = Setting(run.grid, operator, profile, run.indenter.footprint, law=law)
+    if law:
+        check_solver(run.solver, setting.problem(Force(0.0)))
     for index, value in enumerate(run.loading.values):
         field = f"loading.{run.loading.prescribed}.{index}"
         check_value(run.loading.prescription, setting, value, field)
+        if law:
+            _check_search(run.loading.prescription, setting, value, field)
     return setting
+
+
+def _check_search(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
+    """Refuse a search by force, which cannot follow a contact that sticks."""
+    target = target_of(prescription, setting, value)
+    if isinstance(target, Search) and target.control is Force:
+        raise ConfigError(
+            "is searched by force, along which a contact that sticks jumps; prescribe depth or "
+            "base_displacement where there is an interaction",
+            field,
+        )

@@ -85,8 +85,9 @@ def run(
     result = execute(run, journal, outputs, bar, threads=threads).result
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
-    if coarse := result.coarse():
-        warnings.warn(first_message(coarse), ConvergenceWarning, stacklevel=2)
+    for steps in (result.coarse(), result.steep()):
+        if steps:
+            warnings.warn(first_message(steps), ConvergenceWarning, stacklevel=2)
     return result
 
 

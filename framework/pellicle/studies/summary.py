@@ -104,7 +104,7 @@ def failures(table: xr.Dataset) -> str:
 def coarse(table: xr.Dataset) -> Iterator[str]:
     """Yield a message with the number of runs whose cells do not resolve the contact, if any."""
     statuses = _statuses(table)
-    count = sum(Status.COARSE in run for run in statuses)
+    count = sum(any(status.is_coarse for status in run) for run in statuses)
     if count:
         yield f"of {len(statuses)} runs, in {count} the cells are too coarse for this contact"
 

@@ -90,11 +90,27 @@ def _functions(law: GapLaw) -> tuple[tuple[str, Callable[[Array], Array]], ...]:
 
 
 def cutoff_is_a_length(interaction: Interaction) -> None:
-    """cutoff() is a finite number ≥ 0, and > 0 of what `resolved` returns."""
+    """cutoff() is a finite number ≥ 0."""
     value = interaction.cutoff()
     require(bool(np.isfinite(value) and value >= 0), f"cutoff() is {value!r} m")
+
+
+def closed_gap_attracts(interaction: Interaction) -> None:
+    """At a closed gap the energy is negative and so is, where there is a range, the traction.
+
+    What `resolved` returns has a range.
+    """
+    require(_work(interaction) > 0, f"energy(0) is {-_work(interaction):g} J/m²")
+    if interaction.cutoff() > 0:
+        _require_strength("the interaction", interaction)
     for name, law in _laws(interaction):
         require(bool(0 < law.cutoff() < np.inf), f"cutoff() of {name} is {law.cutoff()!r} m")
+        _require_strength(name, law)
+
+
+def _require_strength(name: str, law: GapLaw) -> None:
+    traction = float(np.ravel(law.traction(np.zeros(1)))[0])
+    require(traction < 0, f"traction(0) of {name} is {traction:g} Pa")
 
 
 def values_are_vectorised(interaction: Interaction) -> None:
@@ -102,9 +118,9 @@ def values_are_vectorised(interaction: Interaction) -> None:
     for name, law in _laws(interaction):
         gaps = np.linspace(0.0, law.cutoff(), 24)
         for what, function in _functions(law):
-            single = [np.ravel(function(gaps[i : i + 1]))[0] for i in range(24)]
+            single = [np.ravel(function(gaps[i : i + 1].copy()))[0] for i in range(24)]
             for shape in ((24,), (4, 6)):
-                values = function(gaps.reshape(shape))
+                values = function(gaps.reshape(shape).copy())
                 require(
                     isinstance(values, np.ndarray) and values.dtype == np.float64,
                     f"{what}(gap) of {name} is {type(values).__name__} of "
@@ -139,8 +155,7 @@ def values_are_finite(interaction: Interaction) -> None:
 
 
 def energy_rises_to_nothing(interaction: Interaction) -> None:
-    """The energy is negative at a closed gap, does not fall with the gap, and ends at 0."""
-    require(_work(interaction) > 0, f"energy(0) is {-_work(interaction):g} J/m²")
+    """The energy does not fall as the gap grows, and is 0 at the cutoff."""
     for name, law in _laws(interaction):
         energy, work = law.energy(_gaps(law)), _work(law)
         fall = float(np.diff(energy).min())
@@ -152,11 +167,10 @@ def energy_rises_to_nothing(interaction: Interaction) -> None:
 
 
 def attraction_falls_with_the_gap(interaction: Interaction) -> None:
-    """The traction is negative at a closed gap and nowhere falls with the gap, nor is positive."""
+    """The attraction is nowhere stronger than at smaller gaps, and nothing repels."""
     for name, law in _laws(interaction):
         traction = law.traction(_gaps(law))
         strength = -float(traction[0])
-        require(strength > 0, f"traction(0) of {name} is {traction[0]:g} Pa")
         fall = float(np.diff(traction).min())
         require(fall >= -_ROUNDING * strength, f"traction of {name} falls by {-fall:g} Pa")
         most = float(traction.max())
@@ -243,14 +257,15 @@ def run_under_a_pull_converges(interaction: Interaction) -> None:
 
 RULES: list[Rule] = [
     cutoff_is_a_length,
+    closed_gap_attracts,
+    values_are_finite,
     values_are_vectorised,
     functions_leave_their_argument,
-    values_are_finite,
     energy_rises_to_nothing,
     attraction_falls_with_the_gap,
+    rigid_sphere_is_pulled_by_2_pi_w_r,
     traction_is_the_derivative_of_the_energy,
     slope_is_the_derivative_of_the_traction,
     resolved_keeps_the_work_of_adhesion,
-    rigid_sphere_is_pulled_by_2_pi_w_r,
     run_under_a_pull_converges,
 ]

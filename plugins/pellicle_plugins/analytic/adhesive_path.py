@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle import Run, analysis
-from pellicle.arrays import Mask
+from pellicle.arrays import Array, Mask
 from pellicle.components import Kernel
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
@@ -44,6 +44,18 @@ def curve_of(path: xr.Dataset, work_of_adhesion: float) -> analysis.AdhesiveCurv
         path["stiffness"].values,
         work_of_adhesion,
     )
+
+
+def steepest_slopes(path: xr.Dataset) -> Array:
+    """Return the largest slope of the indenter in the contact of each load step, shape (step,)."""
+    last = path.isel(step=-1)
+    profile = last["displacement"].values - last["depth"].item() - last["gap"].values
+    spacing = Result(path).grid.spacing
+    # Where the indenter ends the profile is −inf.
+    with np.errstate(invalid="ignore"):
+        slope = np.hypot(*np.gradient(profile, *spacing))
+    contacts = path["contact"].values
+    return np.array([np.nanmax(slope[contact], initial=0.0) for contact in contacts])
 
 
 def excess_radius(kernel: Kernel, spacing: float) -> float:

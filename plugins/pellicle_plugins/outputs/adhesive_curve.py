@@ -15,11 +15,10 @@ from pydantic import Field
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError, StorageError
-from pellicle.grid import Grid
 from pellicle.report.plotting import save_figure
 from pellicle.results.result import Result
 from pellicle.units import Quantity, axis_unit
-from pellicle_plugins.analytic.adhesive_path import curve_of
+from pellicle_plugins.analytic.adhesive_path import curve_of, steepest_slopes
 
 from .base import TableFigure, set_scales, write_csv
 
@@ -43,6 +42,8 @@ _SUMMARY_HEADS = (
 )
 _CELLS = 12
 """Contact radius in cells below which force and radius may be off by more than 2 %."""
+_STEEP = 0.3
+"""Slope above which linear elasticity is beyond its range."""
 _LINE = 70
 """Letters of a line of text across the figure."""
 _MARKERS = {"pull-off": "o", "no load": "s", "last at fixed depth": "v"}
@@ -80,7 +81,7 @@ class AdhesiveCurve(TableFigure):
     steps; the curve covers the contact radii of the path. The figure ends at a push as large as the
     strongest pull; the whole curve is written as CSV beside it. ``-summary.csv`` has pull-off, the
     contact without load and the last contact at a fixed depth, with NaN and a status for what the
-    path does not contain, or its cells do not resolve.
+    path does not contain, its cells do not resolve, or is too steep for linear elasticity.
     """
 
     type: Literal["adhesive_curve"] = "adhesive_curve"
@@ -128,7 +129,7 @@ class AdhesiveCurve(TableFigure):
         except ConfigError as error:
             return _Drawn(name, colour, path, None, str(error))
         drawn = _Drawn(name, colour, path, curve, "")
-        return replace(drawn, status=_status(curve, drawn.points(), Result(path).grid))
+        return replace(drawn, status=_status(curve, drawn.points(), path))
 
     def _summary(self, drawn: _Drawn) -> dict[str, object]:
         pull_off, zero_load, fixed_depth = drawn.points().values()
@@ -191,13 +192,25 @@ class AdhesiveCurve(TableFigure):
 
 
 def _status(
-    curve: analysis.AdhesiveCurve, points: dict[str, analysis.AdhesiveContact], grid: Grid
+    curve: analysis.AdhesiveCurve,
+    points: dict[str, analysis.AdhesiveContact],
+    path: xr.Dataset,
 ) -> str:
-    """Return which points the path does not contain, and which its cells do not resolve."""
-    radii = {what: float(contact.contact_radius) for what, contact in points.items()}
-    cells = {what: radius / max(grid.spacing) for what, radius in radii.items()}
-    missing = [what for what, radius in radii.items() if np.isnan(radius)]
-    coarse = [what for what, count in cells.items() if count < _CELLS]
+    """Return which points are not on the path, not resolved, or steeper than the theory allows."""
+    spacing = max(Result(path).grid.spacing)
+    steps = np.argsort(path["contact_radius"].values)
+    known = path["contact_radius"].values[steps], steepest_slopes(path)[steps]
+    missing, coarse, steep = [], [], []
+    for what, contact in points.items():
+        radius = float(contact.contact_radius)
+        slope = float(np.interp(radius, *known))
+        if np.isnan(radius):
+            missing.append(what)
+            continue
+        if radius < _CELLS * spacing:
+            coarse.append(f"{what} {radius / spacing:.1f}")
+        if slope > _STEEP:
+            steep.append(f"{what} {slope:.2f}")
     low, high = curve.contact_radius[[0, -1]]
     problems = []
     if missing:
@@ -207,8 +220,13 @@ def _status(
         )
     if coarse:
         problems.append(
-            f"{', '.join(coarse)}: a contact radius of {min(cells[what] for what in coarse):.1f} "
-            "cells is good to some per cent; use more points"
+            f"contact radius in cells: {', '.join(coarse)}; from {_CELLS} on force and radius are "
+            "good to 2 %, so use more points"
+        )
+    if steep:
+        problems.append(
+            f"slope of the indenter at the rim: {', '.join(steep)}; the theory is for small "
+            f"slopes, below about {_STEEP}"
         )
     return "; ".join(problems) or "computed"
 

@@ -40,6 +40,11 @@ class ContactArea(Prescription):
 
 def unreachable(setting: Setting, area: float) -> str:
     """Return the reason why a contact area [m²] is impossible on this grid; empty if possible."""
+    if setting.law:
+        return (
+            "not within reach of a search by force where there is an interaction: a contact that "
+            "sticks jumps along the force; prescribe depth or base_displacement"
+        )
     cell, profile = setting.grid.cell_area, setting.profile
     covered = int(np.count_nonzero(np.isfinite(profile)))
     first = int(np.count_nonzero(profile == profile.max()))

@@ -33,7 +33,7 @@ class MeanPlaneDepth(Prescription):
                 "fill its domain: it has no mean plane; prescribe depth",
                 "loading.mean_plane_depth",
             )
-        if value < mean:
+        if value < mean and not setting.law:
             raise ConfigError(
                 f"{value:g} m is before first touch: this indenter's lowest point is {-mean:g} m "
                 f"below its mean plane; give {mean:g} m or more"

@@ -1,0 +1,235 @@
+"""Interactions that make no sense, and what does not go together with one."""
+
+from collections.abc import Callable
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+
+from .command_line import says
+
+STICKY = {
+    "grid": {"points": 32, "size": "0.6 mm", "boundary": "free"},
+    "kernel": {"type": "half_space", "reduced_modulus": "700 kPa"},
+    "indenter": {"type": "paraboloid", "radius": "1 mm"},
+    "interaction": {"type": "jkr", "work_of_adhesion": "50 mJ/m^2"},
+    "loading": {"depth": ["5 um", "0 um"]},
+    "solver": {"type": "active_set", "tolerance": 1e-6},
+}
+PERIODIC = {"points": 32, "size": "0.6 mm", "boundary": "periodic"}
+VALUES = {
+    "no work": (
+        "{type='jkr', work_of_adhesion=0}",
+        ["interaction.work_of_adhesion: 0 is not allowed; give a value > 0 J/m**2", "50 mJ/m^2"],
+    ),
+    "negative work": (
+        "{type='jkr', work_of_adhesion='-1 mJ/m^2'}",
+        ["interaction.work_of_adhesion: '-1 mJ/m^2' is not allowed; give a value > 0 J/m**2"],
+    ),
+    "not a number": (
+        "{type='jkr', work_of_adhesion=nan}",
+        ["interaction.work_of_adhesion: nan is not finite"],
+    ),
+    "force for work": (
+        "{type='jkr', work_of_adhesion='50 mN'}",
+        ["interaction.work_of_adhesion: '50 mN' measures", "'50 mJ/m^2'"],
+    ),
+    "work for strength": (
+        "{type='linear', work_of_adhesion='50 mJ/m^2', strength='50 mJ/m^2'}",
+        ["interaction.strength: '50 mJ/m^2' measures", "'10 kPa'"],
+    ),
+    "work without a unit": (
+        "{type='jkr', work_of_adhesion='50'}",
+        ["interaction.work_of_adhesion: '50' is text without a unit"],
+    ),
+    "range and strength": (
+        "{type='linear', work_of_adhesion='50 mJ/m^2', strength='1 kPa', range='1 um'}",
+        ["interaction: range and strength are both given; give one of them"],
+    ),
+    "neither": (
+        "{type='dugdale', work_of_adhesion='50 mJ/m^2'}",
+        ["interaction: range and strength are both missing; give one of them"],
+    ),
+    "no range": (
+        "{type='exponential', work_of_adhesion='50 mJ/m^2'}",
+        ["interaction.range: is missing"],
+    ),
+    "range of nothing": (
+        "{type='exponential', work_of_adhesion='50 mJ/m^2', range=0}",
+        ["interaction.range: 0 is not allowed; give a value > 0 m"],
+    ),
+    "range beyond all": (
+        "{type='linear', work_of_adhesion='50 mJ/m^2', strength=1e-300}",
+        ["interaction 'linear': cutoff() is 1e+299 m; it has to be > 0 and <"],
+    ),
+    "no such law": (
+        "{type='jrk', work_of_adhesion='50 mJ/m^2'}",
+        ["interaction.type: 'jrk'", "did you mean 'jkr'"],
+    ),
+    "no type": (
+        "{work_of_adhesion='50 mJ/m^2'}",
+        ["interaction: has no type; give a table with type = one of: dugdale, exponential"],
+    ),
+    "two interactions": (
+        "[{type='jkr', work_of_adhesion=1}, {type='jkr', work_of_adhesion=1}]",
+        ["interaction: [{'type': 'jkr'", "is not a table"],
+    ),
+    "a name": ("'jkr'", ["interaction: 'jkr' is not a table", "dugdale"]),
+}
+
+
+@pytest.mark.parametrize(("table", "words"), VALUES.values(), ids=VALUES)
+def test_tables_that_make_no_sense(
+    refuse: Callable[..., str], table: str, words: list[str]
+) -> None:
+    """A work of adhesion or a range that means nothing is named with what is allowed."""
+    says(refuse(f"interaction={table}"), *words)
+
+
+@pytest.mark.parametrize("prescribed", ["depth", "force", "mean_pressure", "base_displacement"])
+def test_pulling_takes_an_interaction(prescribed: str) -> None:
+    """A load below 0 is refused without an interaction, which is named, and allowed with one."""
+    loading: dict[str, Any] = {prescribed: [1e-6, -1e-6]}
+    if prescribed == "base_displacement":
+        loading["spring_constant"] = "1 N/m"
+    grid = PERIODIC if prescribed == "mean_pressure" else STICKY["grid"]
+    configuration = STICKY | {"grid": grid, "loading": loading}
+    assert pl.Run(**configuration).loading.values == (1e-6, -1e-6)
+    del configuration["interaction"]
+    for table in (loading, pl.Loading(**loading)):
+        with pytest.raises(pl.ConfigError) as caught:
+            pl.Run(**configuration | {"loading": table})
+        message = str(caught.value)
+        says(message, f"loading.{prescribed}.1: -1e-06 is not allowed; give a value ≥ 0")
+        says(message, "with an [interaction] it may be negative")
+
+
+REFUSALS: dict[str, tuple[dict[str, Any], list[str]]] = {
+    "solver": (
+        {"solver": {"type": "conjugate_gradient"}},
+        ["solver.type: solver 'conjugate_gradient' cannot solve with an interaction"],
+    ),
+    "area": (
+        {"loading": {"contact_area": [0, "0.01 mm^2"]}},
+        ["loading.contact_area.0: 0 m2 is not within reach", "prescribe depth"],
+    ),
+    "radius": (
+        {"loading": {"contact_radius": ["0.06 mm"]}},
+        ["loading.contact_radius.0: 6e-05 m is not within reach", "prescribe depth"],
+    ),
+    "volume": (
+        {"grid": PERIODIC, "loading": {"gap_volume": ["0.005 mm^3"]}},
+        ["loading.gap_volume.0: is searched by force", "prescribe depth or base_displacement"],
+    ),
+}
+
+
+@pytest.mark.parametrize(("change", "words"), REFUSALS.values(), ids=REFUSALS)
+def test_what_does_not_go_with_an_interaction(
+    change: dict[str, Any], words: list[str], tmp_path: Any
+) -> None:
+    """It is refused in words, before anything is solved."""
+    with pytest.raises(pl.ConfigError) as caught:
+        pl.run(STICKY | change, progress=False, directory=tmp_path)
+    says(str(caught.value), *words)
+    assert not list(tmp_path.glob("*.h5"))
+
+
+class Lying(pl.Interaction):
+    """Law whose traction is twice the derivative of its energy."""
+
+    type: Literal["lying"] = "lying"
+    factor: ClassVar[float] = 2.0
+
+    def energy(self, gap: Any) -> Any:
+        """Return the energy [J/m²]."""
+        return -0.05 * np.maximum(1 - gap / 1e-5, 0) ** 2
+
+    def traction(self, gap: Any) -> Any:
+        """Return the traction [Pa], times a factor."""
+        return -self.factor * 0.1 / 1e-5 * np.maximum(1 - gap / 1e-5, 0)
+
+    def cutoff(self) -> float:
+        """Return the range [m]."""
+        return 1e-5
+
+
+def test_traction_is_not_the_derivative() -> None:
+    """It is refused before anything is solved; the law without the lie is not."""
+    with pytest.raises(pl.PluginError, match=r"traction\(gap\) is not −dγ/dg of energy\(gap\)"):
+        pl.run(pl.Run(**STICKY | {"interaction": Lying()}), progress=False)
+
+    class Honest(Lying):
+        factor = 1.0
+
+    result = pl.run(pl.Run(**STICKY | {"interaction": Honest()}), progress=False)
+    assert result.dataset["force"][0] < 0.33e-3
+
+
+def test_pull_that_no_contact_carries() -> None:
+    """The step says how much the contact carries, the next that there is none; both press again."""
+    with pytest.warns(pl.ConvergenceWarning):
+        result = pl.run(
+            STICKY | {"loading": {"force": ["-10 uN", "10 uN", "-500 uN", "-10 uN", "10 uN"]}},
+            progress=False,
+        )
+    data = result.dataset
+    codes = ["NOTHING_TO_PULL", "PULLED_OFF", "NOTHING_TO_PULL"]
+    assert [*data["status_code"].values[[0, 2, 3]]] == codes
+    assert data["converged"].values[[1, 4]].all()
+    says(str(data["status"].values[0]), "no contact", "-1e-05 N; press before you pull")
+    says(str(data["status"].values[2]), "no contact carries a force of -0.0005 N", "softer holder")
+    assert not data["contact"].values[[0, 2, 3]].any()
+    np.testing.assert_allclose(data["depth"][4], data["depth"][1], rtol=1e-3)
+
+
+@pytest.mark.parametrize("strength", ["200 kPa", "2 MPa"])
+def test_grid_that_is_too_coarse(strength: str) -> None:
+    """A zone narrower than its law takes is told, also where no cell is in it, and what helps."""
+    law = {"type": "linear", "work_of_adhesion": "50 mJ/m^2", "strength": strength}
+    with pytest.warns(pl.ConvergenceWarning, match="cells wide, where it takes 1.5"):
+        result = pl.run(STICKY | {"interaction": law, "loading": {"depth": "5 um"}}, progress=False)
+    assert result.dataset["status_code"].item() == "COARSE_ZONE"
+    assert float(result.dataset["zone_width"].item()) < 1.5 * 0.6e-3 / 32
+    says(str(result.dataset["status"].item()), "use more points")
+
+
+@pytest.mark.parametrize("work", [1e-30, 1e-12, 1e6, 1e30])
+@pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
+def test_works_of_all_sizes(work: float) -> None:
+    """A work of adhesion far from any that exists ends in finite numbers and a status in words."""
+    result = pl.run(
+        STICKY | {"interaction": {"type": "jkr", "work_of_adhesion": work}}, progress=False
+    )
+    data = result.dataset
+    assert np.isfinite(data["force"].values).all()
+    if work < 1:
+        # Hertz, 4/3 E* √R δ^(3/2), from which adhesion takes nothing.
+        assert float(data["force"][0]) == pytest.approx(
+            4 / 3 * 7e5 * 1e-3**0.5 * 5e-6**1.5, rel=0.1
+        )
+    else:
+        assert not result.converged or result.coarse() or result.steep()
+
+
+def test_steep_slopes() -> None:
+    """A slope beyond those of the theory is told; the step counts as converged."""
+    with pytest.warns(pl.ConvergenceWarning, match=r"slopes in contact reach 0\.[3-9]"):
+        result = pl.run(
+            STICKY
+            | {
+                "grid": {"points": 96, "size": "0.25 mm", "boundary": "free"},
+                "indenter": {"type": "paraboloid", "radius": "0.2 mm"},
+                "interaction": {
+                    "type": "linear",
+                    "work_of_adhesion": "50 mJ/m^2",
+                    "strength": "60 kPa",
+                },
+                "loading": {"depth": "20 um"},
+            },
+            progress=False,
+        )
+    assert result.converged
+    assert result.dataset["status_code"].item() == "STEEP"
