@@ -89,13 +89,15 @@ def cantilever_path(points: int, stiffness: float, share: float = 0.005) -> tupl
     return path[int(touches[-1])], last
 
 
-def wavy(points: int, depths: Sequence[float], height: float, work: float) -> xr.Dataset:
+def wavy(
+    points: int, values: Sequence[float], height: float, work: float, **options: Any
+) -> xr.Dataset:
     """Return a path on a sine of wavelength 1, one cell across on a periodic grid."""
     x = (np.arange(points) + 0.5) / points
     return solved(
         [points, 1],
         0.0,
-        depths,
+        values,
         size=[1.0, 1 / points],
         boundary="periodic",
         indenter={
@@ -103,7 +105,7 @@ def wavy(points: int, depths: Sequence[float], height: float, work: float) -> xr
             "values": (height * np.cos(2 * pi * x))[:, None].tolist(),
             "unit": 1.0,
         },
-        interaction={"type": "jkr", "work_of_adhesion": work},
+        **{"interaction": {"type": "jkr", "work_of_adhesion": work}, **options},
     )
 
 

@@ -78,9 +78,7 @@ class DenseContact:
             following = _KEPT * traction + (1 - _KEPT) * exerted
             # The wall of a closed cell takes up any change of its traction.
             traction = np.where(contact, exerted, following)
-        return DenseState(
-            wall, traction, depth, self.energy(wall, traction, depth), settled, True
-        )
+        return DenseState(wall, traction, depth, self.energy(wall, traction, depth), settled, True)
 
     def gap(self, pressure: Array, depth: float) -> Array:
         """Return u − f − δ [m]."""
@@ -158,9 +156,7 @@ class DenseContact:
                     wall[cells] = depth * ones - solved
             gap = lifted + self.matrix @ wall - depth
             heights = float(np.abs(gap).max()) or 1.0
-            wrong = np.flatnonzero(
-                np.where(contact, wall < 0, gap < -1e-13 * heights)
-            )
+            wrong = np.flatnonzero(np.where(contact, wall < 0, gap < -1e-13 * heights))
             if not wrong.size:
                 return wall, depth, np.where(contact, 0.0, gap)
             contact[wrong if change < 40 else wrong[-1:]] ^= True
