@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
     from pydantic.json_schema import JsonSchemaValue
 
-OPTIONS: Final = {"stiffness"}
+OPTIONS: Final = {"stiffness", "time"}
 """Keys of ``[loading]`` other than a prescription and its fields."""
 
 

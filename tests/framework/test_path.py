@@ -129,6 +129,13 @@ def test_a_path_that_begins_in_contact_jumps_in_when_it_comes_back() -> None:
     assert (summary.detach, summary.detach_force, summary.detach_accuracy) == (-1, -0.5, 1)
     assert (summary.jump_in, summary.jump_in_force, summary.jump_in_accuracy) == (0, -1, 1)
     assert (summary.pull_off, summary.pull_off_depth, summary.pull_off_radius) == (-1, 0, 2)
+    assert (summary.pull_off_step, summary.detach_step, summary.jump_in_step) == (2, 3, 6)
+
+
+def test_the_turn_belongs_to_the_retraction() -> None:
+    """Many small contacts pull hardest where they are pressed in furthest."""
+    summary = path_summary([0.0, 1.0, 0.0, -1.0], [-1.0, -3.0, -2.0, 0.0], [1.0, 2.0, 1.0, 0.0])
+    assert (summary.pull_off, summary.pull_off_step) == (-3, 2)
 
 
 @pytest.mark.parametrize(

@@ -35,16 +35,22 @@ class PathSummary:
     """Depth [m] of the step of lowest force."""
     pull_off_radius: float = nan
     """Contact radius [m] at the step of lowest force."""
+    pull_off_step: float = nan
+    """Number of the step of lowest force, counted from 1."""
     detach: float = nan
     """Depth [m] of the last step in contact before contact is first lost."""
     detach_force: float = nan
     """Force [N] at that step."""
+    detach_step: float = nan
+    """Number of that step, counted from 1."""
     detach_accuracy: float = nan
     """Distance in depth [m] from that step to the next, in which contact is lost."""
     jump_in: float = nan
     """Depth [m] of the first step in contact after one out of contact."""
     jump_in_force: float = nan
     """Force [N] at that step."""
+    jump_in_step: float = nan
+    """Number of that step, counted from 1."""
     jump_in_accuracy: float = nan
     """Distance in depth [m] from the step before, in which contact is gained."""
     work: float = nan
@@ -101,11 +107,12 @@ def path_summary(
     good = np.ones(columns[0].shape, bool) if converged is None else np.asarray(converged, bool)
     whole = bool(good.all()) and bool(good.size)
     delta, load, radius = (column[good] for column in columns)
+    numbers = np.flatnonzero(good) + 1
     in_contact = radius > 0
     summary = {
-        **_pull_off(delta, load, radius),
-        **_change("detach", delta, load, in_contact),
-        **_change("jump_in", delta, load, in_contact),
+        **_pull_off(delta, load, radius, numbers),
+        **_change("detach", delta, load, in_contact, numbers),
+        **_change("jump_in", delta, load, in_contact, numbers),
     }
     if whole:
         changes = np.diff(in_contact)
@@ -129,15 +136,19 @@ def _rises(depth: Array) -> Mask:
     return rises
 
 
-def _pull_off(depth: Array, force: Array, radius: Array) -> dict[str, float]:
+def _pull_off(
+    depth: Array, force: Array, radius: Array, numbers: NDArray[np.int64]
+) -> dict[str, float]:
     """Return the lowest force of all retractions, unless the path ends or turns there."""
-    if depth.size < 3:
+    retracted = [
+        step
+        for leg in legs(depth)
+        if leg.direction == "retraction"
+        for step in range(leg.steps.start, leg.steps.stop)
+    ]
+    if not retracted:
         return {}
-    rises = _rises(depth)
-    retracted: NDArray[np.int64] = np.flatnonzero(~rises) + 1
-    if not retracted.size:
-        return {}
-    lowest = int(retracted[np.argmin(force[retracted])])
+    lowest = retracted[int(np.argmin(force[retracted]))]
     beyond = np.flatnonzero(depth[lowest:] != depth[lowest])
     goes_on = beyond.size > 0 and depth[lowest + beyond[0]] < depth[lowest]
     if force[lowest] >= 0 or not goes_on:
@@ -146,11 +157,14 @@ def _pull_off(depth: Array, force: Array, radius: Array) -> dict[str, float]:
         "pull_off": float(force[lowest]),
         "pull_off_depth": float(depth[lowest]),
         "pull_off_radius": float(radius[lowest]),
+        "pull_off_step": float(numbers[lowest]),
     }
 
 
-def _change(name: str, depth: Array, force: Array, contact: Mask) -> dict[str, float]:
-    """Return depth, force and accuracy of the first loss or gain of contact."""
+def _change(
+    name: str, depth: Array, force: Array, contact: Mask, numbers: NDArray[np.int64]
+) -> dict[str, float]:
+    """Return depth, force, step and accuracy of the first loss or gain of contact."""
     lost = name == "detach"
     changes = np.flatnonzero((contact[:-1] == lost) & (contact[1:] != lost))
     if not changes.size:
@@ -160,5 +174,6 @@ def _change(name: str, depth: Array, force: Array, contact: Mask) -> dict[str, f
     return {
         name: float(depth[step]),
         f"{name}_force": float(force[step]),
+        f"{name}_step": float(numbers[step]),
         f"{name}_accuracy": float(abs(depth[before + 1] - depth[before])),
     }

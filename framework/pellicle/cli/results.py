@@ -42,17 +42,19 @@ def print_steps(result: Result) -> None:
         for n in numbers
     ]
     _print_steps(data, names, {"status": verdicts})
+    several = {**coarse, **dict(result.steep())}
     for number, status in zip(numbers, data["status"].values.tolist(), strict=True):
-        if converged[number] and status != "converged" and number not in coarse:
+        if converged[number] and status != "converged" and number not in several:
             typer.echo(f"step {number}: {for_document(status)}", err=True)
 
 
 def print_contact(result: Result) -> None:
-    """Print the shape of the contact at each step."""
+    """Print the shape of the contact at each step, and of the zone around it."""
     from pellicle.results.variables import names_of
 
     # Files of earlier versions lack them.
-    if names := [name for name in names_of("contact") if name in result.dataset]:
+    names = [name for name in names_of("contact", "interaction") if name in result.dataset]
+    if names := [name for name in names if not name.startswith("residual_")]:
         typer.echo("contact:")
         _print_steps(result.dataset, names, {})
 
@@ -62,13 +64,14 @@ def print_path(result: Result) -> None:
     import math
 
     from pellicle.results.variables import VARIABLES
+    from pellicle.units import readable
 
     if summary := result.path_summary:
         typer.echo("path:")
         rows = [
             {
                 "name": name,
-                "value": "none" if math.isnan(value) else f"{value:.6g} {VARIABLES[name].unit}",
+                "value": "none" if math.isnan(value) else readable(value, VARIABLES[name].unit),
                 "meaning": VARIABLES[name].meaning,
             }
             for name, value in summary.items()
@@ -92,7 +95,7 @@ def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
 
 def print_runs(table: xr.Dataset) -> None:
     """Print parameters, last step and verdict of each run of a study, and its path."""
-    from pellicle.studies.summary import paths, rows
+    from pellicle.studies.summary import paths, rows, steep
 
     for caption, lines in (("", rows(table)), ("path:", paths(table))):
         if lines:
@@ -100,16 +103,19 @@ def print_runs(table: xr.Dataset) -> None:
                 typer.echo(caption)
             names = list(lines[0])
             print_table(names, lines, _heads(table, [name for name in names if name in table]))
+    for message in steep(table):
+        typer.echo(message, err=True)
 
 
 def exit_by_convergence(result: Result) -> None:
-    """Print which steps did not converge or are too coarse; exit unless all converged."""
+    """Print which steps did not converge, or have a caveat; exit unless all converged."""
     from pellicle.results.result import first_message
 
     for step, message in result.failures():
         typer.echo(f"step {step} did not converge: {for_document(message)}", err=True)
-    if coarse := result.coarse():
-        print_warning(first_message(coarse))
+    for steps in (result.coarse(), result.steep()):
+        if steps:
+            print_warning(first_message(steps))
     if not result.converged:
         raise typer.Exit(NOT_CONVERGED)
 

@@ -32,6 +32,7 @@ from .indenter import Indenter as Indenter
 from .indenter import IsShallowLimit as IsShallowLimit
 from .interaction import Interaction as Interaction
 from .kernel import HasRelaxation as HasRelaxation
+from .kernel import HasTimeSpan as HasTimeSpan
 from .kernel import Kernel as Kernel
 from .output import Output as Output
 from .output import Runs as Runs

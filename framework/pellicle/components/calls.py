@@ -152,6 +152,14 @@ def branches_of(kernel: Kernel) -> tuple[Branch, ...]:
     return branches
 
 
+def instantaneous(kernel: Kernel) -> Kernel:
+    """Return the elastic kernel of the instantaneous response; an elastic kernel itself.
+
+    It may have a closed form, which a kernel that relaxes need not have.
+    """
+    return kernel.scaled(1.0) if isinstance(kernel, HasRelaxation) else kernel
+
+
 def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> ForceCurve:
     """Return force over reduced modulus and its derivatives at depths of shape (n,) [m].
 

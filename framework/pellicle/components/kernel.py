@@ -57,3 +57,15 @@ class HasRelaxation(Protocol):
     def without_skin(self) -> Kernel:
         """Return the kernel of the solid alone: this kernel itself if it has no skin."""
         ...
+
+
+@runtime_checkable
+class HasTimeSpan(Protocol):
+    """A kernel whose relaxation is meant for some times only."""
+
+    def time_span(self) -> tuple[float, float]:
+        """Return the shortest and the longest time [s] after a jump at which it holds.
+
+        A run with a shorter step, or one that lasts longer, is refused.
+        """
+        ...

@@ -37,6 +37,8 @@ class Setting:
     """The state at the end of the step before; None at the first step."""
     law: Law | None = None
     """The traction that acts across the gap; None for hard contact that does not stick."""
+    left: Array | None = None
+    """Displacement left behind by earlier load steps [m]; None if there is none."""
 
     @property
     def mean_height(self) -> float:
@@ -48,7 +50,8 @@ class Setting:
 
     def problem(self, control: Depth | Force) -> Problem:
         """Return the problem of a load step."""
-        return Problem(self.grid, self.operator, self.profile, control, law=self.law)
+        profile = self.profile if self.left is None else self.profile - self.left
+        return Problem(self.grid, self.operator, profile, control, law=self.law, left=self.left)
 
     def force_at(self, depth: float) -> float:
         """Return an estimate of the force [N] at a depth [m], by one application of the operator.
@@ -56,7 +59,7 @@ class Setting:
         The pressure is the multiple of the overlap of indenter and undeformed surface whose
         displacement comes nearest to the overlap in energy.
         """
-        overlap = np.maximum(self.profile + depth, 0.0)
+        overlap = np.maximum(self.problem(Depth(depth)).profile + depth, 0.0)
         return self.grid.cell_area * float(overlap_pressure(self.operator, overlap).sum())
 
 

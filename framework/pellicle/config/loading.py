@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import inspect
+import itertools
 from collections.abc import Mapping
 from functools import cache, cached_property
 from itertools import filterfalse
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from pydantic import ConfigDict, Field, create_model, model_validator
 from pydantic.fields import FieldInfo
@@ -17,6 +18,7 @@ from pellicle.loading import OPTIONS, LoadSteps
 from pellicle.model.base import Model
 from pellicle.model.messages import nearest
 from pellicle.plugins import registry
+from pellicle.units import Quantity
 
 # Messages name these first.
 _USUAL = "depth", "force", "mean_pressure"
@@ -40,13 +42,40 @@ class Loading(Model):
         ),
     ] = False
 
+    time: Annotated[
+        tuple[float, ...] | None,
+        LoadSteps(Quantity("s")),
+        Field(
+            description="time [s] at the end of each step, for a solid that relaxes; equal times "
+            "are a jump, and the first step is one"
+        ),
+    ] = None
+
     @model_validator(mode="before")
     @classmethod
     def _read(cls, given: Any) -> Any:
         if not isinstance(given, Mapping):
             return given
         data = {key: value for key, value in given.items() if value is not None}
-        return dict(model_of(data)(**data))
+        return {key: value for key, value in model_of(data)(**data) if value is not None}
+
+    @model_validator(mode="after")
+    def _check_time(self) -> Self:
+        if self.time is None:
+            return self
+        if len(self.time) != len(self.values):
+            raise ConfigError(
+                f"has {len(self.time)} values for {len(self.values)} load steps; give one for each "
+                "(there and back, 2 num − 1)",
+                "time",
+            )
+        for index, (before, after) in enumerate(itertools.pairwise(self.time), start=1):
+            if after < before:
+                raise ConfigError(
+                    f"falls from {before:g} to {after:g} s; times must not fall",
+                    f"time.{index}",
+                )
+        return self
 
     @cached_property
     def prescription(self) -> Prescription:
@@ -76,7 +105,8 @@ class Loading(Model):
     def variables(self) -> set[str]:
         """The names of the result variables that this loading adds."""
         names = {variable.name for variable in self.prescription.variables}
-        return names | ({"stiffness"} if self.stiffness else set())
+        options = {"stiffness": self.stiffness, "time": self.time is not None}
+        return names | {name for name, used in options.items() if used}
 
 
 def model_of(loading: Mapping[str, Any]) -> type[Model]:

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Self
 
@@ -21,7 +23,16 @@ from pydantic import (
     model_validator,
 )
 
-from pellicle.components import AreaCorrection, Indenter, Interaction, Kernel, Output, Solver
+from pellicle.components import (
+    AreaCorrection,
+    HasRelaxation,
+    HasTimeSpan,
+    Indenter,
+    Interaction,
+    Kernel,
+    Output,
+    Solver,
+)
 from pellicle.components.calls import branches_of
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
@@ -94,12 +105,30 @@ class Run(FromFile):
         return self
 
     @model_validator(mode="after")
-    def _kernel_is_elastic(self) -> Self:
-        if branches_of(self.kernel):
+    def _relaxes_in_time(self) -> Self:
+        if not branches_of(self.kernel):
+            return self
+        name = self.kernel.type_name
+        if self.loading.time is None:
             raise ConfigError(
-                f"{self.kernel.type_name!r} relaxes in time, and load steps have no times; use an "
-                "elastic kernel, such as the solid alone for its instantaneous response",
+                f"is missing, and {name!r} relaxes in time; give one time for each load step",
+                "loading.time",
+            )
+        is_free = self.grid.boundary == "free"
+        relaxing = isinstance(self.kernel, HasRelaxation) and self.kernel
+        if is_free and relaxing and relaxing.without_skin() != relaxing:
+            raise ConfigError(
+                f"{name!r} has a skin on a solid that relaxes, which cannot be solved on a free "
+                "boundary yet; use the solid without the skin, an elastic solid under it, or "
+                'boundary = "periodic"',
                 "kernel",
+            )
+        _refuse_times(self.kernel, self.loading.time)
+        if self.interaction:
+            raise ConfigError(
+                f"cannot act on a solid that relaxes ({name!r}) yet; leave the interaction out, or "
+                "use an elastic kernel",
+                "interaction",
             )
         return self
 
@@ -161,6 +190,28 @@ class Run(FromFile):
             if isinstance(value, Path) and isinstance(get(identifying, path), str):
                 identifying = replaced(identifying, path, _digest_of(value))
         return hashlib.sha256(json.dumps(identifying, sort_keys=True).encode()).hexdigest()
+
+
+def _refuse_times(kernel: Kernel, times: Sequence[float]) -> None:
+    """Refuse steps at times for which the relaxation of a kernel is not meant.
+
+    Raises
+    ------
+    ConfigError
+        A step is shorter than the span of the kernel begins, or the path longer than it ends.
+    """
+    if not isinstance(kernel, HasTimeSpan):
+        return
+    shortest, longest = kernel.time_span()
+    duration = times[-1] - times[0]
+    least = min((b - a for a, b in pairwise(times) if b > a), default=math.inf)
+    if least < shortest or duration > longest:
+        what = f"has a step of {least:g} s" if least < shortest else f"lasts {duration:g} s"
+        raise ConfigError(
+            f"{what}, and the relaxation of {kernel.type_name!r} holds from {shortest:g} to "
+            f"{longest:g} s; give it a wider span, or other times",
+            "loading.time",
+        )
 
 
 def _digest_of(path: Path) -> str:

@@ -111,7 +111,6 @@ class Operator(ABC):
         self.grid = grid
         # Shared with `scaled` copies.
         self._count = [0]
-        # A power of two, so that no digit changes.
         self._factor = 1.0
         self._spring_compliance = 0.0
 
@@ -133,7 +132,7 @@ class Operator(ABC):
     @property
     def unit(self) -> float:
         """The largest power of two up to `greatest` [m/Pa]; 1 if that is 0."""
-        return self._symbol.unit * self._factor
+        return _power_of_two(self.greatest) if self.greatest else self._factor
 
     def with_spring(self, compliance: float) -> Self:
         """Return the operator for an indenter on a spring; it shares all arrays with this one.
@@ -152,10 +151,10 @@ class Operator(ABC):
         return self._spring_compliance * self.grid.cell_area * total
 
     def scaled(self, factor: float) -> Self:
-        """Return the operator times ``factor``, a power of two; it shares all arrays with this one.
+        """Return the operator times ``factor``; it shares all arrays with this one.
 
         The factor 1/`unit` brings its values near 1, as single precision requires: a compliance in
-        m/Pa may be below its smallest number.
+        m/Pa may be below its smallest number. A power of two changes no digit.
         """
         scaled = copy.copy(self)
         scaled._factor = self._factor * factor
@@ -189,7 +188,7 @@ class Operator(ABC):
         """
         self._count[0] += 1
         displacement = np.asarray(self._apply(pressure), dtype=pressure.dtype)
-        if (unit := self.unit) != 1:
+        if (unit := self._symbol.unit * self._factor) != 1:
             displacement *= unit
         if self._spring_compliance:
             displacement += self.deflection(float(pressure.sum(dtype=np.float64)))
@@ -197,7 +196,12 @@ class Operator(ABC):
 
     @abstractmethod
     def _apply(self, pressure: NDArray[Any]) -> object:
-        """Return the displacement over `unit`, a new array."""
+        """Return the displacement over the unit of the symbol and the factor, a new array."""
+
+
+def _power_of_two(number: float) -> float:
+    """Return the largest power of two up to ``number`` > 0."""
+    return 2.0 ** (math.frexp(number)[1] - 1)
 
 
 class _Symbol:
@@ -205,7 +209,7 @@ class _Symbol:
 
     def __init__(self, values: Array) -> None:
         self.greatest = float(np.abs(values).max())
-        self.unit = 2.0 ** (math.frexp(self.greatest)[1] - 1) if self.greatest else 1.0
+        self.unit = _power_of_two(self.greatest) if self.greatest else 1.0
         values /= self.unit
         self.double = read_only(values)
         self._single: NDArray[np.float32] | None = None

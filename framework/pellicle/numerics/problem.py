@@ -75,6 +75,11 @@ class Problem:
     """The prescribed depth or force; a mean pressure is given as a force."""
     law: Law | None
     """The traction that acts across the gap; None for hard contact that does not stick."""
+    left: Array | None
+    """Displacement [m] left behind by earlier load steps, to which A p adds; None if there is none.
+
+    It is already subtracted from `profile`, so that a solver need not know of it.
+    """
 
     def __init__(
         self,
@@ -85,6 +90,7 @@ class Problem:
         value: float | None = None,
         prescribed: Literal["depth", "force"] | None = None,
         law: Law | None = None,
+        left: Array | None = None,
     ) -> None:
         # Packages written for version 1 pass the kind of control and its value separately.
         kind = prescribed or control
@@ -100,6 +106,7 @@ class Problem:
             profile=profile,
             control=kind,
             law=law,
+            left=left,
         )
 
     @property
@@ -126,6 +133,16 @@ class Problem:
             return isfinite(lowest) and self.value >= least
         # A coarse grid may not resolve any part of an indenter of single cells.
         return isfinite(lowest) and self.value > (0 if self.prescribed == "force" else -lowest)
+
+    @property
+    def heights(self) -> Array:
+        """The indenter alone: `profile` without the displacement left behind [m]."""
+        return self.profile if self.left is None else self.profile + self.left
+
+    @property
+    def first_touch(self) -> float:
+        """Depth [m] at which the indenter touches the surface; 0 if nothing is left behind."""
+        return 0.0 if self.left is None else -float(self.profile.max())
 
     def depth(self, u_minus_f: Array) -> float:
         """Return z [m] given A p − f on the contact.
@@ -160,7 +177,7 @@ class Problem:
         wave = 0.0
         if self.has_infinite_stiffness(contact):
             wave = self.operator.greatest * total / contact.size
-        return height_scale(self.profile, contact, depth - self.operator.deflection(total), wave)
+        return height_scale(self.heights, contact, depth - self.operator.deflection(total), wave)
 
     def coarsened(self) -> Problem:
         """Return the same problem with half as many cells each way.
@@ -178,6 +195,7 @@ class Problem:
             operator=operator,
             profile=restrict(self.profile, grid.shape),
             law=self.law.on(grid) if self.law else None,
+            left=None if self.left is None else restrict(self.left, grid.shape),
         )
 
     def scaled(self, height: float, pressure: float) -> Problem:
@@ -191,6 +209,7 @@ class Problem:
             profile=self.profile / height,
             control=self.control.scaled(height, pressure),
             law=self.law.scaled(height, pressure) if self.law else None,
+            left=None if self.left is None else self.left / height,
         )
 
 
@@ -246,6 +265,12 @@ class Equilibrium:
     @cached_property
     def displacement(self) -> Array:
         """Displacement u of the surface [m]."""
+        left = self.problem.left
+        return self._by_pressure if left is None else self._by_pressure + left
+
+    @cached_property
+    def _by_pressure(self) -> Array:
+        """The displacement that the pressure causes [m], without that left behind."""
         return self.problem.operator.with_spring(0.0)(self.pressure)
 
     @property
@@ -256,7 +281,7 @@ class Equilibrium:
     @cached_property
     def gap(self) -> Array:
         """Gap u − δ − f [m]; +inf where there is no indenter."""
-        return self.displacement - self.problem.profile - self.depth
+        return self._by_pressure - self.problem.profile - self.depth
 
     @cached_property
     def attraction(self) -> Array:
@@ -327,8 +352,8 @@ class Equilibrium:
         if not contact.any():
             if self.adhesive and self.problem.prescribed == "force":
                 return self.adhesive.depth
-            return self.problem.depth(np.zeros(1))
-        return self.problem.depth(self.displacement[contact] - self.problem.profile[contact])
+            return self.problem.depth(np.full(1, self.problem.first_touch))
+        return self.problem.depth(self._by_pressure[contact] - self.problem.profile[contact])
 
     @cached_property
     def _scale(self) -> float:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.analysis import Leg, legs
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.components import Solver
 from pellicle.files import for_document, storage_errors
 from pellicle.numerics.problem import height_scale
@@ -136,6 +136,8 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
         # The surface rises above the undeformed plane, and the indenter hangs over it.
         height = max(abs(float(data["depth"])), float(np.abs(line["displacement"].values).max()))
     near = gap <= height * 2
+    if pulls and not near.any():
+        near = np.isfinite(gap)
     length, length_name = axis_unit(line["x"].values, "m")
     scale, name = axis_unit(line["pressure"].values, "Pa")
     opens = bool(gap[near].any())
@@ -151,20 +153,29 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     gap_axes.set_ylabel(f"gap [{gap_name}]", color="C1")
     if pulls:
         axes.axhline(0.0, color="C0", linewidth=0.6)
-        axes.fill_between(
+        _shade(axes, x, line["contact"].values)
+    for side in (gap_axes,) if pulls else (axes, gap_axes):
+        side.set_ylim(bottom=0.0)
+    if not opens and float(data["depth"]) > 0:
+        gap_axes.set_ylim(top=float(data["depth"]) * gap_scale)
+
+
+def _shade(axes: Axes, x: Array, where: Mask) -> None:
+    """Shade the cells at ``x`` where a mask holds, over the whole height of the axes."""
+    # An empty shade would set the limits of the axes to round-off.
+    if where.any():
+        shade = axes.fill_between(
             x,
             0,
             1,
-            where=line["contact"].values,
+            where=where,
             step="mid",
             transform=axes.get_xaxis_transform(),
             color="0.9",
             zorder=0,
         )
-    for side in (gap_axes,) if pulls else (axes, gap_axes):
-        side.set_ylim(bottom=0.0)
-    if not opens and float(data["depth"]) > 0:
-        gap_axes.set_ylim(top=float(data["depth"]) * gap_scale)
+        # Otherwise 0 and 1 are edges of the vertical axis.
+        shade.sticky_edges.y.clear()
 
 
 def force_depth(result: Result, axes: Axes) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.analysis import ellipse, patches, perimeter
+from pellicle.arrays import Array
 from pellicle.grid import Grid
 from pellicle.numerics.problem import Equilibrium
 from pellicle.numerics.solution import State
@@ -142,6 +143,13 @@ class Steps:
         if "wall_pressure" in self._fields:
             wall = self._fields["wall_pressure"].values[len(self) - 1]
         return State(pressure, wall, self._scalars[-1]["depth"].item())
+
+    def field(self, name: str) -> Array:
+        """Return a field at the end of each step, in order; (step, nx, ny), a view."""
+        if not self._scalars:
+            return np.empty((0, 0, 0))
+        values: Array = self._fields[name].values[: len(self)]
+        return values
 
     def append(self, step: xr.Dataset) -> xr.Dataset:
         """Copy a step of `step_dataset` into the arrays, and return it as views of them."""

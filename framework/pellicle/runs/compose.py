@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from pellicle.checks import errors_attributed_to
 from pellicle.components import Force, Prescription, Search, Setting
-from pellicle.components.calls import check_solver, check_value, law_of, profile_of, target_of
+from pellicle.components.calls import (
+    check_solver,
+    check_value,
+    instantaneous,
+    law_of,
+    profile_of,
+    target_of,
+)
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
 from pellicle.numerics.grid_checks import warn_of_cells, warn_of_period
@@ -21,7 +28,7 @@ def compose(run: Run) -> Setting:
         not the interaction.
     """
     with errors_attributed_to(run.kernel):
-        operator = make_operator(run.kernel, run.grid)
+        operator = make_operator(instantaneous(run.kernel), run.grid)
         warn_of_cells(run.kernel.compliance, run.grid)
     profile = profile_of(run.indenter, run.grid)
     if run.indenter.footprint == "domain":

@@ -26,6 +26,7 @@ from pellicle.results.variables import corrected_area as area_variable
 
 from .adhesion import force_error, greatest_pull
 from .progress import Bar
+from .relaxation import Relaxation
 from .target_search import Reached, reach
 from .verdict import judge
 
@@ -38,9 +39,12 @@ def solve_steps(
 ) -> Generator[xr.Dataset, None, None]:
     """Solve the load steps missing from ``steps``; add and yield each as soon as it is solved."""
     origin = provenance(run)
+    solid = Relaxation.of(run)
     for index in range(len(steps), len(run.loading.values)):
         # Only the copy in ``steps`` outlives a solve; the next one starts from its state.
         here = replace(setting, state=steps.state)
+        if solid:
+            here = solid.setting(here, steps.field("pressure"), steps.field("displacement"))
         yield steps.append(_solved_step(run, here, index, bar.step(index)).assign_attrs(origin))
 
 
@@ -66,6 +70,7 @@ def _solved_step(run: Run, setting: Setting, index: int, monitor: Monitor) -> xr
         **{variable.name: area for variable, area in areas.items()},
         **report,
         **({"stiffness": stiffness.value} if stiffness else {}),
+        **({"time": run.loading.time[index]} if run.loading.time else {}),
         **({"jumped": step.jumped} if setting.law else {}),
         **({} if error is None else {"force_error": error}),
         "iterations": step.iterations,

@@ -65,7 +65,10 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
         return _not_met(step, step.search)
     cells = int(np.count_nonzero(equilibrium.contact))
     enough = _RESOLVED_ACROSS if min(equilibrium.contact.shape) == 1 else _RESOLVED
-    if equilibrium.problem.control.value > 0 and cells < min(enough, equilibrium.contact.size):
+    problem = equilibrium.problem
+    # A surface that was left behind may be out of the indenter's reach at a depth above 0.
+    least = problem.first_touch if problem.prescribed == "depth" else 0.0
+    if problem.control.value > least and cells < min(enough, equilibrium.contact.size):
         return Status.COARSE, Status.COARSE.value.format(cells=cells or "none")
     if run.interaction:
         return _doubt(run, run.interaction, equilibrium)

@@ -13,7 +13,8 @@ from xarray.core import indexing
 from pellicle.arrays import Mask
 from pellicle.errors import StorageError
 from pellicle.results import netcdf, storage
-from pellicle.results.variables import FIELDS, VARIABLES
+from pellicle.results.path import has_interaction
+from pellicle.results.variables import FIELDS, VARIABLES, WALL_PRESSURE
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,7 +24,7 @@ def add_fields(table: xr.Dataset, runs: Path) -> xr.Dataset:
     """Return the table of a study with the fields of its runs, which are read when used.
 
     The dimensions of the fields are those of the table, x and y. Fields of missing steps are NaN,
-    or False for ``contact``.
+    or False for ``contact``; the wall pressure, where there is an interaction, is a field too.
 
     Raises
     ------
@@ -39,8 +40,10 @@ def add_fields(table: xr.Dataset, runs: Path) -> xr.Dataset:
     dimensions = [*table["status"].dims, "x", "y"]
     shape = *exists.shape, cells.sizes["x"], cells.sizes["y"]
     fields = {}
-    for name in FIELDS:
-        array = _Field(runs, table["run"].values, exists, name, shape)
+    pulls = ~np.isnan(table["zone_area"].values) if has_interaction(table) else np.array(False)
+    for name in (*FIELDS, *[WALL_PRESSURE] * bool(pulls.any())):
+        steps = pulls if name == WALL_PRESSURE else exists
+        array = _Field(runs, table["run"].values, steps, name, shape)
         lazy = indexing.LazilyIndexedArray(array)
         fields[name] = Variable(dimensions, lazy, VARIABLES[name].attributes)
     return table.assign_coords(x=cells["x"], y=cells["y"]).assign(fields)

@@ -109,6 +109,13 @@ def coarse(table: xr.Dataset) -> Iterator[str]:
         yield f"of {len(statuses)} runs, in {count} the cells are too coarse for this contact"
 
 
+def steep(table: xr.Dataset) -> Iterator[str]:
+    """Yield a message with the number of runs with slopes beyond those of the theory, if any."""
+    statuses = _statuses(table)
+    if count := sum(Status.STEEP in run for run in statuses):
+        yield f"of {len(statuses)} runs, in {count} slopes in contact are beyond the theory"
+
+
 def _statuses(table: xr.Dataset) -> list[list[Status]]:
     """Return the statuses of the steps of each run."""
     codes = table["status_code"].values

@@ -43,6 +43,12 @@ def contact(run: xr.Dataset, step: int) -> AxisymmetricContact | None:
 def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
     run = Run.from_json(configuration)
     kernel, indenter = run.kernel, run.indenter
+    if run.interaction is not None:
+        raise ConfigError(
+            "the axisymmetric solution is that of contact without adhesion, and this run has an "
+            "[interaction]; leave one out",
+            "reference",
+        )
     if (
         not isinstance(kernel, (HalfSpace, TensedMembrane))
         or not isinstance(indenter, HasAbelTransform)

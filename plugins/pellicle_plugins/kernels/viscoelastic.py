@@ -140,6 +140,10 @@ class Viscoelastic(Kernel):
         """Return the elastic kernel of ``share`` times the instantaneous stiffness."""
         return stiffened(self.solid, share * self._instantaneous)
 
+    def time_span(self) -> tuple[float, float]:
+        """Return the span of the power law; all times if there is none."""
+        return (0.0, math.inf) if self.power_law is None else self.power_law.span
+
     def without_skin(self) -> Kernel:
         """Return this kernel: there is no skin on it."""
         return self

@@ -45,11 +45,11 @@ from pellicle.report.plotting import (
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction
-from pellicle.results.result import Result
+from pellicle.results.result import Result, first_message
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import VARIABLES, WALL_PRESSURE, names_of
-from pellicle.studies.summary import coarse, failures, progress_of, reasons, runs_of
+from pellicle.studies.summary import coarse, failures, progress_of, reasons, runs_of, steep
 from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
@@ -240,11 +240,14 @@ def _status(result: Result) -> Notice:
     if coarse := result.coarse():
         sentences.append(f"In {len(coarse)} of {done} the cells are too coarse for the contact.")
     details = [f"Step {step}: {message}" for step, message in (*failed, *coarse)]
+    if steep := result.steep():
+        sentences.append(f"In {len(steep)} of {done} slopes in contact are beyond the theory.")
+        details.append(f"S{first_message(steep)[1:]}")
     return Notice(" ".join(sentences), not details and done == total, details)
 
 
 def _status_of_study(table: xr.Dataset, count: int) -> Notice:
-    failed, warnings = failures(table), [*coarse(table)]
+    failed, warnings = failures(table), [*coarse(table), *steep(table)]
     if not failed:
         return Notice(f"Every step of all {count} runs converged.", not warnings, warnings)
     return Notice(f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings])

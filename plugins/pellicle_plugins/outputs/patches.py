@@ -32,7 +32,8 @@ class Patches(TableFigure):
     Cells in contact that share an edge belong to one patch, on a periodic grid also across the edge
     of the domain. The map is that of the last curve. The patches are written as CSV beside the
     figure, the largest first: area, force and number of neighbours, which
-    `pellicle.analysis.coordination` counts.
+    `pellicle.analysis.coordination` counts. The force of a patch is that of its own cells; the pull
+    of an interaction on the cells around it belongs to none.
     """
 
     type: Literal["patches"] = "patches"

@@ -20,8 +20,17 @@ from typer.testing import CliRunner
 import pellicle as pl
 from pellicle.cli import app
 from pellicle.report.plotting import default_step
-from pellicle.results.variables import names_of
+from pellicle.results.variables import VARIABLES, names_of
+from pellicle.units import readable
 from tests.pictures import pixels
+
+# A coarse grid makes pictures in seconds; the units E* = R = w = 1 make slopes steep.
+pytestmark = [
+    pytest.mark.filterwarnings(
+        "ignore:.*(cells wide|slopes in contact):pellicle.ConvergenceWarning"
+    ),
+    pytest.mark.filterwarnings("ignore:of . runs, in . the cells are too coarse:UserWarning"),
+]
 
 BEAD: dict[str, Any] = {
     "grid": {"points": 24, "size": "5 m"},
@@ -76,7 +85,7 @@ def bead(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, pl.Result]:
 def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
     """Return the folder of a study of two works of adhesion, and its table."""
     folder = tmp_path_factory.mktemp("study")
-    return folder, pl.run_study(STUDY, folder, progress=False, threads=1)
+    return folder, pl.run_study(STUDY, folder, progress=False, threads=1, fields=True)
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:
@@ -102,8 +111,10 @@ def test_the_path_is_summarised_where_the_result_is(bead: tuple[Path, pl.Result]
     shown = CliRunner().invoke(app, ["show", str(folder / "run.h5")]).output
     page = unescape((folder / "run.html").read_text(encoding="utf-8"))
     for name, value in summary.items():
-        assert re.search(rf"^{name} +{re.escape(f'{value:.6g}')} [NmJ] ", shown, re.MULTILINE), name
+        text = readable(value, VARIABLES[name].unit)
+        assert re.search(rf"^{name} +{re.escape(text)} ", shown, re.MULTILINE), name
         assert f">{name.replace('_', ' ')}</td>" in page
+        assert f">{text}</td>" in page
 
 
 def test_the_last_step_in_contact_is_drawn(bead: tuple[Path, pl.Result]) -> None:
@@ -200,7 +211,7 @@ def test_a_study_has_one_path_for_each_run(study: tuple[Path, xr.Dataset]) -> No
     page = (folder / "study.html").read_text(encoding="utf-8")
     assert "The path of each run" in page
     highest = max(float(row["y"]) for row in rows_of(folder / "study-wall.csv"))
-    assert highest > 0
+    assert highest == table["wall_pressure"].max().item()
 
 
 def test_without_an_interaction_nothing_is_added(tmp_path: Path) -> None:
@@ -218,3 +229,24 @@ def test_without_an_interaction_nothing_is_added(tmp_path: Path) -> None:
         pl.Study.of(
             {**hard, "study": {"vary": {"indenter.radius": [1, 2]}, "derived": {"p": "pull_off"}}}
         )
+
+
+def test_steep_contacts_are_marked_once(bead: tuple[Path, pl.Result]) -> None:
+    """Terminal and page say how many steps are beyond the theory, not the same line for each."""
+    folder, result = bead
+    data = result.dataset
+    first, *others = data["step"].values[data["status_code"].values == "STEEP"]
+    assert others
+    shown = CliRunner().invoke(app, ["show", str(folder / "run.h5")])
+    assert shown.output.count("slopes in contact reach") == 1
+    assert f"step {first} and {len(others)} more: converged, but slopes" in shown.output
+    page = unescape((folder / "run.html").read_text(encoding="utf-8"))
+    assert f"In {len(others) + 1} of 9 slopes in contact are beyond the theory." in page
+
+
+def test_the_solution_without_adhesion_is_no_reference(tmp_path: Path) -> None:
+    """A curve of contact that does not stick beside one that does would pass for its theory."""
+    output = {"type": "curves", "reference": "axisymmetric"}
+    loading = {"depth": ["0.2 m", "-1 m"]}
+    with pytest.raises(pl.ConfigError, match="without adhesion"):
+        pl.run({**BEAD, "loading": loading, "outputs": [output]}, directory=tmp_path)

@@ -1,0 +1,131 @@
+"""Interactions on the way from a run file to a result file."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle.cli import app
+
+FILE = """
+outputs = []
+[grid]
+points = 64
+size = "0.6 mm"
+boundary = "free"
+[kernel]
+type = "half_space"
+reduced_modulus = "700 kPa"
+[indenter]
+type = "paraboloid"
+radius = "1 mm"
+[interaction]
+type = "linear"
+work_of_adhesion = "50 mJ/m^2"
+strength = "30 kPa"
+[loading]
+depth = ["5 um", "0 um", "-2 um"]
+[solver]
+type = "active_set"
+tolerance = 1e-6
+"""
+WORK = "interaction.work_of_adhesion"
+ADDED = {"wall_pressure", "zone_area", "zone_width", "energy", "residual_traction"}
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    """Return a run file with an interaction."""
+    path = tmp_path / "run.toml"
+    path.write_text(FILE, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("kept", [1, 2])
+def test_resumes_where_it_was_killed(file: Path, kept: int) -> None:
+    """A run that goes on from its file has the numbers of one that was never interrupted."""
+    whole = pl.run(file, progress=False)
+    assert whole.converged
+    part = pl.Result(whole.dataset.isel(step=slice(0, kept)))
+    part.save(file.with_suffix(".h5"))
+    before = file.with_suffix(".h5").stat().st_mtime_ns
+    resumed = pl.run(file, directory=file.parent, progress=False)
+    assert file.with_suffix(".h5").stat().st_mtime_ns > before
+    for name in set(whole.dataset.data_vars) - {"wall_time"}:
+        one, other = (result.dataset[name].values for result in (whole, resumed))
+        if one.dtype.kind == "f":
+            scale = float(np.nanmax(np.abs(one)))
+            np.testing.assert_allclose(other, one, rtol=1e-12, atol=1e-12 * scale, err_msg=name)
+        else:
+            np.testing.assert_array_equal(other, one)
+    loaded = pl.load(file.with_suffix(".h5"))
+    assert loaded.dataset["wall_pressure"].values[-1].max() > 0
+    np.testing.assert_array_equal(loaded.dataset["contact"], loaded.dataset["wall_pressure"] > 0)
+
+
+def test_adds_variables(file: Path) -> None:
+    """A result with an interaction has its variables, in the file and the table; others not."""
+    run = pl.Run.from_toml(file)
+    table = pl.Run.from_mapping(tomllib.loads(FILE) | {"outputs": [{"type": "csv"}]})
+    with_law = pl.run(table, directory=file.parent, progress=False)
+    assert set(with_law.dataset.data_vars) >= ADDED
+    header = next(file.parent.glob("*.csv")).read_text(encoding="utf-8").partition("\n")[0]
+    assert {"zone_area [m2]", "zone_width [m]", "energy [J]"} <= {*header.split(",")}
+    shown = CliRunner().invoke(app, ["show", str(file.with_suffix(".h5"))]).output
+    assert "zone_area [m2]" in shown
+    hard = pl.run(
+        run.model_copy(update={"interaction": None, "loading": pl.Loading(depth="5 um")}),
+        progress=False,
+    )
+    assert not ADDED & set(hard.dataset.data_vars)
+    assert hard.dataset["force"][0] > with_law.dataset["force"][0]
+
+
+def test_work_of_adhesion_on_the_command_line(file: Path) -> None:
+    """``--set`` changes it, in any unit of energy per area or force per length."""
+    out = file.parent / "out"
+    command = ["run", str(file), "-o", str(out), "--quiet", "--set"]
+    done = CliRunner().invoke(app, [*command, f'{WORK}="40 mN/m"'])
+    assert done.exit_code == 0, done.output
+    (result,) = out.glob("*.h5")
+    assert pl.load(result).configuration["interaction"]["work_of_adhesion"] == pytest.approx(0.04)
+    done = CliRunner().invoke(app, [*command, f'{WORK}="5 mJ"'])
+    assert done.exit_code == 2
+    assert f"{WORK}: '5 mJ' measures" in done.output
+
+
+def test_study_varies_the_work_of_adhesion() -> None:
+    """The pull at one depth grows with it."""
+    run: dict[str, Any] = pl.Run.from_mapping(tomllib.loads(FILE)).model_dump(
+        mode="json", exclude_none=True
+    )
+    run |= {"loading": {"depth": "0 um"}, "outputs": []}
+    table = pl.run_study(pl.Study(run=run, vary={WORK: ["40 mJ/m^2", "60 mJ/m^2"]}), progress=False)
+    assert table["converged"].all()
+    assert np.diff(table["force"].values.ravel()).item() < 0
+    np.testing.assert_allclose(table[WORK], [0.04, 0.06])
+
+
+def test_two_tables(file: Path) -> None:
+    """A second table is refused in words."""
+    for extra in ('[interaction]\ntype = "jkr"\n', '[[interaction]]\ntype = "jkr"\n'):
+        file.write_text(FILE + extra, encoding="utf-8")
+        with pytest.raises(pl.ConfigError, match="not valid TOML: Cannot"):
+            pl.Run.from_toml(file)
+
+
+def test_schema_of_a_run_file() -> None:
+    """An editor accepts the table and marks what is wrong in it."""
+    validator = jsonschema.Draft202012Validator(pl.schema())
+    run = json.loads(pl.Run.from_mapping(tomllib.loads(FILE)).model_dump_json(exclude_none=True))
+    assert validator.is_valid(run)
+    for wrong in ({"type": "jkr"}, {"type": "nonsense"}, {**run["interaction"], "range": 1e-6}):
+        assert not validator.is_valid(run | {"interaction": wrong})
