@@ -10,6 +10,8 @@ import pytest
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 SCRIPTS = {
+    "adhesion.py": (["--points", "32", "--only", "jump_in", "wave"], 2 + 3),
+    "adhesion_random.py": (["2"], 1),
     "fit_rivals.py": (["1"], 11),
     "cost.py": (["--cases", "rough", "punch", "--points", "32"], 2 * 3),
     "kernels.py": (["--cases", "rough", "--points", "32"], 20),

@@ -1,0 +1,133 @@
+"""Paths of adhesive contact in the units E* = R = w = 1, with their closed theory."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+import pellicle as pl
+from pellicle_plugins.analytic.adhesion import Adhesion
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+
+FORCE = pi
+"""πwR."""
+JKR: dict[str, Any] = {"type": "jkr", "work_of_adhesion": 1.0}
+PARABOLOID: dict[str, Any] = {"type": "paraboloid", "radius": 1.0}
+
+
+def theory(length: float) -> Adhesion:
+    """Return the closed theory of the paraboloid at an elastocapillary length s."""
+    return Adhesion(Paraboloid(radius=1.0), 1.0, length / 2, 1.0)
+
+
+def half_space(length: float) -> dict[str, Any]:
+    """Return the kernel of a half-space with an elastocapillary length s, 0 included."""
+    if not length:
+        return {"type": "half_space", "reduced_modulus": 1.0}
+    return {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": length / 2}
+
+
+def solved(
+    points: int | Sequence[int],
+    length: float,
+    values: Sequence[float],
+    *,
+    size: float | Sequence[float] = 5.0,
+    boundary: str = "free",
+    interaction: dict[str, Any] | None = None,
+    indenter: dict[str, Any] | None = None,
+    kernel: dict[str, Any] | None = None,
+    **loading: Any,
+) -> xr.Dataset:
+    """Return the path through ``values``: depths unless ``loading`` names another quantity."""
+    quantity = loading.pop("quantity", "depth")
+    run = {
+        "grid": {"points": points, "size": size, "boundary": boundary},
+        "kernel": kernel or half_space(length),
+        "indenter": indenter or PARABOLOID,
+        "interaction": interaction or JKR,
+        "loading": {quantity: [float(value) for value in values], **loading},
+    }
+    return pl.run(run, progress=False).dataset
+
+
+def retracted(points: int, length: float, depth: float, size: float) -> xr.Dataset:
+    """Return the step at ``depth`` that a larger contact has been retracted to."""
+    before = [0.1] if depth < 0 else []
+    return solved(points, length, [*before, depth + 0.25, depth], size=size).isel(step=-1)
+
+
+def retraction_cases(length: float) -> dict[str, tuple[float, float, float, float]]:
+    """Return domain, depth, force and radius of the contacts that retractions are tested at."""
+    closed = theory(length)
+    return {
+        name: (size, float(contact.depth), float(contact.force), float(contact.contact_radius))
+        for name, size, contact in (
+            ("a = 1.5", 5.0, closed.equilibrium(1.5)),
+            ("F = 0", 7.0, closed.at_force(0.0)),
+        )
+    }
+
+
+def cantilever_path(points: int, stiffness: float, share: float = 0.005) -> tuple[float, float]:
+    """Return the base position at which a cantilever jumps off, and that of the closed theory.
+
+    The base is retracted in steps of ``share`` of the distance from the first touch.
+    """
+    end = theory(0.0).instability(stiffness)
+    last = float(end.depth + end.force / stiffness)
+    steps = last * np.arange(0.94, 1.0601, share)
+    path = [0.1, 1.0, 0.5 * last, 0.8 * last, *steps]
+    dataset = solved(
+        points, 0.0, path, size=4.0, quantity="base_displacement", spring_constant=stiffness
+    )
+    touches = np.flatnonzero(dataset["contact_area"].values > 0)
+    return path[int(touches[-1])], last
+
+
+def wavy(
+    points: int, values: Sequence[float], height: float, work: float, **options: Any
+) -> xr.Dataset:
+    """Return a path on a sine of wavelength 1, one cell across on a periodic grid."""
+    x = (np.arange(points) + 0.5) / points
+    return solved(
+        [points, 1],
+        0.0,
+        values,
+        size=[1.0, 1 / points],
+        boundary="periodic",
+        indenter={
+            "type": "heights",
+            "values": (height * np.cos(2 * pi * x))[:, None].tolist(),
+            "unit": 1.0,
+        },
+        **{"interaction": {"type": "jkr", "work_of_adhesion": work}, **options},
+    )
+
+
+def wave_pressure(half_width: float, height: float, work: float) -> float:
+    """Return the mean pressure [Pa] on a sine of wavelength 1 with contacts of a half-width.
+
+    p* sin² πa − √(2E*w tan πa), p* = πE*h (Johnson, Int. J. Solids Struct. 32 (1995) 423).
+    """
+    angle = pi * half_width
+    return float(pi * height * np.sin(angle) ** 2 - np.sqrt(2 * work * np.tan(angle)))
+
+
+def rough_path(points: int, length: float) -> xr.Dataset:
+    """Return a path of a rough punch that sticks, there and back."""
+    down = np.linspace(0.1, 0.4, 4)
+    rough = {
+        "type": "self_affine",
+        "rms_height": 0.1,
+        "hurst": 0.8,
+        "cutoff_wavelength": 0.5,
+        "seed": 1,
+    }
+    work = {"type": "jkr", "work_of_adhesion": 0.02}
+    path = [*down, *down[-2::-1], 0.0, -0.1, -0.2]
+    return solved(points, length, path, indenter=rough, interaction=work)

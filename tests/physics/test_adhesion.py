@@ -1,0 +1,242 @@
+"""Adhesive contact against closed theory, and what must not change about it."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from pellicle_plugins.analytic.dugdale import dugdale_contact
+from tests.adhesive_paths import (
+    FORCE,
+    JKR,
+    retracted,
+    retraction_cases,
+    solved,
+    theory,
+    wave_pressure,
+    wavy,
+)
+from tests.random_adhesion import SAME, verdicts
+
+# The units E* = R = w = 1 have slopes beyond the theory, and random problems have few cells.
+pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
+
+
+@pytest.mark.parametrize(
+    ("length", "name"), [(0.0, "a = 1.5"), (0.1, "F = 0"), (1.0, "a = 1.5"), (10.0, "a = 1.5")]
+)
+def test_a_retracted_paraboloid_is_the_closed_theory(length: float, name: str) -> None:
+    """Force and contact radius are right to 0.02 πwR and 3 % with 128 points."""
+    size, depth, force, radius = retraction_cases(length)[name]
+    step = retracted(128, length, depth, size)
+    assert step["status_code"].item() == "STEEP"
+    assert abs(float(step["force"]) - force) < 0.02 * FORCE
+    assert float(step["contact_radius"]) == pytest.approx(radius, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("interaction", "length", "most"),
+    [
+        (JKR, 0.0, 0.002),
+        (JKR, 1.0, 0.002),
+        ({"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0}, 0.1, 0.005),
+    ],
+)
+def test_approach_and_retraction_are_one_curve(
+    interaction: dict[str, Any], length: float, most: float
+) -> None:
+    """The lattice does not pin the edge: at depths ≥ 0 the path back has the same forces."""
+    depths = [0.05, 0.3, 0.6, 0.9]
+    path = solved(64, length, [*depths, *depths[-2::-1]], interaction=interaction, size=7.0)
+    force = path["force"].values / FORCE
+    np.testing.assert_allclose(force[4:], force[2::-1], atol=most)
+    assert np.ptp(force[:4]) > 0.1
+
+
+def test_pull_off_is_that_of_jkr() -> None:
+    """The lowest force on a path in depth is −1.5 πwR to 2 %."""
+    end = theory(0.0).instability()
+    steps = float(end.depth) + np.arange(0.1, -0.101, -0.05)
+    lowest = float(solved(128, 0.0, [0.1, *steps])["force"].values.min())
+    assert lowest == pytest.approx(float(end.force), rel=0.02)
+
+
+@pytest.mark.parametrize("length", [0.0, 1.0])
+def test_jkr_attracts_nothing_before_it_touches(length: float) -> None:
+    """The first contact of an approach is within 0.05 a₀²/R of the first touch, and pulls."""
+    path = solved(64, length, [-0.3, -0.05, 0.05])
+    assert (path["contact_area"].values > 0).tolist() == [False, False, True]
+    assert path["force"].values[:2].tolist() == [0.0, 0.0]
+    assert float(path["force"][2]) < -FORCE / 2
+
+
+@pytest.mark.parametrize("stiffness", [0.1, 1.0, 10.0])
+def test_a_cantilever_jumps_off_where_the_theory_says(stiffness: float) -> None:
+    """It holds at a base 3 % before the last stable one, and has jumped off 3 % beyond."""
+    end = theory(0.0).instability(stiffness)
+    last = float(end.depth + end.force / stiffness)
+    path = solved(
+        64,
+        0.0,
+        [0.1, 0.8 * last, 0.97 * last, 1.03 * last],
+        quantity="base_displacement",
+        spring_constant=stiffness,
+    )
+    assert (path["contact_area"].values > 0).tolist() == [True, True, True, False]
+
+
+def test_a_dugdale_zone_is_that_of_maugis() -> None:
+    """At λ = 1 force and radius along the path are right to 1 % (Maugis 1992)."""
+    strength = 0.5 * np.cbrt(pi * (4 / 3) ** 2)
+    radii = np.linspace(1.0, 2.4, 300)
+    closed = dugdale_contact(1.0, 1.0, 1.0, strength, radii)
+    depths = [1.0, 0.2, -0.6]
+    law = {"type": "dugdale", "work_of_adhesion": 1.0, "strength": float(strength)}
+    path = solved(128, 0.0, depths, interaction=law, size=6.0)
+    force = np.interp(depths, closed.depth, closed.force)
+    np.testing.assert_allclose(path["force"].values, force, atol=0.01 * FORCE)
+    radius = np.interp(depths, closed.depth, radii)
+    np.testing.assert_allclose(path["contact_radius"].values, radius, rtol=0.01)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        {"type": "dugdale", "range": 0.1},
+        {"type": "linear", "range": 0.2},
+        {"type": "exponential", "range": 0.03},
+    ],
+)
+def test_a_hard_sphere_pulls_off_a_hard_solid_at_bradleys_force(law: dict[str, Any]) -> None:
+    """Any law gives 2πwR to 1 % on the way to the first touch (Bradley 1932)."""
+    path = solved(
+        64,
+        0.0,
+        [-0.01, -0.001, -0.0002, 0.0],
+        size=2.4,
+        kernel={"type": "half_space", "reduced_modulus": 1e5},
+        interaction={**law, "work_of_adhesion": 1.0},
+    )
+    assert float(path["force"].values.min()) == pytest.approx(-2 * pi, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("interaction", "length"),
+    [
+        (JKR, 0.0),
+        ({"type": "linear", "work_of_adhesion": 1.0, "strength": 2.0}, 1.0),
+        ({"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0}, 0.0),
+        ({"type": "exponential", "work_of_adhesion": 1.0, "range": 0.5}, 1.0),
+    ],
+)
+def test_force_is_the_slope_of_the_energy(interaction: dict[str, Any], length: float) -> None:
+    """F = +dU/dδ by central differences to 1e-3."""
+    path = solved(64, length, [0.05, 0.01, 0.0, -0.01], interaction=interaction, size=7.0)
+    energy, force = path["energy"].values, path["force"].values
+    assert (energy[1] - energy[3]) / 0.02 == pytest.approx(force[2], rel=1e-3)
+
+
+def test_a_wavy_surface_sticks_as_in_johnsons_theory() -> None:
+    """Partial contact of a sine, one cell across, on the way back from twice its depth."""
+    height, work = 0.1, 0.002
+    path = wavy(128, [0.05, 0.02, 0.0, -0.02], height, work)
+    assert (np.diff(path["contact_fraction"].values) < 0).all()
+    for index in (1, 2, 3):
+        half_width = float(path["contact_fraction"][index]) / 2
+        closed = wave_pressure(half_width, height, work)
+        assert float(path["mean_pressure"][index]) == pytest.approx(closed, abs=0.015 * pi * height)
+    assert float(path["mean_pressure"][3]) < 0
+
+
+def rough_heights(seed: int = 5) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Return heights [m] of 40 × 32 cells without symmetry, with waves of ten cells and more."""
+    draw = np.random.default_rng(seed)
+    spectrum = np.zeros((40, 32), complex)
+    spectrum[:4, :4] = draw.normal(size=(4, 4)) + 1j * draw.normal(size=(4, 4))
+    spectrum[0, 0] = 0.0
+    heights = np.fft.ifft2(spectrum).real
+    return 0.05 * heights / np.ptp(heights)
+
+
+def rough_step(
+    heights: np.ndarray[Any, np.dtype[np.float64]],
+    boundary: str = "free",
+    length: float = 1.0,
+    modulus: float = 1.0,
+    interaction: str = "jkr",
+) -> xr.Dataset:
+    """Return the last step of a retraction, with lengths and moduli in given units."""
+    depth = np.array([0.02, 0.01])
+    law: dict[str, Any] = {"type": interaction, "work_of_adhesion": 3e-4 * length * modulus}
+    if interaction != "jkr":
+        law["range"] = 0.01 * length
+    kernel = {"type": "tensed_membrane", "reduced_modulus": modulus}
+    return solved(
+        list(heights.shape),
+        0.0,
+        list(length * depth),
+        size=[side / 40 * length for side in heights.shape],
+        boundary=boundary,
+        kernel={**kernel, "tension": 0.05 * modulus * length},
+        indenter={"type": "heights", "values": (heights * length).tolist(), "unit": 1.0},
+        interaction=law,
+    ).isel(step=-1)
+
+
+@pytest.mark.parametrize("interaction", ["jkr", "exponential"])
+def test_turned_and_mirrored_problems_have_turned_and_mirrored_tractions(interaction: str) -> None:
+    """A mirror image, and a quarter turn."""
+    heights = rough_heights()
+    expected = rough_step(heights, interaction=interaction)["pressure"].values
+    assert expected.min() < 0 < expected.max()
+    mirrored = rough_step(heights[::-1], interaction=interaction)["pressure"].values[::-1]
+    turned = np.rot90(rough_step(np.rot90(heights), interaction=interaction)["pressure"], -1)
+    for field in (mirrored, turned):
+        np.testing.assert_allclose(field, expected, atol=1e-5 * expected.max())
+
+
+def test_a_periodic_problem_can_be_shifted() -> None:
+    """Heights moved across the boundary move the tractions, and the zone, with them."""
+    heights = rough_heights()
+    expected = rough_step(heights, "periodic")["pressure"].values
+    assert expected.min() < 0 < expected.max()
+    shifted = rough_step(np.roll(heights, (23, 17), (0, 1)), "periodic")["pressure"].values
+    np.testing.assert_allclose(
+        np.roll(shifted, (-23, -17), (0, 1)), expected, atol=1e-5 * expected.max()
+    )
+
+
+@pytest.mark.parametrize(
+    ("interaction", "length", "modulus"),
+    [("jkr", 1e-6, 1e3), ("jkr", 1e6, 1e-3), ("exponential", 1e-12, 1.0)],
+)
+def test_lengths_and_moduli_can_be_scaled(interaction: str, length: float, modulus: float) -> None:
+    """Tractions scale with the modulus if w scales with modulus times length."""
+    heights = rough_heights()
+    expected = rough_step(heights, interaction=interaction)
+    assert expected["pressure"].min() < 0 < expected["wall_pressure"].max()
+    scaled = rough_step(heights, "free", length, modulus, interaction)
+    highest = float(expected["pressure"].max())
+    np.testing.assert_allclose(
+        scaled["pressure"].values / modulus, expected["pressure"].values, atol=1e-5 * highest
+    )
+    assert float(scaled["energy"]) / (modulus * length**3) == pytest.approx(
+        float(expected["energy"]), rel=1e-6
+    )
+    assert scaled["status_code"].item() == expected["status_code"].item()
+
+
+@pytest.mark.parametrize("first", range(0, 30, 6))
+def test_statuses_of_random_problems_are_honest(first: int) -> None:
+    """A step that says converged is a stationary point; most are where a dense descent ends."""
+    rows = [row for seed in range(first, first + 6) for row in verdicts(seed)]
+    assert [row.description for row in rows if not row.honest] == []
+    assert all(row.settled for row in rows)
+    solved_rows = [row for row in rows if row.converged]
+    assert len(solved_rows) >= 20
+    same = [row for row in solved_rows if abs(row.difference) <= SAME]
+    assert len(same) >= 0.8 * len(solved_rows)
