@@ -48,7 +48,7 @@ def test_is_in_the_schema(pellicle: Command) -> None:
     file = json.loads(pellicle("schema").stdout)
     choices = file["$defs"]["Loading"]["oneOf"]
     (mine,) = (c for c in choices if "mean_gap" in c["properties"])
-    assert mine["properties"].keys() == {"mean_gap", "share", "stiffness"}
+    assert mine["properties"].keys() == {"mean_gap", "share", "time", "stiffness"}
     assert mine["required"] == ["mean_gap"]
 
 

@@ -335,11 +335,14 @@ class Equilibrium:
 
     @property
     def residual_traction(self) -> float:
-        """Σ|p − w − σ(gap)| / Σ|p|; 0 without a law."""
-        if not self.problem.law or not self._magnitude:
+        """Σ|p − w − σ(gap)| over the greater of Σ|p| and Σ|σ|; 0 without a law."""
+        if not self.problem.law:
             return 0.0
-        missed = np.abs(self.pressure - self.wall - self.attraction)
-        return float(missed.sum()) / self._magnitude
+        missed = float(np.abs(self.pressure - self.wall - self.attraction).sum())
+        # Without any pressure the law may still attract.
+        return (
+            missed / max(self._magnitude, float(np.abs(self.attraction).sum())) if missed else 0.0
+        )
 
     @cached_property
     def _magnitude(self) -> float:

@@ -90,7 +90,8 @@ class _Round:
     def residual(self) -> float:
         if self.problem.prescribed == "force" and not self.contact.any():
             return 1.0
-        magnitude = float(np.abs(self.wall + self.traction).sum())
+        pressure, exerted = self.wall + self.traction, self.traction + self.missed
+        magnitude = max(float(np.abs(part).sum()) for part in (pressure, exerted))
         missed = float(np.abs(self.missed).sum()) / magnitude if magnitude else 0.0
         work = float(np.abs(self.wall[self.contact] * self.gap[self.contact]).sum())
         missed = max(missed, work / magnitude / self.scale if magnitude else 0.0)
@@ -153,8 +154,6 @@ class AdhesionSolver(ScaledSolver):
 
     def step(self, problem: Problem, state: _Round) -> _Round:
         """Return the next round."""
-        if not state.contact.any() and not state.traction.any():
-            return state
         traction, missed, wall = _extrapolated(state)
         following = _with_shifted_fronts(state, traction + missed, missed)
         # The contact takes up what the change of the tractions lifts.
