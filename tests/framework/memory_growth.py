@@ -39,12 +39,15 @@ def cache_fonts() -> None:
 
 
 def growth(kind: dict[str, Any], threads: int) -> int:
-    """Return the growth of the peak [bytes] in a child process, after a run on a small grid."""
+    """Return the peak over what is in use after a run on a small grid, in a child process [bytes].
+
+    The peak of the small run does not count: drawing takes as much there, and frees it.
+    """
     reading, writing = os.pipe()
     child = os.fork()
     if not child:
         solve(kind | small(kind), threads)
-        before = status("VmHWM")
+        before = status("VmRSS")
         assert solve(kind, threads).converged
         os.write(writing, str(status("VmHWM") - before).encode())
         os._exit(0)
