@@ -208,7 +208,7 @@ def solution_of(
     name = component_name(solver)
     check_solver(solver, problem)
     adheres = problem.law is not None
-    sticks = adheres and start is not None and (start.wall.any() or start.pressure.any())
+    sticks = adheres and start is not None and start.is_loaded
     if not problem.needs_solving and not sticks:
         nothing = np.zeros(problem.grid.shape)
         state: State | Array = nothing

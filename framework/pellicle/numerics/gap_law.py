@@ -69,11 +69,6 @@ class Law:
         values = self.law.traction(self._si(gap)) / self.pressure
         return np.where(gap < self.cutoff(), values, 0.0)
 
-    def slope(self, gap: Array) -> Array:
-        """Return dσ/dg of an array of gaps, 0 beyond the cutoff."""
-        values = self.law.slope(self._si(gap)) * (self.length / self.pressure)
-        return np.where(gap < self.cutoff(), values, 0.0)
-
     def cutoff(self) -> float:
         """Return the gap beyond which nothing acts."""
         return self.law.cutoff() / self.length

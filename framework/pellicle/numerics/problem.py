@@ -290,12 +290,32 @@ class Equilibrium:
             return np.zeros(self.pressure.shape)
         return attracted(self.problem.law, self.gap, self.contact, self.problem.grid.boundary)
 
-    @property
+    @cached_property
     def zone(self) -> Mask:
         """The cells off the contact where the traction exceeds 1 % of the strength of the law."""
         strength = self.problem.law.strength() if self.problem.law else 0.0
         zone: Mask = (np.abs(self.pressure) > _ZONE * strength) & ~self.contact
         return zone
+
+    @cached_property
+    def zone_width(self) -> float:
+        """Mean width of the zone around the contact, where it has an outer edge [m].
+
+        It is the mean distance from the contact of the outermost cells of the zone; NaN if there
+        are none, as between asperities so close that the zone fills the gap between them, and 0 if
+        no cell beside the contact is in a zone.
+        """
+        from scipy.ndimage import binary_erosion, distance_transform_edt
+
+        contact, spacing = self.contact, self.problem.grid.spacing
+        beside = np.isfinite(self.problem.profile) & ~contact
+        if contact.any() and beside.any() and not self.zone.any():
+            return 0.0
+        reached = contact | self.zone
+        outermost = reached & ~binary_erosion(reached, border_value=1) & ~contact
+        if not contact.any() or not outermost.any():
+            return np.nan
+        return float(distance_transform_edt(~contact, sampling=spacing)[outermost].mean())
 
     @property
     def energy(self) -> float:
@@ -361,11 +381,7 @@ class Equilibrium:
     @cached_property
     def _scale(self) -> float:
         if self.problem.law:
-            # Pulled upwards, the surface may be far from flat where the depth is near 0.
-            in_contact = self.problem.profile[self.contact]
-            heights = float(np.ptp(in_contact)) if in_contact.size else 0.0
-            greatest = float(np.abs(self.displacement).max())
-            return heights if heights > _FLAT * greatest else greatest or 1.0
+            return adhesive_scale(self.problem.profile, self.contact, self.displacement)
         return self.problem.height_scale(self.contact, self._base, self.total)
 
     @property
@@ -403,6 +419,18 @@ def height_scale(
         return in_contact
     indenter = profile[np.isfinite(profile)]
     return max(abs(depth), wave) or float(np.ptp(indenter)) or 1.0
+
+
+def adhesive_scale(profile: Array, contact: Mask, displacement: Array) -> float:
+    """Return the length [m] to which gaps are compared where a law acts.
+
+    It is the height range in contact or, if the indenter is flat there, the greatest displacement:
+    a surface that is pulled may be far from flat at a depth near 0.
+    """
+    heights = profile[contact]
+    in_contact = float(np.ptp(heights)) if heights.size else 0.0
+    greatest = float(np.abs(displacement).max())
+    return in_contact if in_contact > _FLAT * greatest else greatest or 1.0
 
 
 def round_off(problem: Problem, pressure: Array) -> float:

@@ -28,6 +28,11 @@ class State(NamedTuple):
         """The cells on which the indenter presses, w > 0; bool of the grid's shape."""
         return self.wall > 0
 
+    @property
+    def is_loaded(self) -> bool:
+        """Whether the indenter presses or a traction acts anywhere."""
+        return bool(self.wall.any() or self.pressure.any())
+
 
 class Stop(Enum):
     """The reason why a solver stopped; the value is the remedy if the tolerance is not met."""

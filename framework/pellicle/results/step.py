@@ -73,7 +73,7 @@ def step_dataset(
         zone = np.count_nonzero(equilibrium.zone) * grid.cell_area
         values |= {
             "zone_area": zone,
-            "zone_width": zone_width(equilibrium),
+            "zone_width": equilibrium.zone_width,
             "energy": equilibrium.energy,
             "residual_traction": equilibrium.residual_traction,
         }
@@ -96,26 +96,6 @@ def step_dataset(
         for name, value in values.items()
     }
     return xr.Dataset(data, coordinates)
-
-
-def zone_width(equilibrium: Equilibrium) -> float:
-    """Return the mean width [m] of the zone around the contact, where it has an outer edge.
-
-    It is the mean distance from the contact of the outermost cells of the zone; NaN if there are
-    none, as between asperities so close that the zone fills the gap between them, and 0 if no cell
-    beside the contact is in a zone.
-    """
-    from scipy.ndimage import binary_erosion, distance_transform_edt
-
-    contact, grid = equilibrium.contact, equilibrium.problem.grid
-    beside = np.isfinite(equilibrium.problem.profile) & ~contact
-    if contact.any() and beside.any() and not equilibrium.zone.any():
-        return 0.0
-    reached = contact | equilibrium.zone
-    outermost = reached & ~binary_erosion(reached, border_value=1) & ~contact
-    if not contact.any() or not outermost.any():
-        return np.nan
-    return float(distance_transform_edt(~contact, sampling=grid.spacing)[outermost].mean())
 
 
 class Steps:

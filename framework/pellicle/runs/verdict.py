@@ -12,7 +12,6 @@ from pellicle.config.run import Run
 from pellicle.numerics.problem import Equilibrium, Stiffness
 from pellicle.numerics.solution import Stop
 from pellicle.results.status import Status
-from pellicle.results.step import zone_width
 
 from .target_search import Reached
 
@@ -77,7 +76,7 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
 
 def _doubt(run: Run, interaction: Interaction, equilibrium: Equilibrium) -> tuple[Status, str]:
     """Return the status of a step that is solved, where an interaction acts."""
-    width = zone_width(equilibrium) / max(run.grid.spacing)
+    width = equilibrium.zone_width / max(run.grid.spacing)
     if width < interaction.least_cells:
         return Status.COARSE_ZONE, Status.COARSE_ZONE.value.format(
             cells=width, least=interaction.least_cells

@@ -11,30 +11,21 @@ import numpy as np
 from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor, Solver
-from pellicle.errors import ConfigError
-from pellicle.numerics.grid_transfer import highest, prolong
+from pellicle.numerics.grid_transfer import highest
 from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.problem import Depth, Problem
 from pellicle.numerics.solution import Progress, Solution, State, Stop
 
 from .adhesion import AdhesionSolver
-from .contact_cg import InnerSolution, inner_solve
+from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
+from .nested_grids import coarse_solution, coarser, prolonged
 from .preconditioner import OnContact, Preconditioner
 from .relaxation import relaxed
 from .scaling import ScaledSolver
 
-# Relative tolerance on coarse grids: under tension even an error below that of the discretisation
-# moves the contact edge by several cells.
-_COARSE_TOLERANCE: Final = 1e-5
-# Grids of up to this many cells along the longer edge are not coarsened.
-_COARSEST: Final = 48
 # A start is used if its error is at most this share of the height range; correcting a worse one
 # along the contact edge takes longer than solving on the coarser grids first.
 _CLOSE: Final = 0.05
-# Sign-certainty factors: the sign of a cell counts as final if its value exceeds this multiple of
-# its last change. The strict one applies after an outer iteration without progress.
-_SIGN_CERTAINTY: Final = 1.0
-_STRICT_SIGN_CERTAINTY: Final = 30.0
 # With bending stiffness, an inner solve ends for local relaxation when the gap has fallen to this
 # share.
 _REDUCTION: Final = 0.1
@@ -168,7 +159,7 @@ class ActiveSet(ScaledSolver):
             state.trial,
             state.displacement,
             goal,
-            certainty=_SIGN_CERTAINTY if loose else _STRICT_SIGN_CERTAINTY,
+            certainty=SIGN_CERTAINTY if loose else STRICT_SIGN_CERTAINTY,
             reduction=_REDUCTION if loose and relaxes else 0.0,
         )
         history = state.history.after(state.on_contact.contact, inner.misclassified.size)
@@ -232,23 +223,13 @@ class ActiveSet(ScaledSolver):
 
     def _prolonged(self, problem: Problem) -> Array | None:
         """Return the pressure [Pa] prolonged from a coarser grid, or None without a solution."""
-        if max(problem.grid.shape) <= _COARSEST:
-            return None
-        try:
-            coarse = problem.coarsened()
-        except ConfigError:
-            # A thin incompressible layer is rigid under cells much wider than its thickness.
+        coarse = coarser(problem)
+        if coarse is None:
             return None
         if not coarse.needs_solving:
             # The indenter touches less than half of every coarse cell.
             coarse = replace(coarse, profile=highest(problem.profile, coarse.grid.shape))
-        tolerance = max(self.tolerance, _COARSE_TOLERANCE)
-        solver = self.model_copy(update={"tolerance": tolerance})
-        solution = solver.solve(coarse, None, lambda iteration, residual_ratio: None)
-        pressure = prolong(solution.pressure, problem.grid.shape)
-        # A coarse cell may extend beyond the rim of the indenter.
-        pressure *= np.isfinite(problem.profile)
-        return pressure if pressure.any() else None
+        return prolonged(coarse_solution(self, coarse).pressure, problem)
 
 
 def _without_pits(problem: Problem, state: _Iterate) -> _Iterate:

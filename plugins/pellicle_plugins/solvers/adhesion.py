@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -11,14 +12,13 @@ from scipy.ndimage import distance_transform_edt
 
 from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
-from pellicle.errors import ConfigError
 from pellicle.numerics.gap_law import attracted
-from pellicle.numerics.grid_transfer import prolong
 from pellicle.numerics.initial_guess import first_guess
-from pellicle.numerics.problem import Problem
+from pellicle.numerics.problem import Problem, adhesive_scale
 from pellicle.numerics.solution import Progress, State, Stop
 
-from .contact_cg import inner_solve
+from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, inner_solve
+from .nested_grids import coarse_solution, coarser, prolonged
 from .preconditioner import OnContact, Preconditioner, edges
 from .scaling import ScaledSolver
 
@@ -41,19 +41,17 @@ _GREATEST_GAIN: Final = 1.5
 _FASTER: Final = 1.5
 # The same where the state is unstable.
 _UNSTABLE_GAIN: Final = 256.0
-_LINEAR_GAIN: Final = 1.0
-# Sign-certainty factors of inner solves, and the set changes after which the strict one applies.
-_SIGN_CERTAINTY: Final = 1.0
-_STRICT_SIGN_CERTAINTY: Final = 30.0
+# Set changes of a round after which the strict factor of sign certainty applies.
 _LOOSE_CHANGES: Final = 6
-# Set changes of one round after which the next round begins.
-_MOST_CHANGES: Final = 2
+# Set changes of the first round, and of any other, after which the next round begins.
+_FIRST_CHANGES: Final = 2
 _CHANGES: Final = 40
+# Least gap on the contact to which a round closes it, over the tolerance.
+_FLOOR: Final = 0.05
 # Rounds without a smaller residual after which the solve is abandoned.
 _STAGNATION: Final = 60
-_FLOOR: Final = 0.05
-_COARSE_TOLERANCE: Final = 1e-5
-_COARSEST: Final = 48
+# Residual of a round that ended before every cell was on its side.
+_UNSETTLED: Final = 1e-3
 
 
 @dataclass(frozen=True)
@@ -70,10 +68,8 @@ class _Round:
     """Displacement [m] under the sum of both."""
     gap: Array
     depth: float
-    error: float
-    """max(|gap| in contact, penetration) [m]."""
-    missed: Array
-    """Traction that the law exerts at `gap`, minus `traction` [Pa]."""
+    exerted: Array
+    """Traction that the law exerts at `gap` [Pa]."""
     settled: bool = True
     """Whether the wall pressure is ≥ 0 and no cell penetrates."""
     history: tuple[tuple[Array, Array, Array], ...] = ()
@@ -86,16 +82,26 @@ class _Round:
     def contact(self) -> Mask:
         return self.on_contact.contact
 
-    @property
+    @cached_property
+    def missed(self) -> Array:
+        """Traction that the law exerts minus `traction` [Pa]."""
+        return self.exerted - self.traction
+
+    @cached_property
     def residual(self) -> float:
         if self.problem.prescribed == "force" and not self.contact.any():
             return 1.0
-        pressure, exerted = self.wall + self.traction, self.traction + self.missed
-        magnitude = max(float(np.abs(part).sum()) for part in (pressure, exerted))
-        missed = float(np.abs(self.missed).sum()) / magnitude if magnitude else 0.0
-        work = float(np.abs(self.wall[self.contact] * self.gap[self.contact]).sum())
-        missed = max(missed, work / magnitude / self.scale if magnitude else 0.0)
-        return max(self.error / self.scale, missed, 0.0 if self.settled else 1e-3)
+        contact, gap = self.contact, self.gap
+        closed = np.abs(gap[contact])
+        error = max(float(closed.max(initial=0.0)), -float(gap.min(initial=0.0, where=~contact)))
+        magnitude = max(
+            float(np.abs(part).sum()) for part in (self.wall + self.traction, self.exerted)
+        )
+        missed = work = 0.0
+        if magnitude:
+            missed = float(np.abs(self.missed).sum()) / magnitude
+            work = float((np.abs(self.wall[contact]) * closed).sum()) / magnitude / self.scale
+        return max(error / self.scale, missed, work, 0.0 if self.settled else _UNSETTLED)
 
     @property
     def energy(self) -> float:
@@ -111,12 +117,9 @@ class _Round:
         unit = law.work_of_adhesion() * self.gap.size
         return round((elastic + bound - load) / unit, 9)
 
-    @property
+    @cached_property
     def scale(self) -> float:
-        heights = self.problem.profile[self.contact]
-        greatest = float(np.abs(self.displacement).max())
-        height_range = float(np.ptp(heights)) if heights.size else 0.0
-        return height_range if height_range > 1e-3 * greatest else greatest or 1.0
+        return adhesive_scale(self.problem.profile, self.contact, self.displacement)
 
 
 class AdhesionSolver(ScaledSolver):
@@ -139,7 +142,7 @@ class AdhesionSolver(ScaledSolver):
         """Return the round from the last state; without one, from that of a coarser grid."""
         assert problem.law
         preconditioner = Preconditioner(problem.operator)
-        if start is not None and (start.wall.any() or start.pressure.any()):
+        if start is not None and start.is_loaded:
             traction = start.pressure - start.wall
             return self._closed(problem, preconditioner.on(start.contact), start.wall, traction)
         pressure = self._prolonged(problem)
@@ -181,24 +184,14 @@ class AdhesionSolver(ScaledSolver):
         return Stop.STALLED if state.progress.stagnant >= _STAGNATION else None
 
     def _prolonged(self, problem: Problem) -> Array | None:
-        """Return the traction of a coarser grid, if a cell of this grid closes without a law."""
-        grid = problem.grid
-        closed = problem.prescribed == "force" or problem.value > -float(problem.profile.max())
-        if not closed or max(grid.shape) <= _COARSEST:
+        """Return the wall pressure of a coarser grid, if a cell of this closes without a law."""
+        closes = problem.prescribed == "force" or problem.value > -float(problem.profile.max())
+        coarse = coarser(problem) if closes else None
+        if coarse is None or not coarse.needs_solving:
             return None
-        try:
-            coarse = problem.coarsened()
-        except ConfigError:
-            return None
-        if not coarse.needs_solving:
-            return None
-        tolerance = max(self.tolerance, _COARSE_TOLERANCE)
-        solver = self.model_copy(update={"tolerance": tolerance})
-        solution = solver.solve(coarse, None, lambda iteration, residual_ratio: None)
-        state = solution.state
+        state = coarse_solution(self, coarse).state
         assert isinstance(state, State)
-        wall = prolong(state.wall, grid.shape) * np.isfinite(problem.profile)
-        return wall if wall.any() else None
+        return prolonged(state.wall, problem)
 
     def _closed(
         self,
@@ -219,7 +212,7 @@ class AdhesionSolver(ScaledSolver):
         hard = replace(problem, law=None)
         contact = on_contact.contact
         settled = False
-        for change in range(_CHANGES if before else _MOST_CHANGES):
+        for change in range(_CHANGES if before else _FIRST_CHANGES):
             transferred = on_contact.transferred(wall)
             balanced = _with_wall_force(problem, contact, transferred, traction)
             if balanced is None:
@@ -236,9 +229,7 @@ class AdhesionSolver(ScaledSolver):
                     wall,
                     displacement,
                     goal,
-                    certainty=_SIGN_CERTAINTY
-                    if change < _LOOSE_CHANGES
-                    else _STRICT_SIGN_CERTAINTY,
+                    certainty=SIGN_CERTAINTY if change < _LOOSE_CHANGES else STRICT_SIGN_CERTAINTY,
                 )
                 wall, displacement = inner.pressure, inner.displacement
                 misclassified = inner.misclassified
@@ -273,22 +264,7 @@ def _finished(
     depth = problem.depth(gap[contact] if contact.any() else np.zeros(1))
     gap -= depth
     exerted = attracted(law, gap, contact, problem.grid.boundary)
-    error = max(
-        float(np.abs(gap[contact]).max(initial=0.0)),
-        -float(gap.min(initial=0.0, where=~contact)),
-    )
-    state = _Round(
-        problem,
-        on_contact,
-        wall,
-        traction,
-        displacement,
-        gap,
-        depth,
-        error,
-        exerted - traction,
-        settled,
-    )
+    state = _Round(problem, on_contact, wall, traction, displacement, gap, depth, exerted, settled)
     if before is None:
         return state
     history: tuple[tuple[Array, Array, Array], ...] = ()
@@ -322,7 +298,7 @@ def _gain(before: _Round, after: _Round) -> float:
     length at which the energy is least.
     """
     if after.history:
-        return _LINEAR_GAIN
+        return 1.0
     step = after.traction - before.traction
     one, other = (float((step * part.missed).sum()) for part in (before, after))
     if other >= one > 0:
@@ -397,17 +373,17 @@ def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> Array
     if not border:
         return np.clip(traction, -strength, 0.0)
     dx, dy = edges(grid)
-    exerted = attracted(law, state.gap, contact, grid.boundary)
+    exerted = state.exerted
     zone = ((exerted < 0) | (missed != 0)) & ~contact
     # The gap is infinite where there is no indenter.
     gap = np.clip(np.where(contact, 0.0, state.gap), 0.0, 2 * law.cutoff())
     gap_slope = np.where(zone, _slope(gap, dx, dy), 0.0)
     slope = np.where(zone, _slope(exerted, dx, dy), 0.0)
     extent = np.count_nonzero(contact) * grid.cell_area / border
-    qx = 2 * np.pi * scipy.fft.fftfreq(grid.shape[0], dx)[:, None]
-    qy = 2 * np.pi * scipy.fft.rfftfreq(grid.shape[1], dy)
-    stiffness = 0.5 * _FRONT_STIFFNESS * law.work_of_adhesion()
-    stiffness = stiffness * (qx**2 + qy**2 + 1 / (_LONGEST * extent) ** 2)
+    qx, qy = grid.wavenumbers()
+    longest = _LONGEST * extent
+    per_wave = 0.5 * _FRONT_STIFFNESS * law.work_of_adhesion()
+    stiffness = per_wave * (qx**2 + qy**2 + 1 / longest**2)
     push = scipy.fft.rfft2(gap_slope * missed)
     shift = state.gain * scipy.fft.irfft2(push / stiffness, s=grid.shape)
     limit = _MOST_CELLS * max(dx, dy)

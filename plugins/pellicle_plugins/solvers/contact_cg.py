@@ -12,6 +12,10 @@ from pellicle.numerics.problem import Problem
 
 from .preconditioner import Cells, OnContact
 
+# Sign-certainty factors: the sign of a cell counts as final if its value exceeds this multiple of
+# its last change. The strict one applies after an outer iteration without progress.
+SIGN_CERTAINTY: Final = 1.0
+STRICT_SIGN_CERTAINTY: Final = 30.0
 # A solve ends when the misclassified cells of uncertain sign are at most this share of the others.
 _UNCERTAIN: Final = 0.3
 # After a single iteration the change of the next one cannot be estimated.
