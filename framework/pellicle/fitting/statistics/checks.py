@@ -110,7 +110,7 @@ def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str
         The depth is beyond that to which the force model holds.
     """
     messages = []
-    model, depth = likelihood.force_model, float(likelihood.depth(parameters)[-1])
+    model, depth = likelihood.force_model, likelihood.deepest(parameters)
     if depth > model.depth_limit:
         raise ConfigError(
             f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at "
@@ -192,10 +192,14 @@ def _check_contact(residuals: Residuals, before: NoiseEstimate | None) -> NoiseE
 
 def _contact_bins(residuals: Residuals) -> Array:
     """Return a column for each bin of the points in contact, narrow near first touch."""
-    share = residuals.depth / float(residuals.depth[-1])
+    share = residuals.depth / float(residuals.depth.max())
+    bins = len(_DEPTHS) - 1
     index = np.digitize(share, _DEPTHS[1:-1])
+    # A second pass has bins of its own, the shallowest with the rows after contact.
+    second = ~residuals.likelihood.first_pass
+    index[second] += bins
     index[residuals.before] = -1
-    return np.where(index[:, None] == np.arange(len(_DEPTHS) - 1), 1.0, 0.0)
+    return np.where(index[:, None] == np.arange(2 * bins if second.any() else bins), 1.0, 0.0)
 
 
 def _misfit(code: str, finding: str, residuals: Residuals) -> FailedCheck:
@@ -221,7 +225,7 @@ def check_shape(
     deep: list[tuple[float, IsShallowLimit, HasForceCurve]] = []
     models = []
     for member, part in chi_squared.curves(best.parameters):
-        model, depth = member.force_model, float(member.depth(part)[-1])
+        model, depth = member.force_model, member.deepest(part)
         limit = model.indenter if isinstance(model, ClosedFormModel) else None
         if isinstance(limit, IsShallowLimit) and depth > SHALLOW * limit.radius:
             shape = limit.whole_shape()

@@ -69,7 +69,7 @@ def advice(
     )
     if min(design.worse for design in (now, *others)) < _USELESS:
         length = 2 * tension.value / modulus.value
-        shallow = length > float(likelihood.depth(parameters)[-1])
+        shallow = length > likelihood.deepest(parameters)
         warning += f"; the curve is too {'shallow' if shallow else 'deep'}"
     return words, [warning]
 
@@ -132,7 +132,7 @@ def _designs(likelihood: Likelihood, parameters: Coordinates) -> tuple[_Design, 
     noise relative to the largest force.
     """
     now = _design("this curve", likelihood, parameters)
-    deepest = float(likelihood.depth(parameters)[-1])
+    deepest = likelihood.deepest(parameters)
     model = likelihood.force_model
     indenter: Any = model.indenter if isinstance(model, ClosedFormModel) else None
     radius = getattr(indenter, "radius", None)

@@ -25,7 +25,7 @@ def initial_guesses(likelihood: Likelihood, fixed: Coordinates) -> list[Coordina
     fixed = {p: fixed[p] for p in likelihood.parameters if p not in likelihood.free}
     z, f = _binned(likelihood.position), _binned(likelihood.force)
     span = float(np.ptp(z))
-    points = np.linspace(z[0] - BEFORE * span, z[-1] - 0.02 * span, _POINTS).tolist()
+    points = np.linspace(z.min() - BEFORE * span, z.max() - 0.02 * span, _POINTS).tolist()
     if CONTACT_POINT in fixed:
         points = [fixed[CONTACT_POINT]]
     # A parameter fixed at its minimum (no tension) removes the trials above it.

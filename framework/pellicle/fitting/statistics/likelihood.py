@@ -11,9 +11,11 @@ from typing import Literal, NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.errors import ConvergenceError
+from pellicle.fitting.curves.curve import Segment
 from pellicle.fitting.models.force_model import ForceModel
+from pellicle.fitting.models.history import History, constant_speed, last_row_of_loading
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, Parameter
 
 REACH = np.log(100.0)
@@ -230,6 +232,46 @@ class Likelihood(ChiSquared):
     stiffness: float | None = None
     """Spring constant [N/m] of the cantilever whose deflection was subtracted to get the position.
     Noise of the force is then in the position too; only the position of the base is exact."""
+    time: Array | None = None
+    """Time of each row [s], of shape (n,); None if it is not known."""
+    segment: Segment = "approach"
+    """Pass that was measured; rows of one are sorted by position, those of both by time."""
+
+    @cached_property
+    def history(self) -> History:
+        """Path in time, at constant speed if the time is not known."""
+        time = self.time
+        if time is None and self.segment == "both":
+            time = constant_speed(self.base)
+        elif time is None:
+            share = (self.base - self.base[0]) / np.ptp(self.base)
+            time = share if self.segment == "approach" else 1 - share
+        return History.of(self.position, time)
+
+    @cached_property
+    def first_pass(self) -> Mask:
+        """Whether a row is taken on the first pass, dwell included, of shape (n,)."""
+        if self.segment != "both":
+            return np.full(self.position.size, True)
+        rows = np.arange(self.position.size)
+        return np.asarray(rows <= last_row_of_loading(self.base))
+
+    @cached_property
+    def moves_out(self) -> Mask:
+        """Whether a row is taken while the indenter moves out of the solid, of shape (n,)."""
+        return self.first_pass if self.segment == "retract" else ~self.first_pass
+
+    def thinned(self, points: int) -> Likelihood:
+        """Return about as many rows as ``points``, with the noise of as much information."""
+        step = max(self.force.size // points, 1)
+        rows = slice(None, None, step)
+        return replace(
+            self,
+            position=self.position[rows],
+            force=self.force[rows],
+            noise=self.noise / np.sqrt(step),
+            time=None if self.time is None else self.time[rows],
+        )
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -266,12 +308,20 @@ class Likelihood(ChiSquared):
         """Scale and limits of each coordinate; the scale of a force model's follows its unit."""
         z, force = self.position, self.force
         span, height = float(np.ptp(z)), float(np.ptp(force))
-        sizes = {"m": span, "N": height, "N/m": height / span}
-        steepest = height / float(self.travel[-1])
+        duration = 1.0 if self.time is None else float(np.ptp(self.time))
+        sizes = {
+            "m": span,
+            "N": height,
+            "N/m": height / span,
+            "J/m^2": height / span,
+            "Pa s": height * duration / span**2,
+            "": 1.0,
+        }
+        steepest = height / float(np.ptp(self.travel))
         ranges = {
             p: Range(1.0, -_LARGEST_CHANGE, _LARGEST_CHANGE)
             if p.logarithmic
-            else Range(sizes[p.unit], p.minimum, np.inf)
+            else Range(sizes[p.unit], p.minimum, p.maximum)
             for p in self.force_model.parameters
         }
         return ranges | {
@@ -299,23 +349,35 @@ class Likelihood(ChiSquared):
         depth: Array = self.position - parameters[CONTACT_POINT]
         return depth
 
+    def deepest(self, parameters: Coordinates) -> float:
+        """Return the largest position relative to the contact point [m]."""
+        return float(self.position.max()) - parameters[CONTACT_POINT]
+
     def model(self, parameters: Coordinates) -> Array:
         """Return the force [N] at every position."""
-        return self._model(self.position, parameters)[0]
+        return (
+            self._balanced(parameters)[0]
+            if self.force_model.on_base
+            else self._model(self.position, parameters)[0]
+        )
 
-    def _model(self, position: Array, parameters: Coordinates) -> tuple[Array, Array]:
-        """Return force [N] and its Jacobian by coordinate, of shape (n, number of parameters)."""
+    def _model(self, position: Array, parameters: Coordinates) -> tuple[Array, Array, Array]:
+        """Return force [N], its Jacobian by coordinate, and its derivative by depth.
+
+        The Jacobian has shape (n, number of parameters), the others (n,).
+        """
         model = self.force_model
         values = {p: p.value(parameters[p]) for p in model.parameters}
-        elastic = model.force(position - parameters[CONTACT_POINT], values)
+        point = parameters[CONTACT_POINT]
+        elastic = model.force(position - point, {**values, CONTACT_POINT: point})
+        by_point = elastic.by_parameter.get(CONTACT_POINT, 0.0) - elastic.by_depth
         force = elastic.force + parameters[OFFSET] + parameters[SLOPE] * self.travel
         columns = [
             elastic.by_parameter[p] * (value if p.logarithmic else 1.0)
             for p, value in values.items()
         ]
-        return force, np.column_stack(
-            [-elastic.by_depth, *columns, np.ones_like(self.travel), self.travel]
-        )
+        jacobian = np.column_stack([by_point, *columns, np.ones_like(self.travel), self.travel])
+        return force, jacobian, elastic.by_depth
 
     def fitted(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return position [m] and force [N] of the model, both without noise.
@@ -343,16 +405,17 @@ class Likelihood(ChiSquared):
         There the force solves F = P(z − F/k). P is convex in the depth, so Newton's iteration is
         monotonic after its first step.
         """
-        if self.stiffness is None:
-            return self._model(self.position, parameters)
+        if self.stiffness is None or self.force_model.on_base:
+            return self._model(self.base, parameters)[:2]
         force = self.force.copy()
         # Positions far from 0 are rounded, and so is the force that balances them.
         rounding = 8 * float(np.finfo(float).eps * np.max(np.abs(self.base))) * self.stiffness
         tolerance = max(_BALANCE_TOLERANCE * float(np.ptp(self.force)), rounding)
-        contact_point = self._column[CONTACT_POINT]
         for _ in range(_BALANCE_STEPS):
-            response, jacobian = self._model(self.base - force / self.stiffness, parameters)
-            give = 1 - jacobian[:, contact_point] / self.stiffness
+            response, jacobian, by_depth = self._model(
+                self.base - force / self.stiffness, parameters
+            )
+            give = 1 + by_depth / self.stiffness
             step = (response - force) / give
             force += step
             # Negated so that NaN ends the iteration.

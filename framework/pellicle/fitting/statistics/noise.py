@@ -94,7 +94,7 @@ class Residuals(NamedTuple):
     jacobian: Array
     """Derivatives of the model by the coordinates that the fit varies."""
     before: Mask
-    """Whether a point lies before contact."""
+    """Whether a point lies before contact on the first pass."""
     depth: Array
     """Position relative to the contact point [m]."""
     step: float
@@ -116,7 +116,7 @@ class Residuals(NamedTuple):
             parameters,
             -scaled * likelihood.noise,
             jacobian[:, likelihood.columns(varied)] * likelihood.noise,
-            depth < -_NEAR * float(np.ptp(likelihood.position)),
+            (depth < -_NEAR * float(np.ptp(likelihood.position))) & likelihood.first_pass,
             depth,
             step,
             max(likelihood.accuracy * largest, step / np.sqrt(12)),
@@ -146,7 +146,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     force, travel = residuals.force[before], residuals.likelihood.travel[before]
     points = force.size
     independent = residuals.independent_noise(before)
-    line = np.column_stack([np.ones(points), travel / travel[-1]])
+    line = np.column_stack([np.ones(points), travel / np.ptp(residuals.likelihood.travel)])
     # The force as measured, since a fitted slope of the baseline absorbs part of a dip.
     measured = residuals.likelihood.force[before]
     slope, change = _slope(measured, line)
