@@ -32,7 +32,7 @@ Correction = Callable[[Array], tuple[Array, Array]]
 """log(P/P₀) and its derivative in x, at x ≥ 0 of shape (n,)."""
 
 SCALE = 1e-3
-_PUNCH_RADII = 1e-3, 1e8
+_PUNCH_RADII: tuple[float, float] = 1e-3, 1e8
 """Least and largest radius of a punch over s at which its stiffness is inverted."""
 FILE = files("pellicle_plugins.analytic").joinpath("master_curves.json")
 
@@ -118,7 +118,7 @@ def punch_radius(stiffness: Array, length: float) -> ContactRadius:
 @cache
 def _punch_radii() -> tuple[float, float, Callable[[Array], Array]]:
     """Return log(a/s) of a flat punch as a function of log(k/s), between the first and the last."""
-    radii = np.linspace(*np.log(_PUNCH_RADII), 600)
+    radii = np.log(np.geomspace(*_PUNCH_RADII, 600))
     log, _ = _one_variable("flat_punch")(np.exp(-radii))
     size = np.log(2.0) + radii + log
     return float(size[0]), float(size[-1]), make_interp_spline(size, radii, 5)

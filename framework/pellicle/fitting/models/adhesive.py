@@ -101,9 +101,7 @@ class AdhesiveModel:
         # Below the last equilibrium it goes on steeply, so that rows in contact pull it along.
         steepest = _PENALTY * float(np.ptp(branch.force)) / float(np.ptp(branch.position))
         least = 1e-9 * float(root[-1])
-        rate = np.where(
-            beyond > 0, spline(at, 1)[:, 0] / (2 * np.maximum(at, least)), steepest
-        )
+        rate = np.where(beyond > 0, spline(at, 1)[:, 0] / (2 * np.maximum(at, least)), steepest)
         rate = np.minimum(rate, 1e3 * steepest)
         force = force + np.where(beyond > 0, 0.0, steepest * beyond)
         touches = np.where(self.moves_out, beyond >= 0, depth > 0)
@@ -112,9 +110,7 @@ class AdhesiveModel:
             p: np.where(contact, changes[2 * i + 1] - rate * changes[2 * i], 0.0)
             for i, p in enumerate(self.parameters)
         }
-        return ModelForce(
-            np.where(contact, force, 0.0), np.where(contact, rate, 0.0), by_parameter
-        )
+        return ModelForce(np.where(contact, force, 0.0), np.where(contact, rate, 0.0), by_parameter)
 
     def pull_off(self, values: Values) -> float:
         """Return the least force [N] of the branch that a dead load can follow."""

@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import Parameter, Values
 
-from .force_model import TensionModel, ModelForce
+from .force_model import ModelForce, TensionModel
 from .history import History
 
 DRAG = Parameter("drag", "Pa s", minimum=0.0, shared=True)

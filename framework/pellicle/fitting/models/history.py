@@ -132,6 +132,8 @@ def chain(time: Array, position: Array) -> tuple[Array, Array]:
 def _slope(path: tuple[Array, Array], times: Array) -> Array:
     """Return the derivative of a path at times."""
     t, z = path
+    if not t.size:
+        return np.zeros_like(times)
     keep = np.concatenate([[True], np.diff(t) > 0])
     t, z = t[keep], z[keep]
     if t.size < 2:

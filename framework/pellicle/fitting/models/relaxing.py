@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Parameter, Values
 
-from .force_model import TensionModel, ModelForce
+from .force_model import ModelForce, TensionModel
 from .history import History
 
 _RAMP, _DWELL, _BACK = 72, 24, 60

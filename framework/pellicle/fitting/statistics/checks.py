@@ -72,7 +72,24 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
             "is not described by any modulus above 0; check signs, indenter and fix", "force"
         )
     minimum = best_minimum(likelihood, guesses)
-    residuals = Residuals.of(likelihood, minimum.parameters)
+    estimate, source = judged(likelihood, minimum.parameters)
+    noise, failed = estimate.noise, estimate.failed
+    scaled = minimum.chi_squared * (likelihood.noise / noise.deviation) ** 2
+    likelihood = replace(likelihood, noise=noise.deviation)
+    notes, shape = check_shape(likelihood, minimum._replace(chi_squared=scaled))
+    return SingleFit(
+        likelihood,
+        minimum.parameters,
+        noise.freedom,
+        source,
+        (*failed, *shape),
+        (*estimate.messages, *notes, *(check.message for check in (*failed, *shape))),
+    )
+
+
+def judged(likelihood: Likelihood, parameters: Coordinates) -> tuple[NoiseEstimate, str]:
+    """Return the noise that residuals at best parameters show, its source, and failed checks."""
+    residuals = Residuals.of(likelihood, parameters)
     count = int(residuals.before.sum())
     if count < _QUIET:
         source, before = "residuals of the fit", None
@@ -88,17 +105,7 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
     failed = (*_spikes(residuals), *in_contact)
     if failed:
         source += f"; checks that fail: {', '.join(check.code for check in failed)}"
-    scaled = minimum.chi_squared * (likelihood.noise / noise.deviation) ** 2
-    likelihood = replace(likelihood, noise=noise.deviation)
-    notes, shape = check_shape(likelihood, minimum._replace(chi_squared=scaled))
-    return SingleFit(
-        likelihood,
-        minimum.parameters,
-        noise.freedom,
-        source,
-        (*failed, *shape),
-        (*messages, *notes, *(check.message for check in (*failed, *shape))),
-    )
+    return NoiseEstimate(noise, failed, messages=messages), source
 
 
 def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str]:

@@ -111,6 +111,10 @@ class ChiSquared(ABC):
         """Error of the model relative to the largest force; noise below it cannot be resolved."""
 
     @abstractmethod
+    def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
+        """Return the likelihood and the coordinates of each curve."""
+
+    @abstractmethod
     def coarse(self) -> ChiSquared | None:
         """Return the same with force curves from coarser grids; None if none is simulated."""
 

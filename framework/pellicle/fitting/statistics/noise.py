@@ -5,6 +5,7 @@ The points before contact show adhesion, drift, offset, slow noise and detector 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -51,6 +52,17 @@ class FailedCheck(NamedTuple):
     def of_model(self) -> bool:
         """Whether it contradicts the model (so that no tension is shown) or only the noise."""
         return self.code not in _OF_NOISE
+
+
+def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:
+    """Return why failed checks invalidate the evidence of a tension; empty if none does."""
+    codes = list(dict.fromkeys(check.code for check in failed if check.of_model))
+    if not codes:
+        return ""
+    if "adhesion" in codes:
+        return "no tension is needed where the force dips before contact: that is adhesion"
+    checks = "a check" if len(codes) == 1 else "checks"
+    return f"this is not evidence of one, because the model fails {checks} ({', '.join(codes)})"
 
 
 class Noise(NamedTuple):
