@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -20,6 +21,8 @@ from .statistics.rivals import NONE, TENSED, Rival, rivals
 
 MARGIN = 6.0
 """Difference of AIC from which one model is preferred: odds of e³, 20 to 1."""
+_OF_MANY = 12.0
+"""Difference of AIC by which the best of many rivals must beat no effect at all."""
 _FIRST_TENSIONS = (0.03, 0.3)
 """Tensions from which a search for one starts, over modulus and depth."""
 Verdict = Literal["needed", "not shown", "undecided", "other"]
@@ -164,14 +167,23 @@ def _tensed(chi_squared: ChiSquared, single: Minimum) -> list[Coordinates]:
     return [single.parameters | {TENSION: share * scale} for share in _FIRST_TENSIONS]
 
 
+def _criterion(chi_squared: ChiSquared, pair: tuple[Rival, Minimum]) -> float:
+    """Return Akaike's criterion for noise of unknown size, since models that fail widen it."""
+    rival, minimum = pair
+    mine = rival.of(chi_squared)
+    parts = mine.curves(minimum.parameters)
+    misfit = sum(
+        member.force.size * float(np.log(member.chi_squared(part) * member.noise**2))
+        for member, part in parts
+    )
+    return misfit + 2 * len(mine.free)
+
+
 def _noises(
     chi_squared: ChiSquared, minima: dict[str, tuple[Rival, Minimum]]
 ) -> tuple[list[float], list[FailedCheck]]:
     """Return the noise [N] of each curve as the best explanation shows it, and failed checks."""
-    rival, minimum = min(
-        minima.values(),
-        key=lambda pair: pair[1].chi_squared + 2 * len(pair[0].of(chi_squared).free),
-    )
+    rival, minimum = min(minima.values(), key=partial(_criterion, chi_squared))
     noises: list[float] = []
     failed: list[FailedCheck] = []
     for member, part in rival.of(chi_squared).curves(minimum.parameters):
@@ -274,11 +286,20 @@ def _judge(
     curves = "this curve" if isinstance(chi_squared, Likelihood) else "these curves"
     advice = ""
     verdict: Verdict
-    if none.aic - with_tension.aic < MARGIN and none.aic < MARGIN:
+    if none.aic - with_tension.aic < MARGIN and not doubt:
+        # The best of many rivals beats a clean curve by more than one of them does.
+        is_other = first.aic + _OF_MANY <= none.aic
         verdict, sentence = "not shown", ""
+        if is_other:
+            verdict, sentence = "other", f"{first.rival.words} describes {curves}, without tension"
     elif doubt:
         verdict = "other"
-        sentence = f"{fits[0].rival.words} fits best of all, but {doubt}"
+        sentence = (
+            f"no model describes {curves}: that of least AIC is {fits[0].rival.words}, and it "
+            f"fails a check ({', '.join(dict.fromkeys(c.code for c in failed if c.of_model))})"
+        )
+        if "adhesion" in {check.code for check in failed}:
+            sentence = f"{sentence}; {doubt}"
     elif margin >= MARGIN:
         verdict = "needed"
         sentence = (

@@ -143,18 +143,14 @@ def fit_source(config: FitConfig, source: Source, *, progress: bool) -> Fit:
         raise problem
     problem = problem.simulated(config, progress=progress)
     with status_line(progress) as report:
-        return replace(fit_problem(problem, report, config.compare), config=config)
+        return replace(fit_problem(problem, report), config=config)
 
 
-def fit_problem(
-    problem: FitProblem,
-    report: Callable[[str], None] = lambda stage: None,
-    compared: bool = False,
-) -> Fit:
+def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stage: None) -> Fit:
     """Return the fit of a curve whose indenter has a force curve.
 
     ``report`` is called with a description of each stage.  Rivals of a tension are compared where
-    the curve seems to need one or no single explanation passes, and always if ``compared``.
+    the curve seems to need one or fails a check, and always if the problem says so.
     """
     report("least squares")
     single = fit_single(problem.likelihood(), problem.fixed)
@@ -170,13 +166,13 @@ def fit_problem(
     best = profile.best.parameters
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     doubt, rivals = doubt_of_tension(single.failed_checks), None
-    if TENSION in likelihood.free and (compared or doubt or tension.low is not None):
+    if TENSION in likelihood.free and (problem.compare or doubt or tension.low is not None):
         rivals = compare(
             likelihood,
             profile.best,
             profile.without_tension,
-            threshold=threshold if compared else None,
-            pairs=compared,
+            threshold=threshold if problem.compare else None,
+            pairs=problem.compare,
             report=report,
         )
     words, undecided = advice(likelihood, best, modulus, tension)

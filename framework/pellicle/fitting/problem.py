@@ -33,6 +33,8 @@ class FitProblem:
     """Parameters that are not fitted."""
     poissons_ratio: float | None
     segment: Segment = "approach"
+    compare: bool = False
+    """Whether rivals of a tension are compared in full."""
 
     def simulated(self, config: FitConfig, *, progress: bool) -> FitProblem:
         """Return the problem with a force model, simulated if need be."""
@@ -95,7 +97,9 @@ def problems(config: FitConfig, sources: Sequence[Source]) -> list[FitProblem | 
         ratio = known.poissons_ratio
         try:
             curve = clean(curve, config.segment)
-            results.append(FitProblem(source.name, curve, model, fixed, ratio, config.segment))
+            results.append(
+                FitProblem(source.name, curve, model, fixed, ratio, config.segment, config.compare)
+            )
         except ConfigError as error:
             results.append(error)
     return results

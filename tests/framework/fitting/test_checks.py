@@ -8,11 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import fit_rivals
+import fit_checks
 import numpy as np
 import pytest
 from click.testing import Result
-from fit_rivals import CONTROLS, RIVALS, Kind, outcomes
+from fit_checks import CONTROLS, RIVALS, Kind, outcomes
 from numpy.typing import NDArray
 
 import pellicle as pl
@@ -27,13 +27,13 @@ from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere
 
 Array = NDArray[np.float64]
-RADIUS, MODULUS = fit_rivals.RADIUS, fit_rivals.MODULUS
+RADIUS, MODULUS = fit_checks.RADIUS, fit_checks.MODULUS
 MARKED = {name: kind for name, kind in RIVALS.items() if kind.leaves_mark}
 
 
 def measured(kind: Kind, seed: int = 3) -> tuple[Array, Array]:
     """Return position and force of one curve of a kind."""
-    return fit_rivals.curve(kind, np.random.default_rng(seed))
+    return fit_checks.curve(kind, np.random.default_rng(seed))
 
 
 def white(seed: int, *, length: float = 0.0, points: int = 600, noise: float = 0.005) -> Array:
@@ -59,7 +59,7 @@ def codes(result: pl.Fit) -> list[str]:
 def test_no_tension_is_claimed_in_silence_where_the_curve_shows_another_cause(name: str) -> None:
     """Curves that bear a mark of what bends them are not said to need a tension without a word.
 
-    A tenth of tests/benchmarks/fit_rivals.py.
+    A tenth of tests/benchmarks/fit_checks.py.
     """
     assert not any(outcome.is_silent for outcome in outcomes(MARKED[name], 5, seed=7))
 

@@ -92,7 +92,8 @@ class AdhesiveModel:
         branch = self._stable(values, float(depth.max()))
         end = float(branch.position[0])
         root = np.sqrt(np.maximum(branch.position - end, 0.0))
-        keep = np.concatenate([[True], np.diff(root) > 0])
+        highest = np.maximum.accumulate(root)
+        keep = np.concatenate([[True], root[1:] > highest[:-1]])
         columns = [branch.force, *(part for pair in branch.by_parameter for part in pair)]
         spline = CubicSpline(root[keep], np.column_stack(columns)[keep])
         beyond = depth - end

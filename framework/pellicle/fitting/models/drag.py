@@ -16,7 +16,6 @@ from .history import History
 
 DRAG = Parameter("drag", "Pa s", minimum=0.0, shared=True)
 """η of the force η a dδ/dt, with the contact radius a."""
-_STEP = 1e-4
 
 
 @dataclass(frozen=True)
@@ -50,7 +49,8 @@ class DragModel:
         """Return force and derivatives at depths [m] of the rows, of shape (n,)."""
         elastic = self.elastic.force(depth, values)
         radius = self.elastic.force_curve(depth, 0.0).by_depth / 2
-        step = _STEP * max(float(depth.max()), float(np.finfo(float).tiny))
+        # The radius grows without limit at first touch; a difference over one row has a limit.
+        step = float(np.ptp(depth)) / depth.size
         growth = (self.elastic.force_curve(depth + step, 0.0).by_depth / 2 - radius) / step
         drag = values[DRAG] * self.history.velocity
         return ModelForce(

@@ -156,7 +156,7 @@ def _separation(
     starts[1][CONTACT_POINT] = 0.0
     worth = np.inf
     with suppress(ConvergenceError, PellicleError):
-        worth = pool.minimise(pool.joined(starts)).chi_squared
+        worth = pool.minimise(pool.joined(starts), rough=True).chi_squared
     return worth
 
 

@@ -27,6 +27,10 @@ _LARGEST_CHANGE = 20.0
 _METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 60), ("trf", 1000))
 """Optimisers, tried in this order, and their largest numbers of steps."""
 _TOLERANCE = 1e-10
+_ROUGH_METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 30), ("trf", 60))
+_ROUGH_TOLERANCE = 1e-7
+_SLOWEST = np.log(30.0)
+"""Logarithm of the ratio of a relaxation time, either way, to the one that a search starts from."""
 _BALANCE_STEPS = 200
 """Largest number of Newton steps for the balance of cantilever and solid."""
 _BALANCE_TOLERANCE = 1e-9
@@ -172,8 +176,12 @@ class ChiSquared(ABC):
         """Return the minimum of χ² near ``best`` with a parameter at its least value."""
         return self.minimise(best.parameters | {parameter: parameter.minimum}, (parameter,))
 
-    def minimise(self, start: Coordinates, fixed: Sequence[Parameter] = ()) -> Minimum:
+    def minimise(
+        self, start: Coordinates, fixed: Sequence[Parameter] = (), *, rough: bool = False
+    ) -> Minimum:
         """Return the minimum of χ² near ``start``, where the parameters in ``fixed`` stay.
+
+        A ``rough`` search ends sooner, and where it has come to; its χ² is an upper bound.
 
         Raises
         ------
@@ -199,21 +207,24 @@ class ChiSquared(ABC):
 
         u = np.clip([start[p] for p in free], lowest, highest) / scale
         # Dogbox is faster at active bounds, but makes small steps along curved valleys.
-        for method, most in _METHODS:
+        tolerance = _ROUGH_TOLERANCE if rough else _TOLERANCE
+        for method, most in _ROUGH_METHODS if rough else _METHODS:
             solution = least_squares(
                 lambda u: linearised(u.tobytes())[0],
                 u,
                 lambda u: linearised(u.tobytes())[1],
                 (lowest / scale, highest / scale),
                 method=method,
-                xtol=_TOLERANCE,
-                ftol=_TOLERANCE,
-                gtol=_TOLERANCE,
+                xtol=tolerance,
+                ftol=tolerance,
+                gtol=tolerance,
                 max_nfev=most,
             )
             if solution.success:
                 return Minimum(full(solution.x), 2 * float(solution.cost))
             u = solution.x
+        if rough:
+            return Minimum(full(u), 2 * float(solution.cost))
         raise ConvergenceError(
             f"the search for the parameters of least χ² did not converge in {_METHODS[-1][1]} "
             "steps: the curve does not tell them apart; fix one of them, or fit less of the "
@@ -323,10 +334,11 @@ class Likelihood(ChiSquared):
         }
         steepest = height / float(np.ptp(self.travel))
         ranges = {
-            p: Range(1.0, -_LARGEST_CHANGE, _LARGEST_CHANGE)
+            p: Range(1.0, -largest, largest)
             if p.logarithmic
             else Range(sizes[p.unit], p.minimum, p.maximum)
             for p in self.force_model.parameters
+            for largest in (_SLOWEST if p.unit == "s" else _LARGEST_CHANGE,)
         }
         return ranges | {
             CONTACT_POINT: Range(span, z.min() - _FARTHEST * span, z.max()),

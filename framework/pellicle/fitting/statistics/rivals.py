@@ -40,8 +40,8 @@ _THIN = 200
 """Rows of a curve that is scanned for initial guesses."""
 _CONE = np.pi / 4
 """Half angle of a cone in place of a bead, which its modulus cannot be told from."""
-_FIRST_TENSION = 0.1
-"""Tension from which a search for one starts, over modulus and range of positions."""
+_SHARES = (0.0, 0.1)
+"""Values of a parameter that is not logarithmic from which a search starts, over its scale."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +59,9 @@ class Rival:
     """Parameters beside modulus, tension, contact point and baseline."""
     baseline: tuple[Parameter, ...] = ()
     """Parameters of the baseline that are fitted even if the fit itself does not."""
+
+    of_shape: bool = False
+    """Whether it is another shape, for which a tension can make up in any curve."""
 
     def of(self, chi_squared: ChiSquared) -> ChiSquared:
         """Return χ² with this model in place of an elastic solid under tension."""
@@ -91,7 +94,7 @@ class Rival:
             guesses = [{}] if len(known) == len(self.own) else self._guesses(mine, whole)
             for guess in guesses:
                 with suppress(ConvergenceError, PellicleError):
-                    minima.append(mine.minimise(whole | guess))
+                    minima.append(mine.minimise(whole | guess, rough=True))
         return least(minima) if minima else None
 
     def _guesses(self, chi_squared: ChiSquared, start: Coordinates) -> list[Coordinates]:
@@ -106,7 +109,8 @@ class Rival:
             ]
         if isinstance(model, AdhesiveModel):
             return list(_adhesive_guesses(self, chi_squared, start))
-        return [{p: p.coordinate(p.minimum) for p in self.own}]
+        scales = chi_squared.ranges
+        return [{p: share * scales[p].scale for p in self.own} for share in _SHARES]
 
 
 def _own_guesses(model: ForceModel) -> list[dict[Parameter, float]]:
@@ -200,7 +204,7 @@ def _shapes(members: Sequence[Likelihood]) -> Iterator[Rival]:
                 assert shape is not None
                 return ClosedFormModel(shape)
 
-            yield Rival(name, f"a {name}", False, build)
+            yield Rival(name, f"a {name}", False, build, of_shape=True)
 
 
 def _shape(name: str, indenter: object) -> HasForceCurve | None:
@@ -233,6 +237,7 @@ def rivals(chi_squared: ChiSquared) -> list[Rival]:
             has_tension=True,
         )
         for effect in effects
+        if not effect.of_shape
     ]
     return [NONE, *effects, TENSED, *pairs]
 
