@@ -299,7 +299,7 @@ def _judge(
             f"fails a check ({', '.join(dict.fromkeys(c.code for c in failed if c.of_model))})"
         )
         if "adhesion" in {check.code for check in failed}:
-            sentence = f"{sentence}; {doubt}"
+            sentence += "; the force dips before contact, which is adhesion"
     elif margin >= MARGIN:
         verdict = "needed"
         sentence = (

@@ -159,9 +159,10 @@ class RelaxingModel(ABC):
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = np.where(g[1:] > 0, loaded / g[1:], np.nan)
         log_ratio = _filled(np.log(np.maximum(ratio, 1e-12)))
-        log_time = np.log(t[1:] - start)
-        earliest = np.log(_EARLIEST * (end - start))
-        at = np.log(np.maximum(times - start, np.exp(earliest)))
+        earliest = _EARLIEST * (end - start)
+        # Nodes of a far contact point may coincide by rounding.
+        log_time = np.log(np.maximum(t[1:] - start, 1e-6 * earliest))
+        at = np.log(np.maximum(times - start, earliest))
         modulus = np.exp(np.interp(at, log_time, log_ratio))
         depth, by_depth = np.zeros(size), np.ones(size)
         back_times, back_positions = history.unloading_path
