@@ -176,6 +176,7 @@ def test_power_law_pressed_in_and_drawn_back(exponent: float) -> None:
         ([{"fraction": 0.8, "time": 1e-12}], 0.2),
     ],
 )
+@pytest.mark.filterwarnings("ignore:loading.time:UserWarning")
 def test_limits_are_elastic(relaxation: list[dict[str, Any]], share: float) -> None:
     """No fraction or endless times give the instantaneous solid, times of nought the relaxed one.
 
@@ -197,6 +198,7 @@ def test_limits_are_elastic(relaxation: list[dict[str, Any]], share: float) -> N
 
 
 @pytest.mark.parametrize(("time", "share"), [(1e12, 1.0), (1e-12, 0.2)])
+@pytest.mark.filterwarnings("ignore:loading.time:UserWarning")
 def test_limits_under_a_skin_are_elastic(time: float, share: float) -> None:
     """Under a force, in contacts that grow and shrink on a periodic tensed skin, too."""
     forces = [2e-6, 8e-6, 5e-6, 3e-6]
@@ -250,10 +252,11 @@ def test_every_wave_obeys_the_convolution(tension: float) -> None:
 def test_liquid_flows_out_of_the_way() -> None:
     """Fractions that sum to 1 carry nothing in the end, and the solver copes with the decay."""
     times = [0.0, 1.0, 5.0, 20.0]
-    data = solved(
-        kernel=solid([{"fraction": 0.7, "time": 1.0}, {"fraction": 0.3, "time": 0.5}]),
-        loading={"depth": [1e-5] * 4, "time": times},
-    )
+    with pytest.warns(UserWarning, match="sum to 1, which makes the solid a liquid"):
+        data = solved(
+            kernel=solid([{"fraction": 0.7, "time": 1.0}, {"fraction": 0.3, "time": 0.5}]),
+            loading={"depth": [1e-5] * 4, "time": times},
+        )
     t = np.array(times)
     expected = 0.7 * np.exp(-t) + 0.3 * np.exp(-2 * t)
     np.testing.assert_allclose(data["force"] / data["force"][0], expected, rtol=1e-8, atol=1e-11)
@@ -326,10 +329,14 @@ def test_resumed_run_has_the_same_numbers(
         ({"loading": {"depth": 1e-6, "time": float("nan")}}, "loading.time"),
         (
             {
-                "loading": {"depth": 1e-6, "time": 0.0},
-                "kernel": {"type": "coated", "tension": 0.05, "substrate": solid()},
+                "loading": {"depth": [1e-6] * 2, "time": [0.0, 1001.0]},
+                "kernel": {
+                    "type": "coated",
+                    "tension": 0.05,
+                    "substrate": solid(power_law={"exponent": 0.2, "time": 1.0}),
+                },
             },
-            "skin",
+            "lasts 1001 s",
         ),
         (
             {
@@ -345,6 +352,19 @@ def test_refuses(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(pl.ConfigError) as caught:
         pl.Run(**configuration(**changes))
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("tension", [0.0, 0.05])
+def test_relaxation_far_faster_than_the_steps_is_said(tension: float) -> None:
+    """A run would not show how the fast share relaxes; jumps and slow steps alone are no matter."""
+    kernel = solid([{"fraction": 0.5, "time": 1e-3}, {"fraction": 0.3, "time": 1.0}])
+    if tension:
+        kernel = {"type": "coated", "tension": tension, "substrate": kernel}
+    grid = {"points": 16, "size": "4 mm", "boundary": "periodic"}
+    loading = {"force": [1e-6] * 3, "time": [0.0, 0.0, 0.2]}
+    with pytest.warns(UserWarning, match="takes 0.2 s, in which .* relaxation time 0.001 s"):
+        solved(grid=grid, kernel=kernel, loading=loading)
+    solved(grid=grid, kernel=kernel, loading=loading | {"time": [0.0, 0.0, 0.05]})
 
 
 def test_elastic_solid_takes_no_notice_of_time() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
@@ -13,7 +14,7 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.checks import errors_attributed_to
-from pellicle.components import Branch, HasRelaxation, Kernel, Setting
+from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel, Setting
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
 from pellicle.grid import Grid
@@ -34,6 +35,12 @@ _DIGITS: Final = 12
 # are told from a liquid.
 _SOFTEST: Final = 1e-9
 _LONGEST: Final = 1e9
+# Largest stiffness in the end, over the instantaneous one, of a liquid; it is rounding.
+_LIQUID: Final = 1e-12
+# Relaxation times below this share of the shortest step are far below it.
+_FAST: Final = 0.01
+# Cells may add a hundredth to a radius.
+_RADII: Final = 7.9
 OPERATORS: Final = 4
 """Number of stiffnesses γ whose operators are kept under a skin."""
 
@@ -88,6 +95,38 @@ def _share(step: TimeStep) -> float:
     return float(f"{step.stiffness:.{_DIGITS}g}")
 
 
+def warn_of_relaxation(run: Run) -> None:
+    """Warn if a solid relaxes to a liquid, or far faster than the steps of its run.
+
+    A kernel that states its time span has a share of its own for all times beyond.
+
+    Warns
+    -----
+    UserWarning
+        The message names the relaxation time, or what carries the load in the end.
+    """
+    kernel, branches = run.kernel, branches_of(run.kernel)
+    if not branches or run.loading.time is None:
+        return
+    shortest, longest = kernel.time_span() if isinstance(kernel, HasTimeSpan) else (0.0, math.inf)
+    if longest == math.inf and stiffness_after(branches, math.inf) < _LIQUID:
+        warnings.warn(
+            f"kernel: the shares of {kernel.type_name!r} that relax sum to 1, which makes the solid "
+            "a liquid: in the end only a skin carries; let them sum to less for a solid",
+            stacklevel=3,
+        )
+    least = min((b - a for a, b in pairwise(run.loading.time) if b > a), default=0.0)
+    fastest = min(branch.time for branch in branches)
+    if shortest == 0.0 and fastest < _FAST * least:
+        warnings.warn(
+            f"loading.time: the shortest step takes {least:g} s, in which a share of the solid with "
+            f"the relaxation time {fastest:g} s relaxes from the start to the end: what it does "
+            "in between is not seen; use shorter steps where it matters, or a softer solid without "
+            "this share",
+            stacklevel=3,
+        )
+
+
 def least_domain(run: Run, index: int, contact: Mask) -> float:
     """Return the edge [m] that a domain needs at a step, for what its solid carries outside.
 
@@ -111,7 +150,7 @@ def least_domain(run: Run, index: int, contact: Mask) -> float:
         waves = shortest * np.geomspace(1 / _LONGEST, 1.0, 1 + 20 * round(math.log10(_LONGEST)))
         stiff = np.flatnonzero(share * carried.compliance(waves) >= 0.5)
         length = 1 / float(waves[stiff[-1]]) if stiff.size else math.inf
-    return max(8 * radius, 3 * length)
+    return max(_RADII * radius, 3 * length)
 
 
 class Relaxation:
