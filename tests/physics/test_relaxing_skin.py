@@ -97,7 +97,7 @@ DEPTHS = np.array([0.05, 0.12, 0.2, 0.08])
     ],
     ids=["no fraction", "endless", "no duration", "at once"],
 )
-@pytest.mark.filterwarnings("ignore:loading.time:UserWarning")
+@pytest.mark.filterwarnings("ignore:loading. the shortest step:UserWarning")
 def test_limits_are_elastic(fraction: float, time: float, times: list[float], share: float) -> None:
     """The instantaneous or the relaxed solid under the skin, to 1e-8, in and out."""
     relaxing, elastic = (

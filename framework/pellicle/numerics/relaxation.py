@@ -44,6 +44,11 @@ class TimeStep:
     stiffness: float
     """γ: the stiffness of the solid in this step over its instantaneous stiffness."""
 
+    @property
+    def is_jump(self) -> bool:
+        """Whether nothing relaxes in the step: it takes no time."""
+        return all(decay == 1.0 for decay in self.decays)
+
     @classmethod
     def of(cls, branches: Sequence[Branch], duration: float) -> Self:
         """Return the step of ``duration`` ≥ 0 [s] of a solid with these branches.

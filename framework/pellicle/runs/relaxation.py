@@ -7,7 +7,6 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
-from itertools import pairwise
 from typing import Final, Self
 
 import numpy as np
@@ -106,7 +105,7 @@ def warn_of_relaxation(run: Run) -> None:
         The message names the relaxation time, or what carries the load in the end.
     """
     kernel, branches = run.kernel, branches_of(run.kernel)
-    if not branches or run.loading.time is None:
+    if not branches:
         return
     shortest, longest = kernel.time_span() if isinstance(kernel, HasTimeSpan) else (0.0, math.inf)
     if longest == math.inf and stiffness_after(branches, math.inf) < _LIQUID:
@@ -115,11 +114,11 @@ def warn_of_relaxation(run: Run) -> None:
             "a liquid: in the end only a skin carries; let them sum to less for a solid",
             stacklevel=3,
         )
-    least = min((b - a for a, b in pairwise(run.loading.time) if b > a), default=0.0)
+    least = min((duration for duration in run.loading.durations if duration > 0), default=0.0)
     fastest = min(branch.time for branch in branches)
     if shortest == 0.0 and fastest < _FAST * least:
         warnings.warn(
-            f"loading.time: the shortest step takes {least:g} s, in which a share of the solid with "
+            f"loading: the shortest step takes {least:g} s, in which a share of the solid with "
             f"the relaxation time {fastest:g} s relaxes from the start to the end: what it does "
             "in between is not seen; use shorter steps where it matters, or a softer solid without "
             "this share",
@@ -134,14 +133,15 @@ def least_domain(run: Run, index: int, contact: Mask) -> float:
     the solid is after the duration of the run so far: 2τ₀/E* under a tension. It is 0 where there
     is nothing outside: at the first step, without a skin, and on a periodic boundary.
     """
-    kernel, time, branches = run.kernel, run.loading.time, branches_of(run.kernel)
-    if not index or not branches or not time or run.grid.boundary == "periodic":
+    kernel, branches = run.kernel, branches_of(run.kernel)
+    if not index or not branches or run.grid.boundary == "periodic":
         return 0.0
     assert isinstance(kernel, HasRelaxation)
     solid = kernel.without_skin()
     if solid == kernel:
         return 0.0
-    share = max(_SOFTEST, stiffness_after(branches, time[index] - time[0]))
+    elapsed = math.fsum(run.loading.durations[: index + 1])
+    share = max(_SOFTEST, stiffness_after(branches, elapsed))
     carried = CarriedShare(kernel.scaled(share), solid)
     shortest = 3 / min(run.grid.size)
     radius = math.sqrt(np.count_nonzero(contact) * run.grid.cell_area / math.pi)
@@ -163,12 +163,11 @@ class Relaxation:
     def __init__(
         self,
         branches: Sequence[Branch],
-        times: Sequence[float],
+        durations: Sequence[float],
         grid: Grid,
         skin: Skin | None = None,
     ) -> None:
-        # The first step is a jump: the solid is undeformed before it.
-        durations = [0.0, *(b - a for a, b in pairwise(times))]
+        # The solid is undeformed before the first step.
         self._steps = [TimeStep.of(branches, duration) for duration in durations]
         self._memory = Memory.at_rest(branches, grid.shape)
         # Integrals over the plane [N]: long waves do not bend the skin, so the solid carries all.
@@ -183,11 +182,9 @@ class Relaxation:
         kernel, branches = run.kernel, branches_of(run.kernel)
         if not branches:
             return None
-        # Validation requires times where the kernel relaxes.
-        assert run.loading.time is not None
         assert isinstance(kernel, HasRelaxation)
         skin = Skin(kernel, run.grid) if kernel.without_skin() != kernel else None
-        return cls(branches, run.loading.time, run.grid, skin)
+        return cls(branches, run.loading.durations, run.grid, skin)
 
     @property
     def applications(self) -> int:
@@ -202,19 +199,18 @@ class Relaxation:
         """
         for index in range(self._done, len(displacements)):
             self._advance(pressures[index], displacements[index])
-        if not self._done:
-            return setting
         step = self._steps[self._done]
         if not self._skin:
             operator = setting.operator.scaled(1 / step.stiffness)
-            left = left_behind(self._memory, step)
-        else:
-            whole = self._skin.whole(step)
-            operator = whole.operator
-            left = left_behind_under_skin(
-                self._memory, step, partial(whole, integral=float(self._integral.history(step)))
-            )
-        return replace(setting, operator=operator, left=left)
+            left = left_behind(self._memory, step) if self._done else None
+            return replace(setting, operator=operator, left=left)
+        if not self._done and step.is_jump:
+            return setting
+        whole, left = self._skin.whole(step), None
+        if self._done:
+            displacement = partial(whole, integral=float(self._integral.history(step)))
+            left = left_behind_under_skin(self._memory, step, displacement)
+        return replace(setting, operator=whole.operator, left=left)
 
     def _advance(self, pressure: Array, displacement: Array) -> None:
         """Bring the memory forward to the end of the next step."""
