@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -273,25 +273,44 @@ def path() -> dict[str, Any]:
     )
 
 
-@pytest.mark.parametrize("tension", [0.0, 0.05])
-def test_resumed_run_has_the_same_numbers(
-    tension: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A run that is killed after six steps goes on bit by bit as one that is not."""
-    run = path() | {"outputs": []}
-    if tension:
-        run["kernel"] = {"type": "coated", "tension": tension, "substrate": solid()}
-        run["grid"] = run["grid"] | {"boundary": "periodic"}
-        run["loading"] = {
+def long_path() -> dict[str, Any]:
+    """Return a run of forty steps, in and out, with a skin on a free boundary."""
+    depths = np.concatenate([np.linspace(6e-6, 1e-5, 16), np.linspace(1e-5, 9e-6, 24)])
+    times = np.concatenate([np.linspace(0.0, 3.0, 16), np.linspace(3.5, 15.0, 24)])
+    return configuration(
+        kernel={"type": "coated", "tension": 0.02, "substrate": solid()},
+        grid={"points": 36, "size": "0.9 mm", "boundary": "free"},
+        indenter=PARABOLOID,
+        loading={"depth": depths.tolist(), "time": times.tolist()},
+    )
+
+
+def periodic_path() -> dict[str, Any]:
+    """Return the path of `path` under a force, with a skin on a periodic boundary."""
+    run = path()
+    return run | {
+        "kernel": {"type": "coated", "tension": 0.05, "substrate": solid()},
+        "grid": run["grid"] | {"boundary": "periodic"},
+        "loading": {
             "force": [2e-6 * (1 + n % 4) for n in range(10)],
             "time": run["loading"]["time"],
-        }
+        },
+    }
+
+
+@pytest.mark.parametrize("path", [path, periodic_path, long_path])
+def test_resumed_run_has_the_same_numbers(
+    path: Callable[[], dict[str, Any]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run that is killed on its way goes on bit by bit as one that is not."""
+    run = path() | {"outputs": []}
+    finished = 3 * len(run["loading"]["time"]) // 5
     whole = pl.run(run | {"outputs": None}, progress=False).dataset
     solve_step, solved_steps = steps.solve_step, 0
 
     def killed(*arguments: Any) -> Any:
         nonlocal solved_steps
-        if solved_steps == 6:
+        if solved_steps == finished:
             raise KeyboardInterrupt
         solved_steps += 1
         return solve_step(*arguments)
@@ -301,7 +320,8 @@ def test_resumed_run_has_the_same_numbers(
         with pytest.raises(KeyboardInterrupt):
             pl.run(run, directory=tmp_path, progress=False)
     resumed = pl.run(run, directory=tmp_path, progress=False).dataset
-    for name in ("pressure", "displacement", "force", "depth", "time"):
+    names = ("pressure", "displacement", "force", "depth", "time", "operator_applications")
+    for name in names:
         np.testing.assert_array_equal(resumed[name], whole[name])
 
 

@@ -24,7 +24,6 @@ from pydantic import (
 
 from pellicle.components import (
     AreaCorrection,
-    HasRelaxation,
     HasTimeSpan,
     Indenter,
     Interaction,

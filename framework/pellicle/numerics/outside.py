@@ -1,7 +1,7 @@
 """Fields that extend over the plane beyond the domain, where only their integral is known.
 
-Under a skin a solid that relaxes carries pressure outside the domain too. There it falls as r⁻³, the
-transform of |q|. So what is missing from the known integral over the plane is spread as r⁻³.
+Under a skin a solid that relaxes carries pressure outside the domain too. There it falls as r⁻³,
+the transform of |q|. So what is missing from the known integral over the plane is spread as r⁻³.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ class PlaneOperator:
 def from_outside(kernel: HasCompliance, grid: Grid) -> Array:
     """Return the displacement [m/N] of each cell by 1 N spread as r⁻³ outside the domain.
 
-    It is computed on a plane eight times as large in coarse cells. The eighth of the force that acts
-    beyond that plane is neglected: its displacement is about a sixty-fourth of the whole.
+    It is computed on a plane eight times as large, in coarse cells. The eighth of the force that
+    acts beyond that plane is neglected: its displacement is about a sixty-fourth of the whole.
     """
     # The import takes long, and only a skin on a solid that relaxes needs it.
     from scipy.interpolate import RectBivariateSpline

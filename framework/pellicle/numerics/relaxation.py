@@ -29,7 +29,7 @@ class Branch(NamedTuple):
 
 
 def stiffness_after(branches: Sequence[Branch], duration: float) -> float:
-    """Return the stiffness of a solid at ``duration`` [s] after a jump over the instantaneous one."""
+    """Return the stiffness of a solid ``duration`` [s] after a jump over the instantaneous one."""
     return 1.0 + math.fsum(b.share * math.expm1(-duration / b.time) for b in branches)
 
 

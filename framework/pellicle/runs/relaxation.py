@@ -30,8 +30,8 @@ from pellicle.numerics.relaxation import (
 
 # Equal steps whose times differ by rounding share their operators.
 _DIGITS: Final = 12
-# Softest solid, over its instantaneous stiffness, and longest wave, over a third of the domain, that
-# are told from a liquid.
+# Softest solid, over its instantaneous stiffness, and longest wave, over a third of the domain,
+# that are told from a liquid.
 _SOFTEST: Final = 1e-9
 _LONGEST: Final = 1e9
 # Largest stiffness in the end, over the instantaneous one, of a liquid; it is rounding.
@@ -110,8 +110,8 @@ def warn_of_relaxation(run: Run) -> None:
     shortest, longest = kernel.time_span() if isinstance(kernel, HasTimeSpan) else (0.0, math.inf)
     if longest == math.inf and stiffness_after(branches, math.inf) < _LIQUID:
         warnings.warn(
-            f"kernel: the shares of {kernel.type_name!r} that relax sum to 1, which makes the solid "
-            "a liquid: in the end only a skin carries; let them sum to less for a solid",
+            f"kernel: the shares of {kernel.type_name!r} that relax sum to 1, which makes the "
+            "solid a liquid: in the end only a skin carries; let them sum to less for a solid",
             stacklevel=3,
         )
     least = min((duration for duration in run.loading.durations if duration > 0), default=0.0)

@@ -26,9 +26,9 @@ _STEEPEST = 0.3
 
 
 def judge(run: Run, index: int, step: Reached, stiffness: Stiffness | None) -> tuple[Status, str]:
-    """Return the status of step ``index``, from its measured residuals, and the message to the user.
+    """Return the status of a step, from its measured residuals, and the message to the user.
 
-    The first step has index 0.
+    ``index`` counts the steps from 0.
     """
     equilibrium = step.equilibrium
     tolerance = run.solver.tolerance
