@@ -100,7 +100,7 @@ def test_limits_are_elastic(law: dict[str, Any], time: float, share: float) -> N
 
 
 def test_pull_off_at_a_speed_depends_on_the_range_and_not_on_the_cells() -> None:
-    """Fast retraction pulls harder than slow, and half of the cells change either by 2 % at most."""
+    """Fast retraction pulls harder than slow; twice the points change either by 2 % at most."""
     pulls = [[pulled_off(points, speed, LINEAR, 16) for points in (32, 64)] for speed in (0.01, 1)]
     for coarse, fine in pulls:
         assert coarse == pytest.approx(fine, rel=0.02)

@@ -29,11 +29,12 @@ def print_steps(result: Result) -> None:
 
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    shown = {"depth", "force", *areas, *names_of("other")}
+    shown = {"time", "depth", "force", *areas, *names_of("other")}
     loading = [name for name in result.configuration["loading"] if name in data]
     requested = [name for name in (*loading, "stiffness") if name in {*data} - shown]
     requested = [*dict.fromkeys(reversed(requested))][::-1]
-    names = ["depth", "force", *areas, *requested, "iterations"]
+    time = ["time"] if "time" in data else []
+    names = [*time, "depth", "force", *areas, *requested, "iterations"]
     coarse = dict(result.coarse())
     numbers = data["step"].values.tolist()
     converged = dict(zip(numbers, data["converged"].values.tolist(), strict=True))

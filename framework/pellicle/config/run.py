@@ -9,9 +9,8 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Self
 
@@ -114,9 +113,10 @@ class Run(FromFile):
         if not branches_of(self.kernel):
             return self
         name = self.kernel.type_name
-        if self.loading.time is None:
+        if self.loading.times is None:
             raise ConfigError(
-                f"is missing, and {name!r} relaxes in time; give one time for each load step",
+                f"is missing, and {name!r} relaxes in time; give one time for each load step, or "
+                f"legs of {self.loading.prescribed}",
                 "loading.time",
             )
         is_free = self.grid.boundary == "free"
@@ -128,7 +128,7 @@ class Run(FromFile):
                 'boundary = "periodic"',
                 "kernel",
             )
-        _refuse_times(self.kernel, self.loading.time)
+        _refuse_times(self.kernel, self.loading)
         return self
 
     @model_validator(mode="after")
@@ -197,7 +197,7 @@ class Run(FromFile):
         return hashlib.sha256(json.dumps(identifying, sort_keys=True).encode()).hexdigest()
 
 
-def _refuse_times(kernel: Kernel, times: Sequence[float]) -> None:
+def _refuse_times(kernel: Kernel, loading: Loading) -> None:
     """Refuse steps at times for which the relaxation of a kernel is not meant.
 
     Raises
@@ -208,14 +208,14 @@ def _refuse_times(kernel: Kernel, times: Sequence[float]) -> None:
     if not isinstance(kernel, HasTimeSpan):
         return
     shortest, longest = kernel.time_span()
-    duration = times[-1] - times[0]
-    least = min((b - a for a, b in pairwise(times) if b > a), default=math.inf)
+    duration = math.fsum(loading.durations)
+    least = min((step for step in loading.durations if step > 0), default=math.inf)
     if least < shortest or duration > longest:
         what = f"has a step of {least:g} s" if least < shortest else f"lasts {duration:g} s"
         raise ConfigError(
             f"{what}, and the relaxation of {kernel.type_name!r} holds from {shortest:g} to "
             f"{longest:g} s; give it a wider span, or other times",
-            "loading.time",
+            f"loading.{loading.prescribed if loading.samples else 'time'}",
         )
 
 

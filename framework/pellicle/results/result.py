@@ -12,6 +12,7 @@ import numpy as np
 
 from pellicle.errors import ConfigError, StorageError
 from pellicle.grid import Grid
+from pellicle.model.legs import number_of_steps
 
 from . import storage
 from .path import path_variables
@@ -44,7 +45,7 @@ class Result:
     def planned_steps(self) -> int:
         """The number of load steps of the configuration, solved or not."""
         loading = self.configuration["loading"]
-        return next(len(value) for value in loading.values() if isinstance(value, list))
+        return next(number_of_steps(v) for v in loading.values() if isinstance(v, list))
 
     @property
     def converged(self) -> bool:

@@ -61,7 +61,8 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
     "other": (("mean_pressure", "Pa", "force over the area of the domain"),),
     "requested": (
         ("stiffness", "N/m", "contact stiffness dF/dδ, where loading.stiffness asks for it"),
-        ("time", "s", "time at the end of the step, where loading.time gives it"),
+        ("time", "s", "time at the end of the step, where the loading gives it"),
+        ("cycle", "1", "cycles since the oscillation began, in the legs that oscillate"),
         ("wall_pressure", "Pa", "pressure of the indenter without the traction across the gap"),
     ),
     "interaction": (
