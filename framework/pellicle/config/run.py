@@ -133,8 +133,9 @@ class Run(FromFile):
 
     @model_validator(mode="after")
     def _range_where_it_relaxes(self) -> Self:
-        if self.interaction is not None and isinstance(self.kernel, HasRelaxation):
-            _refuse_range_of_the_grid(self.interaction, self.kernel, self.grid)
+        kernel = self.kernel
+        if self.interaction and branches_of(kernel) and isinstance(kernel, HasRelaxation):
+            _refuse_range_of_the_grid(self.interaction, kernel, self.grid)
         return self
 
     @model_validator(mode="after")
@@ -230,7 +231,7 @@ def _refuse_range_of_the_grid(interaction: Interaction, kernel: HasRelaxation, g
     ConfigError
         The interaction has no range of its own, and no skin dominates at the size of the cells.
     """
-    if interaction.cutoff() > 0 or not branches_of(kernel):
+    if interaction.cutoff() > 0:
         return
     q = np.array([np.pi / grid.cell_size])
     with errors_attributed_to(kernel):
