@@ -69,7 +69,7 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
     "interaction": (
         ("zone_area", "m2", "area off the contact where the traction exceeds 1 % of the strength"),
         ("zone_width", "m", "mean distance from the contact to the outer edge of the zone"),
-        ("energy", "J", "elastic energy plus energy of the interaction"),
+        ("energy", "J", "energy of solid and interaction; NaN on a solid that relaxes"),
         ("force_error", "N", "estimated error of the force, from a wider zone"),
         ("jumped", "1", "whether all contact was gained or lost in this step", "truth"),
         ("residual_traction", "1", "error of the traction across the gap over all tractions"),
