@@ -26,6 +26,7 @@ from pydantic import (
 from pellicle.checks import errors_attributed_to
 from pellicle.components import (
     AreaCorrection,
+    HasRelaxation,
     HasTimeSpan,
     Indenter,
     Interaction,

@@ -64,4 +64,4 @@ def test_part_outside_is_added() -> None:
     operator = PlaneOperator(kernel(), small)
     np.testing.assert_allclose(operator(field[inner], integral), expected, rtol=5e-3)
     alone = operator.operator(field[inner])
-    assert np.abs(alone / expected - 1).min() > 0.1
+    assert np.abs(alone / expected - 1).max() > 0.12
