@@ -14,6 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Self
 
+import numpy as np
 from pydantic import (
     Field,
     ValidationInfo,
@@ -22,6 +23,7 @@ from pydantic import (
     model_validator,
 )
 
+from pellicle.checks import errors_attributed_to
 from pellicle.components import (
     AreaCorrection,
     HasRelaxation,
@@ -46,6 +48,9 @@ from .loading import Loading, refuse_pulls
 DEFAULT_SOLVER = "active_set"
 # Increment if an equal configuration gives different numbers, not if the file layout changes.
 _NUMBERS_VERSION = 1
+# Length 2τ₀/E* of the instantaneous solid, in cells, from which on the pull-off force of an
+# interaction without a range changes by less than 2 % if the cells are halved.
+_TENSED_CELLS = 3.0
 
 
 class Run(FromFile):
@@ -114,22 +119,14 @@ class Run(FromFile):
                 f"legs of {self.loading.prescribed}",
                 "loading.time",
             )
-        is_free = self.grid.boundary == "free"
-        relaxing = isinstance(self.kernel, HasRelaxation) and self.kernel
-        if is_free and relaxing and relaxing.without_skin() != relaxing:
-            raise ConfigError(
-                f"{name!r} has a skin on a solid that relaxes, which cannot be solved on a free "
-                "boundary yet; use the solid without the skin, an elastic solid under it, or "
-                'boundary = "periodic"',
-                "kernel",
-            )
         _refuse_times(self.kernel, self.loading)
-        if self.interaction:
-            raise ConfigError(
-                f"cannot act on a solid that relaxes ({name!r}) yet; leave the interaction out, or "
-                "use an elastic kernel",
-                "interaction",
-            )
+        return self
+
+    @model_validator(mode="after")
+    def _range_where_it_relaxes(self) -> Self:
+        kernel = self.kernel
+        if self.interaction and branches_of(kernel) and isinstance(kernel, HasRelaxation):
+            _refuse_range_of_the_grid(self.interaction, kernel, self.grid)
         return self
 
     @model_validator(mode="after")
@@ -211,6 +208,33 @@ def _refuse_times(kernel: Kernel, loading: Loading) -> None:
             f"{what}, and the relaxation of {kernel.type_name!r} holds from {shortest:g} to "
             f"{longest:g} s; give it a wider span, or other times",
             f"loading.{loading.prescribed if loading.samples else 'time'}",
+        )
+
+
+def _refuse_range_of_the_grid(interaction: Interaction, kernel: HasRelaxation, grid: Grid) -> None:
+    """Refuse an interaction without a range on a solid that relaxes and is not under tension.
+
+    The solid in the zone relaxes at a rate that depends on the width of the zone, so the force has
+    no limit as the cells shrink, unless an elastic skin is much stiffer than the solid there.
+
+    Raises
+    ------
+    ConfigError
+        The interaction has no range of its own, and no skin dominates at the size of the cells.
+    """
+    if interaction.cutoff() > 0:
+        return
+    q = np.array([np.pi / grid.cell_size])
+    with errors_attributed_to(kernel):
+        solid, whole = (one.compliance(q).item() for one in (kernel.without_skin(), kernel))
+    cells = (solid / whole - 1) / np.pi
+    if cells < _TENSED_CELLS:
+        raise ConfigError(
+            f"{interaction.type_name!r} takes its range from the cells, and where the solid "
+            "relaxes the force depends on the range; give linear or dugdale with a range, or a "
+            f"tension τ₀ whose length 2τ₀/E* is {_TENSED_CELLS:g} cells or more: here it is "
+            f"{cells:.2g}",
+            "interaction.type",
         )
 
 

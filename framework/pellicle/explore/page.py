@@ -12,18 +12,14 @@ import numpy as np
 import tomli_w
 from bokeh.document import Document
 from bokeh.layouts import column, row
-from bokeh.models import (
-    Button,
-    Checkbox,
-    ColumnDataSource,
-    CustomJS,
-    Div,
-    Legend,
-    LegendItem,
-    PreText,
-    Slider,
-    TextInput,
-)
+from bokeh.models.annotations.legends import Legend, LegendItem
+from bokeh.models.callbacks import CustomJS
+from bokeh.models.sources import ColumnDataSource
+from bokeh.models.widgets.buttons import Button
+from bokeh.models.widgets.groups import Checkbox
+from bokeh.models.widgets.inputs import TextInput
+from bokeh.models.widgets.markups import Div, PreText
+from bokeh.models.widgets.sliders import Slider
 from bokeh.plotting import figure
 
 from pellicle.arrays import Array
@@ -260,14 +256,19 @@ class _Row:
 
     def _made_slider(self) -> Slider:
         control = self._control
-        common = {"show_value": False, "sizing_mode": "stretch_width", "title": None}
+        start, value, end, step = control.low, control.value, control.high, control.high / 100
         if control.is_logarithmic:
-            start, value, end = map(math.log10, (control.low, control.value, control.high))
+            start, value, end = map(math.log10, (start, value, end))
             step = _STEP
-        else:
-            start, value, end = control.low, control.value, control.high
-            step = (end - start) / 100
-        return Slider(start=start, end=end, step=step, value=value, **common)
+        return Slider(
+            start=start,
+            end=end,
+            step=step,
+            value=value,
+            title=None,
+            show_value=False,
+            sizing_mode="stretch_width",
+        )
 
     def refuse(self, message: str) -> None:
         """Show why the value is not allowed; nothing if it is."""
