@@ -23,17 +23,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Frame:
-    """The result of a run in arrays, SI."""
+    """The result of a run, and a cut through the contact at its largest force, SI."""
 
     result: Result
+    step: int
+    """Index of that load step."""
     x: Array
     """Positions along x [m], shape (nx,)."""
     pressure: Array
-    """Pressure of the last step along x through its largest value [Pa], shape (nx,)."""
+    """Pressure at the largest force along x through the deepest point [Pa], shape (nx,)."""
     surface: Array
     """Height of the surface there, negative below the undeformed one [m], shape (nx,)."""
     indenter: Array
-    """Height of the indenter there [m], shape (nx,)."""
+    """Height of the indenter there [m], shape (nx,); NaN beside it."""
     spacing: tuple[float, float]
     """Sides of a cell [m]."""
     warnings: tuple[str, ...]
@@ -62,16 +64,18 @@ def solved(document: Mapping[str, Any]) -> Frame:
         for _ in solve_steps(run, compose(run), steps, Progress(count, enabled=False)):
             pass
     result = Result(steps.joined())
-    last = result.dataset.isel(step=-1)
-    row = int(np.argmax(np.max(np.abs(last["pressure"].values), axis=0)))
-    cut = last.isel(y=row)
-    surface, gap = -cut["displacement"].values, cut["gap"].values
+    step = int(np.argmax(result.dataset["force"].values))
+    deepest = result.dataset.isel(step=step)
+    row = int(np.argmax(np.max(deepest["displacement"].values, axis=0)))
+    cut = deepest.isel(y=row)
+    surface, gap = -cut["displacement"].values, np.maximum(cut["gap"].values, 0.0)
     return Frame(
         result,
+        step,
         cut["x"].values,
         cut["pressure"].values,
         surface,
-        surface + gap,
+        np.where(np.isfinite(gap), surface + gap, np.nan),
         run.grid.spacing,
         tuple(dict.fromkeys(str(entry.message) for entry in caught)),
     )

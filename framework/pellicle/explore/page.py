@@ -16,8 +16,7 @@ from bokeh.models.annotations.legends import Legend, LegendItem
 from bokeh.models.callbacks import CustomJS
 from bokeh.models.sources import ColumnDataSource
 from bokeh.models.widgets.buttons import Button
-from bokeh.models.widgets.groups import Checkbox
-from bokeh.models.widgets.inputs import TextInput
+from bokeh.models.widgets.inputs import Checkbox, TextInput
 from bokeh.models.widgets.markups import Div, PreText
 from bokeh.models.widgets.sliders import Slider
 from bokeh.plotting import figure
@@ -114,8 +113,8 @@ class Explorer:
             )
             shift.on_change("value", self._shift)
             panel.append(shift)
-        fixed = {"flex": "0 1 300px", "min-width": "280px"}
-        wide = {"flex": "1 1 420px", "min-width": "280px"}
+        fixed = {"flex": "1 1 280px", "max-width": "420px"}
+        wide = {"flex": "3 1 300px", "min-width": "280px"}
         wrap = {"display": "flex", "flex-wrap": "wrap", "width": "100%"}
         return column(
             self._answer,
@@ -151,7 +150,7 @@ class Explorer:
         """Return a work of adhesion that makes a pull-off of some per cent of the largest force."""
         if self._frame is None:
             return "1 mJ/m^2"
-        last = self._frame.steps.isel(step=-1)
+        last = self._frame.steps.isel(step=self._frame.step)
         radius = math.sqrt(max(float(last["contact_area"]), float(np.prod(self._frame.spacing))))
         return f"{float(last['force']) / (60 * radius) * 1e3:.2g} mJ/m^2"
 
@@ -216,7 +215,8 @@ class Explorer:
         self._frame = frame
         steps = frame.steps
         depth, force = steps["depth"].values, steps["force"].values
-        (lx, ux), (lz, uz) = axis_unit(frame.x, "m"), axis_unit(frame.surface, "m")
+        heights = np.append(frame.surface, frame.indenter[np.isfinite(frame.indenter)])
+        (lx, ux), (lz, uz) = axis_unit(frame.x, "m"), axis_unit(heights, "m")
         lp, up = axis_unit(frame.pressure, "Pa")
         (ld, ud), (lf, uf) = axis_unit(depth, "m"), axis_unit(force, "N")
         self._cut.data = {
@@ -321,13 +321,16 @@ def _name_lines(plot: Any, lines: Mapping[str, Any]) -> None:
 
 
 def _answer(frame: Frame) -> str:
-    last = frame.steps.isel(step=-1)
+    last = frame.steps.isel(step=frame.step)
     area = float(last["contact_area"])
     words = [
         f"At a depth of {readable(float(last['depth']), 'm', 4)}: "
         f"force <b>{readable(float(last['force']), 'N', 4)}</b>, "
         f"contact radius {readable(math.sqrt(area / math.pi), 'm', 3)} (of a circle of that area)"
     ]
+    lowest = float(frame.steps["force"].min())
+    if lowest < 0:
+        words[0] += f"; lowest force {readable(lowest, 'N', 4)}"
     statuses = dict.fromkeys(str(status) for status in frame.steps["status"].values)
     remarks = [text for text in statuses if text != "converged"] + list(frame.warnings)
     words += [f'<span class="warning">{_escaped(text)}</span>' for text in remarks]

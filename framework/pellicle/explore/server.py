@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+import socket
 from collections.abc import Callable
 from typing import Any
 from urllib.parse import urlencode
@@ -15,7 +16,6 @@ from bokeh.server.tornado import BokehTornado
 from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPServerRequest
 from tornado.ioloop import IOLoop
-from tornado.netutil import bind_sockets
 from tornado.web import RequestHandler
 
 from pellicle.errors import ConfigError
@@ -91,19 +91,20 @@ class Server:
     def __init__(self, fill: Callable[[Document], None], port: int = 0) -> None:
         self.loop = IOLoop()
         try:
-            sockets = bind_sockets(port, ADDRESS)
+            listener = socket.create_server((ADDRESS, port))
         except OSError as error:
             raise ConfigError(
                 f"port {port} of {ADDRESS} cannot be used ({error.strerror}); give another, or 0 "
                 "for any",
                 "--port",
             ) from None
-        host = f"{ADDRESS}:{sockets[0].getsockname()[1]}"
+        listener.setblocking(False)
+        host = f"{ADDRESS}:{listener.getsockname()[1]}"
         token = secrets.token_urlsafe(32)
         self.address = f"http://{host}/?{urlencode({'token': token})}"
         application = _Guarded({"/": Application(FunctionHandler(fill))}, host, token)
         http = HTTPServer(application)
-        http.add_sockets(sockets)
+        http.add_socket(listener)
         self._server = BaseServer(self.loop, application, http)
 
     def run(self) -> None:
