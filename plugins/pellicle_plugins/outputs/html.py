@@ -51,7 +51,7 @@ from pellicle.results.result import Result, first_message
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import VARIABLES, WALL_PRESSURE, names_of
-from pellicle.studies.summary import coarse, failures, progress_of, reasons, runs_of, steep
+from pellicle.studies.summary import caveats, coarse, failures, progress_of, reasons, runs_of
 from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
@@ -249,11 +249,14 @@ def _status(result: Result) -> Notice:
     if steep := result.steep():
         sentences.append(f"In {len(steep)} of {done} slopes in contact are beyond the theory.")
         details.append(f"S{first_message(steep)[1:]}")
+    if cramped := result.cramped():
+        sentences.append(f"In {len(cramped)} of {done} the domain is small for this solid.")
+        details.append(f"S{first_message(cramped)[1:]}")
     return Notice(" ".join(sentences), not details and done == total, details)
 
 
 def _status_of_study(table: xr.Dataset, count: int) -> Notice:
-    failed, warnings = failures(table), [*coarse(table), *steep(table)]
+    failed, warnings = failures(table), [*coarse(table), *caveats(table)]
     if not failed:
         return Notice(f"Every step of all {count} runs converged.", not warnings, warnings)
     return Notice(f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings])
