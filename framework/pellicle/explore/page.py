@@ -39,12 +39,8 @@ link.download = "explored.toml";
 link.click();
 setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 """
-_STYLE = """
-:host { --error: #b00020; }
-.error { color: #b00020; font-size: 0.85rem; }
-.answer { font-size: 1.1rem; }
-.warning { color: #6b4e00; }
-"""
+_ERROR = {"color": "#b00020"}
+_ANSWER = {"font-size": "1.1rem"}
 
 
 class Measured(NamedTuple):
@@ -76,8 +72,8 @@ class Explorer:
         self._rows: dict[str, _Row] = {}
         self._panel = column(sizing_mode="stretch_width")
         self._frame: Frame | None = None
-        self._answer = Div(css_classes=["answer"], sizing_mode="stretch_width")
-        self._message = Div(css_classes=["error"], sizing_mode="stretch_width")
+        self._answer = Div(styles=_ANSWER, sizing_mode="stretch_width")
+        self._message = Div(styles=_ERROR, sizing_mode="stretch_width")
         self._text = PreText(sizing_mode="stretch_width")
         self._cut = ColumnDataSource({"x": [], "surface": [], "indenter": [], "pressure": []})
         self._path = ColumnDataSource({"depth": [], "force": []})
@@ -127,7 +123,6 @@ class Explorer:
                 sizing_mode="stretch_width",
             ),
             sizing_mode="stretch_width",
-            stylesheets=[_STYLE],
         )
 
     def _list_controls(self) -> None:
@@ -249,7 +244,7 @@ class _Row:
             sizing_mode="stretch_width",
         )
         self._slider = self._made_slider()
-        self._error = Div(css_classes=["error"], sizing_mode="stretch_width", visible=False)
+        self._error = Div(styles=_ERROR, sizing_mode="stretch_width", visible=False)
         self._field.on_change("value", self._typed)
         self._slider.on_change("value", self._moved)
         self.parts = (self._field, self._slider, self._error)
@@ -295,7 +290,7 @@ def _plots(
     """Return the figures of profile, pressure and force curve."""
     profile, pressure, force = (
         figure(height=height, sizing_mode="stretch_width", tools="pan,wheel_zoom,reset,save")
-        for height in (200, 200, 260)
+        for height in (240, 200, 260)
     )
     surface = profile.line("x", "surface", source=cut, color=_BLUE, line_width=2)
     indenter = profile.line("x", "indenter", source=cut, color=_GREY, line_dash="dashed")
@@ -333,7 +328,7 @@ def _answer(frame: Frame) -> str:
         words[0] += f"; lowest force {readable(lowest, 'N', 4)}"
     statuses = dict.fromkeys(str(status) for status in frame.steps["status"].values)
     remarks = [text for text in statuses if text != "converged"] + list(frame.warnings)
-    words += [f'<span class="warning">{_escaped(text)}</span>' for text in remarks]
+    words += [f'<span style="color: #6b4e00">{_escaped(text)}</span>' for text in remarks]
     return "<br>".join(words)
 
 
