@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -15,10 +16,11 @@ from numpy.typing import ArrayLike
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError, StorageError, shown
 from pellicle.files import read_text
+from pellicle.units import Quantity
 
 from . import afm
 from .columns import EXAMPLE, NAMES, Calibration, Channel, from_columns, is_curve
-from .curve import Curve
+from .curve import Curve, Site
 
 if TYPE_CHECKING:
     import h5py
@@ -45,6 +47,10 @@ class Source(NamedTuple):
     curve: Curve | PellicleError
     fields: Mapping[str, Any]
     """Fields of the indenter that this curve alone has."""
+    file: str = ""
+    """The file, or the name of a curve that was given by its numbers."""
+    group: str = ""
+    """Text of the column of a table of files by which curves are grouped."""
 
     def reason(self, error: Exception) -> str:
         """Return the message of an error without the name of the source in front."""
@@ -55,14 +61,76 @@ class Source(NamedTuple):
         return ConfigError(f"{self.name}: {self.reason(error)}{hint}")
 
 
+@dataclass(frozen=True)
+class CurveFile:
+    """A file of curves, or one curve given by its numbers; it is read only when it is opened."""
+
+    path: Any
+    """The file, or the name of the curve."""
+    numbers: tuple[ArrayLike, ArrayLike] | None
+    """Position [m] and force [N] of a curve that is given by its numbers."""
+    fields: Mapping[str, Any]
+    """Calibration, fields of the indenter, x and y that belong to this file alone."""
+    group: str
+    """Text of the column of a table of files by which curves are grouped."""
+    segment: str
+    calibration: Calibration
+
+    def open(self) -> Sources:
+        """Return its curves; those of a force map are read only as they are iterated over."""
+        own, fields = Calibration.model_fields, dict(self.fields)
+        settings = {name: getattr(self.calibration, name) for name in own}
+        settings |= {name: fields.pop(name) for name in own if name in fields}
+        contents: Mapping[str, Curve | PellicleError]
+        try:
+            site = _site(fields)
+            calibration = Calibration(**settings)
+            if self.numbers is not None:
+                # `clean` checks the arrays.
+                position, force = (cast("Array", values) for values in self.numbers)
+                contents = {"": Curve(position, force, stiffness=calibration.spring_constant)}
+            else:
+                contents = read(self.path, calibration, self.segment)
+        except PellicleError as error:
+            contents, site = {"": error}, None
+        return Sources(self, fields, contents, site)
+
+
+@dataclass(frozen=True)
+class Sources:
+    """The curves of one file."""
+
+    file: CurveFile
+    fields: Mapping[str, Any]
+    contents: Mapping[str, Curve | PellicleError]
+    site: Site | None
+    """Where on the sample the file was recorded, if a table of files says so."""
+
+    def __len__(self) -> int:
+        return len(self.contents)
+
+    def __iter__(self) -> Iterator[Source]:
+        path = self.file.path
+        for label, curve in self.contents.items():
+            name = f"{path}:{label}" if label else str(path)
+            if self.site is not None and isinstance(curve, Curve):
+                curve = replace(curve, site=self.site)
+            yield Source(name, curve, self.fields, str(path), self.file.group)
+
+
 def gather(
-    curves: Curves, segment: str, calibration: Calibration, per_file: Mapping[str, Sequence[Any]]
-) -> list[Source]:
-    """Return all curves, in order.
+    curves: Curves,
+    segment: str,
+    calibration: Calibration,
+    per_file: Mapping[str, Sequence[Any]],
+    group_by: str = "",
+) -> list[CurveFile]:
+    """Return all files, in order.
 
     Each list in ``per_file`` has one value for each file (or for each curve that is given by its
     numbers); spring_constant and sensitivity among them, and in a table that lists files, replace
-    those of the calibration.
+    those of the calibration.  In such a table, the columns x and y are the place on the sample, and
+    ``group_by`` may name a column by which curves are grouped.
 
     Raises
     ------
@@ -86,26 +154,22 @@ def gather(
                 "order",
                 name,
             )
-    sources = []
+    gathered = []
     for number, (file, listed) in enumerate(files):
         fields = {name: values[number] for name, values in per_file.items()} | listed
-        names = Calibration.model_fields
-        settings = {name: getattr(calibration, name) for name in names}
-        settings |= {name: fields.pop(name) for name in names if name in fields}
-        contents: Mapping[str, Curve | PellicleError]
-        try:
-            own = Calibration(**settings)
-            if file in arrays:
-                # `clean` checks the arrays.
-                position, force = (cast("Array", values) for values in arrays[file])
-                contents = {"": Curve(position, force, stiffness=own.spring_constant)}
-            else:
-                contents = read(file, own, segment)
-        except PellicleError as error:
-            contents = {"": error}
-        for label, curve in contents.items():
-            sources.append(Source(f"{file}:{label}" if label else str(file), curve, fields))
-    return sources
+        group = fields.pop(group_by, "")
+        gathered.append(CurveFile(file, arrays.get(file), fields, group, segment, calibration))
+    return gathered
+
+
+def _site(fields: dict[str, Any]) -> Site | None:
+    """Return where a curve was measured, and remove x and y from the fields of its file."""
+    if not {"x", "y"} <= fields.keys():
+        return None
+    try:
+        return Site(*(Quantity("m")(fields.pop(name)) for name in ("x", "y")))
+    except ValueError as error:
+        raise ConfigError(f"x and y: {error}") from None
 
 
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
@@ -155,7 +219,7 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str]]]:
 
 def read(
     path: Path, calibration: Calibration | None = None, segment: str = "approach"
-) -> dict[str, Curve | PellicleError]:
+) -> Mapping[str, Curve | PellicleError]:
     """Return the curves of a file, or the errors of reading them, by their labels.
 
     The label of a single curve is empty.  A table (CSV, TSV, semicolons) has a header such as
