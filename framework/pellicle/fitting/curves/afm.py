@@ -59,7 +59,7 @@ def read(
 
     overrides = {
         name.replace("_", " "): value
-        for name, value in calibration.model_dump(exclude_none=True).items()
+        for name, value in calibration.model_dump(exclude_none=True, exclude={"speed"}).items()
     }
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
@@ -159,7 +159,7 @@ def _curve(
         bending = force / Calibration(spring_constant=stiffness).required_spring_constant()
         tip = np.asarray(data[height], dtype=float) + bending
     rows: Any = slice(None)
-    if "segment" in data:
+    if "segment" in data and segment != "both":
         # The first and the last segment are the same if there is only one.
         segments = np.asarray(data["segment"])
         rows = segments == (segments.min() if segment == "approach" else segments.max())

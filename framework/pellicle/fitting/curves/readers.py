@@ -88,7 +88,8 @@ class CurveFile:
             if self.numbers is not None:
                 # `clean` checks the arrays.
                 position, force = (cast("Array", values) for values in self.numbers)
-                contents = {"": Curve(position, force, stiffness=calibration.spring_constant)}
+                stiffness, speed = calibration.spring_constant, calibration.speed
+                contents = {"": Curve(position, force, stiffness=stiffness, speed=speed)}
             else:
                 contents = read(self.path, calibration, self.segment)
         except PellicleError as error:
