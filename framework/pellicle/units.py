@@ -95,7 +95,7 @@ def _is_unit(text: str) -> bool:
     return len(text) <= _LONGEST_UNIT and _UNIT.fullmatch(text) is not None
 
 
-def one(unit: str) -> pint.Quantity[float]:
+def one(unit: str) -> Any:
     """Return 1 of a unit as a pint quantity in SI, whose arithmetic keeps dimensions.
 
     Raises

@@ -35,6 +35,7 @@ from .models.force_model import ForceModel, described, tension_model
 from .models.simulation import GRID_POINTS, Simulation
 from .models.solid import DEFAULT_KERNEL, Solid, solid
 from .parameters import CONTACT_POINT, MODULUS, TENSION
+from .population.judgement import group_pattern
 from .population.rules import rules
 
 Baseline = Literal["none", "offset", "slope"]
@@ -167,6 +168,7 @@ class FitConfig(FromFile, Calibration):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
+        group_pattern(self.group_by)
         if self.contact_points and not self.pool:
             raise ConfigError(
                 "needs pool = true; fits of single curves always have these intervals",
@@ -242,8 +244,15 @@ class FitConfig(FromFile, Calibration):
 
     def files(self, curves: Curves | None = None) -> list[CurveFile]:
         """Return the files of ``curves``, or of those of the configuration if None."""
-        chosen = self.curves if curves is None else curves
-        return gather(chosen, self.segment, self, self.per_file, self.group_by)
+        chosen, indenter = self.curves if curves is None else curves, self.indenter
+        kind = (
+            registry().find(Indenter.family, indenter["type"])
+            if isinstance(indenter, Mapping)
+            else type(indenter)
+        )
+        fields = {*getattr(kind, "model_fields", ()), *Calibration.model_fields}
+        column = self.group_by
+        return gather(chosen, self.segment, self, self.per_file, column, column in fields)
 
     def sources(self, curves: Curves | None = None) -> list[Source]:
         """Return ``curves``, or those of the configuration if None, as read from their files."""

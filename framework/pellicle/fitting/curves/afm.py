@@ -38,9 +38,7 @@ def installed() -> bool:
     return find_spec("afmformats") is not None
 
 
-def read(
-    path: Path, calibration: Calibration, segment: str
-) -> Mapping[str, Curve | PellicleError]:
+def read(path: Path, calibration: Calibration, segment: str) -> Mapping[str, Curve | PellicleError]:
     """Return the ``segment`` of each curve by its number; the label of a single curve is empty.
 
     A curve is read from the file whenever its value is taken, so that a force map does not have to
@@ -169,20 +167,20 @@ def _curve(
 def _site(metadata: Mapping[str, Any]) -> Site | None:
     """Return where on the sample a curve was measured; None if the file does not say it."""
     try:
-        x, y = (_length(metadata[f"position {axis}"]) for axis in "xy")
-    except (KeyError, ValueError):
+        x, y = (_length(metadata.get(f"position {axis}")) for axis in "xy")
+    except ValueError:
         return None
     try:
         along_x, along_y = (_axis(metadata, axis) for axis in "xy")
-    except (KeyError, ValueError):
+    except (TypeError, ValueError):
         return Site(x, y)
     return Site(x, y, (along_x, along_y))
 
 
 def _axis(metadata: Mapping[str, Any], axis: str) -> Axis:
     """Return the positions along one edge of a map, whose size includes half a pixel beyond."""
-    centre, size = (_length(metadata[f"grid {name} {axis}"]) for name in ("center", "size"))
-    count = int(metadata[f"grid shape {axis}"])
+    centre, size = (_length(metadata.get(f"grid {name} {axis}")) for name in ("center", "size"))
+    count = int(metadata.get(f"grid shape {axis}"))
     if count < 1 or size <= 0:
         raise ValueError("the grid has no extent")
     pitch = size / count

@@ -34,7 +34,7 @@ class Axis(NamedTuple):
     """First position [m]."""
     pitch: float
     """Distance of neighbours [m]."""
-    count: int
+    pixels: int
 
 
 class Site(NamedTuple):

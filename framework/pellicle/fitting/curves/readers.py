@@ -51,6 +51,8 @@ class Source(NamedTuple):
     """The file, or the name of a curve that was given by its numbers."""
     group: str = ""
     """Text of the column of a table of files by which curves are grouped."""
+    map: str = ""
+    """File of the force map that the curve belongs to: its own, or the table of files."""
 
     def reason(self, error: Exception) -> str:
         """Return the message of an error without the name of the source in front."""
@@ -73,6 +75,8 @@ class CurveFile:
     """Calibration, fields of the indenter, x and y that belong to this file alone."""
     group: str
     """Text of the column of a table of files by which curves are grouped."""
+    table: Path | None
+    """The table of files that lists it."""
     segment: str
     calibration: Calibration
 
@@ -107,6 +111,11 @@ class Sources:
     site: Site | None
     """Where on the sample the file was recorded, if a table of files says so."""
 
+    @property
+    def is_single(self) -> bool:
+        """Whether the file holds one curve without a label."""
+        return list(self.contents) == [""]
+
     def __len__(self) -> int:
         return len(self.contents)
 
@@ -114,9 +123,31 @@ class Sources:
         path = self.file.path
         for label, curve in self.contents.items():
             name = f"{path}:{label}" if label else str(path)
+            whole = str(path)
             if self.site is not None and isinstance(curve, Curve):
-                curve = replace(curve, site=self.site)
-            yield Source(name, curve, self.fields, str(path), self.file.group)
+                curve, whole = replace(curve, site=self.site), str(self.file.table or path)
+            yield Source(name, curve, self.fields, str(path), self.file.group, whole)
+
+
+class SourceStream:
+    """The curves of many files, which are opened one after the other.
+
+    ``operator.length_hint`` counts a file that has not been opened yet as one curve.
+    """
+
+    def __init__(self, files: Sequence[CurveFile]) -> None:
+        self._files = files
+        self._count = len(files)
+
+    def __length_hint__(self) -> int:
+        return self._count
+
+    def __iter__(self) -> Iterator[Source]:
+        self._count = len(self._files)
+        for file in self._files:
+            sources = file.open()
+            self._count += len(sources) - 1
+            yield from sources
 
 
 def gather(
@@ -124,14 +155,15 @@ def gather(
     segment: str,
     calibration: Calibration,
     per_file: Mapping[str, Sequence[Any]],
-    group_by: str = "",
+    label: str = "",
+    is_field: bool = False,
 ) -> list[CurveFile]:
     """Return all files, in order.
 
     Each list in ``per_file`` has one value for each file (or for each curve that is given by its
     numbers); spring_constant and sensitivity among them, and in a table that lists files, replace
     those of the calibration.  In such a table, the columns x and y are the place on the sample, and
-    ``group_by`` may name a column by which curves are grouped.
+    the column ``label`` holds the group of each curve, and may be a field of the indenter as well.
 
     Raises
     ------
@@ -142,7 +174,7 @@ def gather(
     """
     arrays = curves if isinstance(curves, Mapping) else {}
     if isinstance(curves, Mapping):
-        files: list[tuple[Any, dict[str, str]]] = [(name, {}) for name in curves]
+        files: list[tuple[Any, dict[str, str], Path | None]] = [(n, {}, None) for n in curves]
     else:
         paths = [curves] if isinstance(curves, (str, Path)) else curves
         files = [file for text in paths for path in expanded(text) for file in _files(path)]
@@ -156,10 +188,13 @@ def gather(
                 name,
             )
     gathered = []
-    for number, (file, listed) in enumerate(files):
+    for number, (file, listed, table) in enumerate(files):
+        group = listed.get(label, "")
+        if not is_field:
+            listed.pop(label, None)
         fields = {name: values[number] for name, values in per_file.items()} | listed
-        group = fields.pop(group_by, "")
-        gathered.append(CurveFile(file, arrays.get(file), fields, group, segment, calibration))
+        numbers = arrays.get(file)
+        gathered.append(CurveFile(file, numbers, fields, group, table, segment, calibration))
     return gathered
 
 
@@ -168,9 +203,10 @@ def _site(fields: dict[str, Any]) -> Site | None:
     if not {"x", "y"} <= fields.keys():
         return None
     try:
-        return Site(*(Quantity("m")(fields.pop(name)) for name in ("x", "y")))
+        x, y = (Quantity("m")(fields.pop(name)) for name in ("x", "y"))
     except ValueError as error:
         raise ConfigError(f"x and y: {error}") from None
+    return Site(x, y)
 
 
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
@@ -187,8 +223,8 @@ def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     return files
 
 
-def _files(path: Path) -> list[tuple[Path, dict[str, str]]]:
-    """Return the files that a path stands for, each with its fields in a list of files.
+def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
+    """Return the files that a path stands for, each with its fields in a list of files, and that.
 
     A list of files is a table with a header such as ``file,radius [um]``; its values get their
     units, and empty cells are left out.
@@ -201,11 +237,11 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str]]]:
         )
         if not files:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
-        return [(file, {}) for file in files]
+        return [(file, {}, None) for file in files]
     cells = _cells(path) if path.suffix.lower() in _TEXT and path.is_file() else None
     if cells is None or _FILE not in [name for name, _ in cells.heads]:
-        return [(path, {})]
-    listed = []
+        return [(path, {}, None)]
+    listed: list[tuple[Path, dict[str, str], Path | None]] = []
     for row in cells.rows:
         fields = {
             name: f"{cell.strip()} {unit}".strip()
@@ -214,7 +250,7 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str]]]:
         }
         if _FILE not in fields:
             raise ConfigError(f"{path}: has a row without a file; name one in each row")
-        listed.append((path.parent / fields.pop(_FILE), fields))
+        listed.append((path.parent / fields.pop(_FILE), fields, path))
     return listed
 
 

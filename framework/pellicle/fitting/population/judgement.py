@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -26,25 +28,39 @@ _NORMAL = 1.4826
 _LIMIT = 3.5
 """Distance from the median, in these deviations, beyond which a curve stands out."""
 _HEADS = ("curve", "name", "file")
+_PATTERN = re.compile(r"[*?[]")
 
 Row = dict[str, Any]
 
 
-class Names(NamedTuple):
+@dataclass(frozen=True)
+class Names:
     """A list of curves in a file."""
 
     path: Path
     reasons: Mapping[str, str]
     """What follows each name on its line."""
 
+    @cached_property
+    def _literal(self) -> dict[str, str]:
+        return {name.replace("\\", "/"): name for name in self.reasons}
+
+    @cached_property
+    def _patterns(self) -> list[str]:
+        return [name for name in self.reasons if _PATTERN.search(name)]
+
     def entry(self, curve: str) -> str | None:
-        """Return the name in the list that means a curve: whole, its end, or a pattern."""
+        """Return the name in the list that means a curve: its name or the end of it, or a pattern.
+
+        The end follows a slash: ``a.csv`` means ``day/a.csv``.
+        """
         path = curve.replace("\\", "/")
-        for name in self.reasons:
-            end = name.replace("\\", "/")
-            if path == end or path.endswith(f"/{end}") or fnmatchcase(path, f"*/{end}"):
-                return name
-            if fnmatchcase(path, end):
+        parts = path.split("/")
+        for start in range(len(parts)):
+            if (end := "/".join(parts[start:])) in self._literal:
+                return self._literal[end]
+        for name in self._patterns:
+            if fnmatchcase(path, name) or fnmatchcase(path, f"*/{name}"):
                 return name
         return None
 

@@ -44,7 +44,7 @@ NUMBERS = {
     "failed_checks": "1",
     "messages": "1",
 }
-"""Unit of each number of a fit that is not a parameter; of checks and messages it is their count."""
+"""Unit of each number of a fit that is not a parameter; checks and messages are counted."""
 _DERIVED = {"youngs_modulus": "Pa"}
 _ENDS = ("low", "high", "bound")
 

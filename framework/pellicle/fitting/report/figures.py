@@ -14,7 +14,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 from pellicle.fitting.fit import Fit
-from pellicle.fitting.many import ManyFits, Row
+from pellicle.fitting.many import ManyFits
 from pellicle.fitting.parameters import (
     CONTACT_POINT,
     MODULUS,
@@ -25,6 +25,7 @@ from pellicle.fitting.parameters import (
     Parameter,
 )
 from pellicle.fitting.pooled import PooledFit
+from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
 from pellicle.fitting.statistics.profile import Estimate
 from pellicle.report.plotting import save_figure as save_drawing

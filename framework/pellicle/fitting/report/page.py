@@ -13,8 +13,9 @@ import numpy as np
 from pellicle.config.describe import inputs
 from pellicle.files import atomic_write
 from pellicle.fitting.fit import Fit
-from pellicle.fitting.many import FITTED, ManyFits, Row
+from pellicle.fitting.many import FITTED, ManyFits
 from pellicle.fitting.pooled import PooledFit
+from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.result import as_json
 from pellicle.fitting.statistics.profile import CONFIDENCE
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
