@@ -74,6 +74,14 @@ def fit(
             help='Speed where a file holds no time: "2 um/s"; repeat it to give one for each file.'
         ),
     ] = None,
+    columns: Annotated[
+        str | None,
+        typer.Option(
+            help="What columns of other names are, with their units, by name, number or path in "
+            'the file: "Z = extension nm, Defl = deflection nm". Roles: position, depth, height, '
+            "extension; force, deflection; time; curve.",
+        ),
+    ] = None,
     pool: Annotated[
         bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
     ] = False,
@@ -161,6 +169,7 @@ def fit(
         spring_constant=spring_constant,
         sensitivity=sensitivity,
         speed=speed[0] if speed and len(speed) == 1 else speed or None,
+        columns=columns,
         pool=pool or None,
         contact_points=contact_points or None,
         accept=tuple(accept) if accept else None,

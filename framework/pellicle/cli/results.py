@@ -29,11 +29,12 @@ def print_steps(result: Result) -> None:
 
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    shown = {"depth", "force", *areas, *names_of("other")}
+    shown = {"time", "depth", "force", *areas, *names_of("other")}
     loading = [name for name in result.configuration["loading"] if name in data]
     requested = [name for name in (*loading, "stiffness") if name in {*data} - shown]
     requested = [*dict.fromkeys(reversed(requested))][::-1]
-    names = ["depth", "force", *areas, *requested, "iterations"]
+    time = ["time"] if "time" in data else []
+    names = [*time, "depth", "force", *areas, *requested, "iterations"]
     coarse = dict(result.coarse())
     numbers = data["step"].values.tolist()
     converged = dict(zip(numbers, data["converged"].values.tolist(), strict=True))
@@ -63,10 +64,11 @@ def print_path(result: Result) -> None:
     """Print the events on the path and its work, where there is an interaction."""
     import math
 
-    from pellicle.results.variables import VARIABLES
+    from pellicle.results.variables import VARIABLES, names_of
     from pellicle.units import readable
 
-    if summary := result.path_summary:
+    events = names_of("path")
+    if summary := {n: value for n, value in result.path_summary.items() if n in events}:
         typer.echo("path:")
         rows = [
             {
@@ -77,6 +79,21 @@ def print_path(result: Result) -> None:
             for name, value in summary.items()
         ]
         print_table(["name", "value", "meaning"], rows)
+
+
+def print_oscillations(result: Result) -> None:
+    """Print a row for each oscillation on the path."""
+    from dataclasses import asdict
+
+    from pellicle.results.variables import VARIABLES, names_of
+
+    if rows := [asdict(oscillation) for oscillation in result.oscillations]:
+        typer.echo("oscillations:")
+        names = names_of("oscillation")
+        units = {name: VARIABLES[name].unit for name in names}
+        heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
+        lines = [{name: f"{value:.6g}" for name, value in row.items()} for row in rows]
+        print_table(list(names), lines, heads)
 
 
 def _print_steps(data: xr.Dataset, names: list[str], texts: dict[str, list[str]]) -> None:

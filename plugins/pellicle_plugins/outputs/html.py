@@ -115,7 +115,7 @@ class Html(Output):
             result = Result(data)
             sections = [
                 Section("Status", [_status(result)]),
-                Section("Results", [*_steps(data), *_path(result)]),
+                Section("Results", [*_steps(data), *_path(result), *_oscillations(result)]),
                 Section("Maps", [self._maps_of_steps(result, Grid(**run["grid"]))]),
                 Section("Curves", _pictures_of(result)),
                 Section("Inputs", [_inputs(list(inputs(run)))]),
@@ -267,14 +267,30 @@ def _path(result: Result) -> list[Table]:
     rows: list[list[str | Cell]] = [
         [name.replace("_", " "), _shown(value, VARIABLES[name].unit), VARIABLES[name].meaning]
         for name, value in result.path_summary.items()
+        if name in names_of("path")
     ]
     columns = [Column(head, words=True) for head in ("path", "value", "meaning")]
     caption = "Events on the path, to a step, and its work."
     return [Table(caption, columns, rows)] if rows else []
 
 
+def _oscillations(result: Result) -> list[Table]:
+    """Return the numbers of each oscillation, where a leg oscillates."""
+    names = names_of("oscillation")
+    columns = [
+        Column(name.replace("_", " "), meaning=VARIABLES[name].meaning, words=True)
+        for name in names
+    ]
+    rows: list[list[str | Cell]] = [
+        [_shown(getattr(oscillation, name), VARIABLES[name].unit) for name in names]
+        for oscillation in result.oscillations
+    ]
+    caption = "Response over the last whole cycle of each oscillation."
+    return [Table(caption, columns, rows)] if rows else []
+
+
 def _paths(table: xr.Dataset, runs: list[xr.Dataset]) -> list[Table]:
-    """Return the numbers of the path of each run, where there is an interaction."""
+    """Return the numbers of the path of each run, where there is an interaction or oscillation."""
     names = [
         str(name)
         for name, variable in table.data_vars.items()
@@ -290,7 +306,8 @@ def _paths(table: xr.Dataset, runs: list[xr.Dataset]) -> list[Table]:
         texts = ["" if v != v else _text(v, factor) for v, factor in values]
         rows.append([str(run["run"].item()), *texts])
     heads = [Column("run", words=True), *(column for _, column, _ in columns)]
-    return [Table("The path of each run: its events, to a step, and its work.", heads, rows)]
+    caption = "The path of each run: events, to a step, and work; the last oscillation."
+    return [Table(caption, heads, rows)]
 
 
 def _shown(value: float, unit: str) -> str:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
@@ -55,10 +56,8 @@ def read(path: Path, calibration: Calibration, segment: str) -> Mapping[str, Cur
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
 
-    overrides = {
-        name.replace("_", " "): value
-        for name, value in calibration.model_dump(exclude_none=True, exclude={"speed"}).items()
-    }
+    given = {_SPRING: calibration.spring_constant, "sensitivity": calibration.sensitivity}
+    overrides = {name: value for name, value in given.items() if value is not None}
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
     with warnings.catch_warnings(record=True) as caught:
@@ -161,7 +160,17 @@ def _curve(
         # The first and the last segment are the same if there is only one.
         segments = np.asarray(data["segment"])
         rows = segments == (segments.min() if segment == "approach" else segments.max())
-    return Curve(-tip[rows], force[rows], stiffness=stiffness, site=_site(metadata))
+    time = _time(data, rows)
+    return Curve(-tip[rows], force[rows], stiffness=stiffness, time=time, site=_site(metadata))
+
+
+def _time(data: Mapping[str, Any], rows: Any) -> Array | None:
+    """Return the time [s]; None where the file holds none that grows."""
+    if "time" not in data:
+        return None
+    time = np.asarray(data["time"], dtype=float)[rows]
+    steps = np.diff(time)
+    return time if np.isfinite(steps).all() and (steps >= 0).all() and steps.any() else None
 
 
 def _site(metadata: Mapping[str, Any]) -> Site | None:
@@ -180,7 +189,7 @@ def _site(metadata: Mapping[str, Any]) -> Site | None:
 def _axis(metadata: Mapping[str, Any], axis: str) -> Axis:
     """Return the positions along one edge of a map, whose size includes half a pixel beyond."""
     centre, size = (_length(metadata.get(f"grid {name} {axis}")) for name in ("center", "size"))
-    count = int(metadata.get(f"grid shape {axis}"))
+    count = int(metadata.get(f"grid shape {axis}", 0))
     if count < 1 or size <= 0:
         raise ValueError("the grid has no extent")
     pitch = size / count
