@@ -136,9 +136,10 @@ def judge(
     whole = [row for row in rows if row["accepted"]]
     if rows and not whole:
         notes.append(f"none of {len(rows)} curves was accepted")
-    elif len(whole) < sum("reduced_modulus" in row for row in rows):
-        lost = sum("reduced_modulus" in row for row in rows) - len(whole)
-        notes.append(f"{lost} fitted curves were rejected; the table says why")
+    elif len(whole) < sum(MODULUS.name in row for row in rows):
+        lost = sum(MODULUS.name in row for row in rows) - len(whole)
+        curves = "curve was" if lost == 1 else "curves were"
+        notes.append(f"{lost} fitted {curves} rejected; the table says why")
     for group in dict.fromkeys(row.get("group", "") for row in whole):
         members = [row for row in whole if row.get("group", "") == group]
         for row in outliers(members):
@@ -147,8 +148,8 @@ def judge(
         few = [row["curve"] for row in rows if row["outlier"]]
         more = f" and {count - 5} more" if count > 5 else ""
         notes.append(
-            f"{count} of {len(whole)} accepted curves have a modulus that stands out from its "
-            f"group, and are kept: {', '.join(few[:5])}{more}"
+            f"the modulus of {count} of {len(whole)} accepted curves stands out from that of the "
+            f"others in the group; nothing was left out: {', '.join(few[:5])}{more}"
         )
     return notes
 

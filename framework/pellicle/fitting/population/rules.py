@@ -137,7 +137,7 @@ class Rule:
             number = numbers[name]
             text = "unknown" if np.isnan(number) else readable(number, known[name], 4)
             texts.append(f"{name} is {text}")
-        return f"{self.text} does not hold ({', '.join(texts)})"
+        return f"{', '.join(texts)}, against {self.text}"
 
 
 def _quantity(side: str) -> tuple[float, str] | None:

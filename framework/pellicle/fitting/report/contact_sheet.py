@@ -84,7 +84,7 @@ def _cell(axes: Axes, x: float, y: float, row: Row, sketch: Sketch | None) -> No
     lines = [
         (0.09, _shortened(str(row["curve"]), _LETTERS, end=False), "black"),
         (0.16, _numbers(row), "black"),
-        (0.23, _shortened(str(row["reason"]), _LETTERS + 8, end=True), "C3"),
+        (0.23, _shortened(str(row["reason"]), _LETTERS + 16, end=True), "C3"),
     ]
     for down, text, shade in lines:
         # A name may hold dollars, which are formulas to matplotlib.

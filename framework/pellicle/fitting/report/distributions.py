@@ -22,6 +22,8 @@ _BINS = 5, 40
 """Least and greatest number of bins."""
 _GROUPS = 10
 """Number of groups with a colour and a line of their own; the others share the last."""
+_DECADE = 10.0
+"""Greatest over least value beyond which an axis is logarithmic."""
 _RASTERISED = 1000
 """Number of points beyond which they are drawn as pixels in vector figures."""
 
@@ -63,9 +65,9 @@ def _histogram(
     values, name = _values(rows, parameter)
     low, high = float(values.min()), float(values.max())
     number = int(np.clip(np.sqrt(values.size) * 2, *_BINS))
-    if parameter.logarithmic and high > low:
+    if parameter.logarithmic and high > _DECADE * low:
         bins = np.geomspace(low, high, number + 1)
-        axes.set_xscale("log")
+        _logarithmic(axes)
     else:
         bins = np.linspace(low, high if high > low else low + (abs(low) or 1.0), number + 1)
     parts = [values[kinds == kind] for kind in range(len(labels))]
@@ -84,6 +86,16 @@ def _scatter(axes: Axes, rows: Sequence[Row], kinds: Array) -> None:
         axes.plot(modulus[chosen], tension[chosen], "o", color=f"C{kind}", **style)
     axes.plot(modulus[outlier], tension[outlier], "o", mfc="none", mec="C3", markersize=8)
     axes.set(xlabel=modulus_label, ylabel=tension_label)
-    if modulus.max() > 10 * modulus.min():
-        axes.set_xscale("log")
+    if modulus.max() > _DECADE * modulus.min():
+        _logarithmic(axes)
     axes.grid(alpha=0.3)
+
+
+def _logarithmic(axes: Axes) -> None:
+    """Make the horizontal axis logarithmic, with plain numbers."""
+    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
+
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
