@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal
 
@@ -12,6 +13,7 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.report.vtk import array, base64_of, element, encoded, file_of, rows_of, writer
+from pellicle.results.path import has_times
 from pellicle.results.variables import FIELDS, WALL_PRESSURE
 
 if TYPE_CHECKING:
@@ -24,7 +26,8 @@ class Vtk(Output):
     The .vts files are structured grids of the cell centres. The surface lies at z = −displacement,
     so the solid is below it, and all fields are point data, with the wall pressure where there is
     an interaction; the numbers of the step are field data.
-    The .pvd file, which lists the steps in order, opens them all.
+    The .pvd file, which lists the steps in order, opens them all; where steps have times, these are
+    the time of ParaView.
     """
 
     type: Literal["vtk"] = "vtk"
@@ -43,10 +46,11 @@ class Vtk(Output):
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the list of the steps; return all files."""
-        files = {number: _file(stem, number) for number in runs.table["step"].values.tolist()}
-        path = Path(f"{stem}.pvd")
-        _write_list({number: file.name for number, file in files.items()}, path)
-        return (*files.values(), path)
+        table, path = runs.table, Path(f"{stem}.pvd")
+        files = [_file(stem, number) for number in table["step"].values.tolist()]
+        times = table["time"].values if has_times(table) else table["step"].values
+        _write_list(zip(_growing(times.tolist()), files, strict=True), path)
+        return (*files, path)
 
 
 def _file(stem: Path, number: int) -> Path:
@@ -85,11 +89,22 @@ def _write_step(step: xr.Dataset, path: Path) -> None:
                 array(xml, "Points", np.dtype(float), base64_of(blocks), NumberOfComponents="3")
 
 
-def _write_list(steps: Mapping[int, str], path: Path) -> None:
-    """Write the list of the files of the steps."""
+def _growing(times: Iterable[float]) -> Iterator[float]:
+    """Yield the times, those that do not grow raised to the next number.
+
+    ParaView shows the files of one time together, so of a jump it would show both ends at once.
+    """
+    last = -math.inf
+    for time in times:
+        last = time if time > last else math.nextafter(last, math.inf)
+        yield last
+
+
+def _write_list(steps: Iterable[tuple[float, Path]], path: Path) -> None:
+    """Write the list of the files of the steps, each with its time."""
     with writer(path) as xml, file_of(xml, "Collection"):
-        for index, name in steps.items():
-            with element(xml, "DataSet", timestep=str(index), file=name):
+        for time, file in steps:
+            with element(xml, "DataSet", timestep=repr(time), file=file.name):
                 pass
 
 
