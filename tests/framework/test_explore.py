@@ -190,5 +190,5 @@ def test_sliders_change_the_curves(server: Server, browser: Chrome, start: pl.Ru
         "return models.find(m => m.type === 'Div' && m.visible && m.text.includes('5 mN'))?.text"
     )
     assert "N/m" in message
-    entries = browser.get_log("browser")
+    entries: list[Any] = browser.get_log("browser")  # type: ignore[no-untyped-call]
     assert not [entry for entry in entries if entry["level"] == "SEVERE"]

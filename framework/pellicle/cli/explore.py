@@ -71,9 +71,9 @@ def _measured(path: Path) -> Measured:
     from pellicle.explore.page import Measured
     from pellicle.fitting.curves.columns import Calibration
     from pellicle.fitting.curves.curve import clean
-    from pellicle.fitting.curves.readers import gather
+    from pellicle.fitting.curves.readers import SourceStream, gather
 
-    source, *others = gather(path, "approach", Calibration(), {})
+    source, *others = SourceStream(gather(path, "approach", Calibration(), {}))
     if others:
         raise ConfigError(f"holds {1 + len(others)} curves; give a file with one", "--curve")
     if isinstance(source.curve, PellicleError):

@@ -39,8 +39,8 @@ link.download = "explored.toml";
 link.click();
 setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 """
-_ERROR = {"color": "#b00020"}
-_ANSWER = {"font-size": "1.1rem"}
+_ERROR: dict[str, str | None] = {"color": "#b00020"}
+_ANSWER: dict[str, str | None] = {"font-size": "1.1rem"}
 
 
 class Measured(NamedTuple):
