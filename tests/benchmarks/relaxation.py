@@ -18,7 +18,7 @@ import argparse
 import csv
 import time
 import warnings
-from itertools import pairwise, product
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -107,11 +107,9 @@ def print_punch() -> None:
     expected = np.array([float(row["P_over_Einf_a_delta"]) for row in rows])
     print("\n| cells along 8 a | " + " | ".join(f"t = {TIMES[n]:g}" for n in wanted) + " |")
     print("|" + " --- |" * (1 + len(rows)))
-    forces = {points: punch(points)[wanted] for points in (62, 112)}
-    for few, many in pairwise(forces):
-        forces[-many] = (many * forces[many] - few * forces[few]) / (many - few)
-    for points, force in forces.items():
-        name = str(points) if points > 0 else "extrapolated"
+    forces = {str(points): punch(points)[wanted] for points in (62, 112)}
+    forces["extrapolated"] = (112 * forces["112"] - 62 * forces["62"]) / (112 - 62)
+    for name, force in forces.items():
         print(f"| {name} | " + " | ".join(f"{e:+.2%}" for e in force / expected - 1) + " |")
 
 
