@@ -28,8 +28,10 @@ from .executor import Workers as Workers
 from .indenter import Footprint as Footprint
 from .indenter import ForceCurve as ForceCurve
 from .indenter import HasForceCurve as HasForceCurve
+from .indenter import HasLayerForceCurve as HasLayerForceCurve
 from .indenter import Indenter as Indenter
 from .indenter import IsShallowLimit as IsShallowLimit
+from .indenter import LayerForceCurve as LayerForceCurve
 from .interaction import Interaction as Interaction
 from .kernel import HasRelaxation as HasRelaxation
 from .kernel import HasTimeSpan as HasTimeSpan

@@ -1,15 +1,16 @@
-"""Indenters of revolution whose force curve is interpolated from master curves."""
+"""Indenters of revolution whose force curves are interpolated between exact solutions."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
 
 from pellicle.arrays import Array
-from pellicle.components import ForceCurve, Indenter
+from pellicle.components import ForceCurve, Indenter, LayerForceCurve
+from pellicle_plugins.analytic.layer_curves import Layer, Profile, Punch
 
 
 class Axisymmetric(Indenter):
-    """An indenter of revolution with a master curve of the axisymmetric equation."""
+    """An indenter of revolution with curves of the axisymmetric equation."""
 
     @property
     def depth_limit(self) -> float:
@@ -20,5 +21,21 @@ class Axisymmetric(Indenter):
         """Return P/E* and its partial derivatives at depths [m] and s = 2τ₀/E* [m]."""
         return self._master_curve(depth, length)
 
+    def layer_depth_limit(self, thickness: float, poissons_ratio: float) -> float:
+        """Return the depth [m] up to which the force curve holds on a bonded layer."""
+        limit = self._layer_curves().depth_limit(thickness, poissons_ratio)
+        return min(limit, self.depth_limit)
+
+    def layer_force_curve(
+        self, depth: Array, length: float, thickness: float, poissons_ratio: float
+    ) -> LayerForceCurve:
+        """Return P/E* and its partial derivatives on a bonded layer, 0 ≤ ν ≤ ½."""
+        layer = Layer(length, thickness, poissons_ratio)
+        return self._layer_curves().curve(depth, layer)
+
     @abstractmethod
     def _master_curve(self, depth: Array, length: float) -> ForceCurve: ...
+
+    @abstractmethod
+    def _layer_curves(self) -> Profile | Punch:
+        """Return the curves of the indenter on bonded layers."""
