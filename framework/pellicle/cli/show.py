@@ -13,6 +13,7 @@ from .results import (
     exit_by_status,
     print_contact,
     print_origin,
+    print_oscillations,
     print_path,
     print_runs,
     print_steps,
@@ -40,6 +41,7 @@ def show(
     print_steps(result)
     print_contact(result)
     print_path(result)
+    print_oscillations(result)
     exit_by_convergence(result)
     if done < total:
         typer.echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)

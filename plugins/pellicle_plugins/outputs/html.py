@@ -49,7 +49,7 @@ from pellicle.results.result import Result, first_message
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import VARIABLES, WALL_PRESSURE, names_of
-from pellicle.studies.summary import coarse, failures, progress_of, reasons, runs_of, steep
+from pellicle.studies.summary import caveats, coarse, failures, progress_of, reasons, runs_of
 from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ class Html(Output):
             result = Result(data)
             sections = [
                 Section("Status", [_status(result)]),
-                Section("Results", [*_steps(data), *_path(result)]),
+                Section("Results", [*_steps(data), *_path(result), *_oscillations(result)]),
                 Section("Maps", [self._maps_of_steps(result, Grid(**run["grid"]))]),
                 Section("Curves", _pictures_of(result)),
                 Section("Inputs", [_inputs(list(inputs(run)))]),
@@ -243,11 +243,14 @@ def _status(result: Result) -> Notice:
     if steep := result.steep():
         sentences.append(f"In {len(steep)} of {done} slopes in contact are beyond the theory.")
         details.append(f"S{first_message(steep)[1:]}")
+    if cramped := result.cramped():
+        sentences.append(f"In {len(cramped)} of {done} the domain is small for this solid.")
+        details.append(f"S{first_message(cramped)[1:]}")
     return Notice(" ".join(sentences), not details and done == total, details)
 
 
 def _status_of_study(table: xr.Dataset, count: int) -> Notice:
-    failed, warnings = failures(table), [*coarse(table), *steep(table)]
+    failed, warnings = failures(table), [*coarse(table), *caveats(table)]
     if not failed:
         return Notice(f"Every step of all {count} runs converged.", not warnings, warnings)
     return Notice(f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings])
@@ -267,14 +270,30 @@ def _path(result: Result) -> list[Table]:
     rows: list[list[str | Cell]] = [
         [name.replace("_", " "), _shown(value, VARIABLES[name].unit), VARIABLES[name].meaning]
         for name, value in result.path_summary.items()
+        if name in names_of("path")
     ]
     columns = [Column(head, words=True) for head in ("path", "value", "meaning")]
     caption = "Events on the path, to a step, and its work."
     return [Table(caption, columns, rows)] if rows else []
 
 
+def _oscillations(result: Result) -> list[Table]:
+    """Return the numbers of each oscillation, where a leg oscillates."""
+    names = names_of("oscillation")
+    columns = [
+        Column(name.replace("_", " "), meaning=VARIABLES[name].meaning, words=True)
+        for name in names
+    ]
+    rows: list[list[str | Cell]] = [
+        [_shown(getattr(oscillation, name), VARIABLES[name].unit) for name in names]
+        for oscillation in result.oscillations
+    ]
+    caption = "Response over the last whole cycle of each oscillation."
+    return [Table(caption, columns, rows)] if rows else []
+
+
 def _paths(table: xr.Dataset, runs: list[xr.Dataset]) -> list[Table]:
-    """Return the numbers of the path of each run, where there is an interaction."""
+    """Return the numbers of the path of each run, where there is an interaction or oscillation."""
     names = [
         str(name)
         for name, variable in table.data_vars.items()
@@ -290,7 +309,8 @@ def _paths(table: xr.Dataset, runs: list[xr.Dataset]) -> list[Table]:
         texts = ["" if v != v else _text(v, factor) for v, factor in values]
         rows.append([str(run["run"].item()), *texts])
     heads = [Column("run", words=True), *(column for _, column, _ in columns)]
-    return [Table("The path of each run: its events, to a step, and its work.", heads, rows)]
+    caption = "The path of each run: events, to a step, and work; the last oscillation."
+    return [Table(caption, heads, rows)]
 
 
 def _shown(value: float, unit: str) -> str:

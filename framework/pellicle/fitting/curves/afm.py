@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError, StorageError
 
 from .columns import Calibration
@@ -51,10 +52,8 @@ def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve 
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
 
-    overrides = {
-        name.replace("_", " "): value
-        for name, value in calibration.model_dump(exclude_none=True).items()
-    }
+    given = {_SPRING: calibration.spring_constant, "sensitivity": calibration.sensitivity}
+    overrides = {name: value for name, value in given.items() if value is not None}
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
     curves: dict[str, Curve | PellicleError] = {}
@@ -123,8 +122,17 @@ def _curve(
         bending = force / Calibration(spring_constant=stiffness).required_spring_constant()
         tip = np.asarray(data[height], dtype=float) + bending
     rows: Any = slice(None)
-    if "segment" in data:
+    if "segment" in data and segment != "both":
         # The first and the last segment are the same if there is only one.
         segments = np.asarray(data["segment"])
         rows = segments == (segments.min() if segment == "approach" else segments.max())
-    return Curve(-tip[rows], force[rows], stiffness=stiffness)
+    return Curve(-tip[rows], force[rows], stiffness=stiffness, time=_time(data, rows))
+
+
+def _time(data: Mapping[str, Any], rows: Any) -> Array | None:
+    """Return the time [s]; None where the file holds none that grows."""
+    if "time" not in data:
+        return None
+    time = np.asarray(data["time"], dtype=float)[rows]
+    steps = np.diff(time)
+    return time if np.isfinite(steps).all() and (steps >= 0).all() and steps.any() else None
