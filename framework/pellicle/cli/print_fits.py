@@ -34,10 +34,13 @@ def print_fits(rows: list[dict[str, Any]]) -> None:
     """Print a line for each curve; the table in the folder has their sentences."""
     from pellicle.fitting.result import interval_text
 
+    columns = {"reduced_modulus": "Pa", "tension": "N/m", "thickness": "m", "contact_point": "m"}
+    if not any("thickness" in row for row in rows):
+        del columns["thickness"]
     lines = []
     for row in rows:
         line = {"curve": row["curve"]}
-        for name, unit in (("reduced_modulus", "Pa"), ("tension", "N/m"), ("contact_point", "m")):
+        for name, unit in columns.items():
             estimate = row.get(name)
             line[f"{name} [{unit}]"] = f"{estimate['value']:.4g}" if estimate else ""
             if name != "contact_point":

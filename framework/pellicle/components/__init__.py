@@ -36,6 +36,7 @@ from .interaction import Interaction as Interaction
 from .kernel import HasRelaxation as HasRelaxation
 from .kernel import HasTimeSpan as HasTimeSpan
 from .kernel import Kernel as Kernel
+from .kernel import MayBeBondedLayer as MayBeBondedLayer
 from .output import Output as Output
 from .output import Runs as Runs
 from .prescription import Prescription as Prescription

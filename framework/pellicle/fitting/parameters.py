@@ -55,6 +55,8 @@ MODULUS = Parameter("reduced_modulus", "Pa", logarithmic=True, shared=True, plau
 """E*."""
 TENSION = Parameter("tension", "N/m", minimum=0.0, shared=True, plausible=(0.0, 10.0))
 """τ₀."""
+THICKNESS = Parameter("thickness", "m", logarithmic=True, shared=True, plausible=(1e-9, 1.0))
+"""h of a layer."""
 OFFSET = Parameter("offset", "N")
 """Force of the baseline at the first position."""
 SLOPE = Parameter("slope", "N/m")

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -64,14 +65,14 @@ def _layer(shape: Shape) -> Array:
                 change[n, i, j] = on_half_space(shape, solved) - without
     flat = change.reshape(RATIO_NODES, -1)
     coefficients = chebyshev.chebfit(chebyshev.chebpts1(RATIO_NODES), flat, RATIO_NODES - 1)
-    return np.asarray(coefficients).reshape(change.shape)
+    return np.asarray(coefficients, dtype=np.float64).reshape(change.shape)
 
 
 def main() -> None:
     """Solve all nodes and write the file."""
-    tables = {f"{shape}_half_space": _half_space(shape) for shape in SHAPES}
-    layers = {f"{shape}_layer": _layer(shape).astype(np.float32) for shape in SHAPES}
-    np.savez_compressed(Path(str(FILE)), **tables, **layers)
+    tables: dict[str, Any] = {f"{shape}_half_space": _half_space(shape) for shape in SHAPES}
+    tables |= {f"{shape}_layer": _layer(shape).astype(np.float32) for shape in SHAPES}
+    np.savez_compressed(Path(str(FILE)), **tables)
 
 
 if __name__ == "__main__":

@@ -38,9 +38,12 @@ LENGTH_SCALE = 3e-4
 LENGTHS: Array = LENGTH_SCALE * np.expm1(np.linspace(0.0, np.log1p(3e3 / LENGTH_SCALE), 24))
 """Nodes s/h."""
 WIDEST = 10.0
-"""Largest a/h."""
+"""Largest a/h at which the curve holds."""
 CONFINEMENT_SCALE = 1e-3
-_COUNT = 30
+_LAST, _COUNT = 14.0, 33
+"""Last node a/h and number of nodes; splines err most at their end."""
+_POINTS = 50
+"""Contact radii on the curve of an indenter that ends."""
 HALF_SPACE_SCALE = 1e-3
 HALF_SPACE_LENGTHS: Array = HALF_SPACE_SCALE * np.expm1(np.arange(0.0, 23.1, 0.15))
 """Nodes s/a."""
@@ -83,48 +86,37 @@ class Profile:
 
         With tension it holds to a greater depth.
         """
-        nodes = _nodes(self, Layer(0.0, thickness, poissons_ratio))
-        return min(float(nodes.depth[-1]), thickness)
+        widest = np.array([min(WIDEST * thickness, _FILLED * self.limit)])
+        nodes = _nodes(self, Layer(0.0, thickness, poissons_ratio), widest)
+        return min(float(nodes.depth[0]), thickness)
 
     def curve(self, depth: Array, layer: Layer) -> LayerForceCurve:
         """Return P/E* and its derivatives at depths [m] of shape (n,), 0 without contact."""
-        nodes = _nodes(self, layer)
-        unit = self.scale * (CONFINEMENT_SCALE * layer.thickness) ** (1 / self.exponent)
-
-        def stretched(depth: Array) -> tuple[Array, Array]:
-            """Return the variable in which splines are smooth, and its derivative by depth."""
-            power = (depth / unit) ** self.exponent
-            return np.log1p(power), self.exponent * power / (1 + power) / depth
-
-        def spline(values: Array) -> BSpline:
-            # The change of log P vanishes with the depth.
-            return make_interp_spline(np.append(0.0, x), np.append(0.0, values), 5)
-
-        x, x_rate = stretched(nodes.depth)
-        reference = self.half_space(nodes.depth, layer.length)
-        change = spline(nodes.log_force - np.log(reference.force))
-        slope = reference.by_depth / reference.force + x_rate * change(x, 1)
-        by_length, by_thickness = (
-            rate - slope * depth_rate
-            for rate, depth_rate in zip(nodes.log_force_by, nodes.depth_by, strict=True)
-        )
+        change, rates, last = _splines(self, layer)
         touching = depth > 0
         d = np.maximum(depth[touching], LEAST_DEPTH)
-        at, at_rate = stretched(d)
-        inside = np.minimum(at, x[-1])
-        rate = change(inside, 1)
-        factor = np.exp(change(inside) + rate * (at - inside))
+        x, x_rate = self.stretched(d, layer.thickness)
+        inside = np.minimum(x, last)
+        slope = change(inside, 1)
+        factor = np.exp(change(inside) + slope * (x - inside))
         base = self.half_space(d, layer.length)
         force = base.force * factor
-        of_length = spline(by_length - reference.by_length / reference.force)(inside)
+        by_length, by_thickness = (rates(inside) + rates(inside, 1) * (x - inside)[:, None]).T
         out = np.zeros((4, depth.size))
         out[:, touching] = (
             force,
-            base.by_depth * factor + force * rate * at_rate,
-            base.by_length * factor + force * of_length,
-            force * spline(by_thickness)(inside),
+            base.by_depth * factor + force * slope * x_rate,
+            base.by_length * factor + force * by_length,
+            force * by_thickness,
         )
         return LayerForceCurve(*out)
+
+    def stretched(self, depth: Array, thickness: float) -> tuple[Array, Array]:
+        """Return the variable x in which a change of log P is smooth, and dx/dδ."""
+        unit = self.scale * (CONFINEMENT_SCALE * thickness) ** (1 / self.exponent)
+        power = (depth / unit) ** self.exponent
+        rate: Array = self.exponent * power / (1 + power) / depth
+        return np.log1p(power), rate
 
 
 @dataclass(frozen=True)
@@ -182,21 +174,21 @@ def poissons_ratio_at(z: Array) -> Array:
     return ratio
 
 
-def confinements(widest: float) -> Array:
+def confinements(widest: float = _LAST, count: int = _COUNT) -> Array:
     """Return nodes a/h from 0, which is left out, to ``widest``."""
-    steps = np.arange(1, _COUNT + 1) / _COUNT
+    steps = np.arange(1, count + 1) / count
     nodes: Array = CONFINEMENT_SCALE * np.expm1(steps * np.log1p(widest / CONFINEMENT_SCALE))
     return nodes
 
 
-CONFINEMENTS = confinements(WIDEST)
+CONFINEMENTS = confinements()
 
 
 @cache
 def _odd_basis() -> tuple[Array, Array]:
     """Return points t, and the matrix from values there to coefficients of `odd_chebyshev`."""
     t = np.cos((2 * np.arange(PROFILES) + 1) * np.pi / (4 * PROFILES))
-    return t, np.linalg.inv(odd_chebyshev(t))
+    return t, np.asarray(np.linalg.inv(odd_chebyshev(t)), dtype=np.float64)
 
 
 def smooth_profile(radius: float, limit: float, abel_slope: Callable[[Array], Array]) -> Profile:
@@ -243,32 +235,34 @@ def _layer(shape: Shape, poissons_ratio: float) -> Interpolant:
 
 def _changes(shape: Shape, layer: Layer, confinement: Array) -> tuple[Array, Array, Array]:
     """Return what a layer changes at each a/h, and the derivatives by s/h and by a/h."""
-    over_lengths = _layer(shape, layer.poissons_ratio)
-    both = np.concatenate(
-        [part[0] for part in over_lengths(np.array([layer.length / layer.thickness]))], axis=1
-    )
+    length, last = layer.length / layer.thickness, float(LENGTHS[-1])
+    change, by_length = _layer(shape, layer.poissons_ratio)(np.array([min(length, last)]))
+    # Beyond the last node tension carries nearly all of the force; the change is kept constant.
+    both = np.concatenate([change[0], by_length[0] * (length <= last)], axis=1)
     # Thick layers change force and depth in proportion to a/h.
     inside = np.maximum(confinement, CONFINEMENTS[0])
     share = (confinement / inside)[:, None]
     value, slope = stretched_spline(CONFINEMENTS, both, CONFINEMENT_SCALE)(inside)
     slope = np.where(share < 1, value / CONFINEMENTS[0], slope)
-    change, by_length = np.split(share * value, 2, axis=1)
-    return change, by_length, np.split(slope, 2, axis=1)[0]
+    value *= share
+    changes, by_lengths = np.split(value, 2, axis=1)
+    return changes, by_lengths, np.split(slope, 2, axis=1)[0]
 
 
 def _radii(limit: float, thickness: float) -> Array:
     """Return contact radii [m], the denser the nearer to the end of the profile."""
-    widest = min(WIDEST * thickness, _FILLED * limit)
+    if limit == np.inf:
+        return thickness * CONFINEMENTS
+    widest = min(_LAST * thickness, _FILLED * limit)
     # Depth and force are smooth in ξ = log(a / (1 − a/L)), up to a = L.
-    scale = thickness * confinements(widest / (1 - widest / limit) / thickness)
+    scale = thickness * confinements(widest / (1 - widest / limit) / thickness, _POINTS)
     radii: Array = scale / (1 + scale / limit)
     return radii
 
 
-def _nodes(profile: Profile, layer: Layer) -> _Nodes:
-    """Return contacts of increasing radii, up to the widest that is tabulated."""
+def _nodes(profile: Profile, layer: Layer, a: Array) -> _Nodes:
+    """Return the contacts of radii a [m], of shape (k,)."""
     length, thickness = layer.length, layer.thickness
-    a = _radii(profile.limit, thickness)
     confinement = a / thickness
     base, base_rate = _half_space(profile.shape)(length / a)
     change, by_length, by_confinement = _changes(profile.shape, layer, confinement)
@@ -295,3 +289,25 @@ def _nodes(profile: Profile, layer: Layer) -> _Nodes:
         2 * np.log(a) + value[:, 0] + np.log(share),
         (by[0][:, 0] + force(by[0], 0.0) / share, by[1][:, 0] + force(by[1], 0.0) / share),
     )
+
+
+@lru_cache(maxsize=64)
+def _splines(profile: Profile, layer: Layer) -> tuple[BSpline, BSpline, float]:
+    """Return the change of log P by the layer, its derivatives by s and h, and their last x."""
+    nodes = _nodes(profile, layer, _radii(profile.limit, layer.thickness))
+    x, x_rate = profile.stretched(nodes.depth, layer.thickness)
+    half_space = profile.half_space(nodes.depth, layer.length)
+
+    def spline(values: Array) -> BSpline:
+        # The change vanishes with the depth.
+        padded = np.concatenate([np.zeros((1, *values.shape[1:])), values])
+        return make_interp_spline(np.append(0.0, x), padded, 5)
+
+    change = spline(nodes.log_force - np.log(half_space.force))
+    slope = half_space.by_depth / half_space.force + x_rate * change(x, 1)
+    by_length, by_thickness = (
+        rate - slope * depth_rate
+        for rate, depth_rate in zip(nodes.log_force_by, nodes.depth_by, strict=True)
+    )
+    by_length = by_length - half_space.by_length / half_space.force
+    return change, spline(np.stack([by_length, by_thickness], axis=1)), float(x[-1])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from functools import lru_cache
 
 from pellicle.arrays import Array
 from pellicle.components import ForceCurve, Indenter, LayerForceCurve
@@ -23,7 +24,7 @@ class Axisymmetric(Indenter):
 
     def layer_depth_limit(self, thickness: float, poissons_ratio: float) -> float:
         """Return the depth [m] up to which the force curve holds on a bonded layer."""
-        limit = self._layer_curves().depth_limit(thickness, poissons_ratio)
+        limit = _layer_curves(self).depth_limit(thickness, poissons_ratio)
         return min(limit, self.depth_limit)
 
     def layer_force_curve(
@@ -31,11 +32,17 @@ class Axisymmetric(Indenter):
     ) -> LayerForceCurve:
         """Return P/E* and its partial derivatives on a bonded layer, 0 ≤ ν ≤ ½."""
         layer = Layer(length, thickness, poissons_ratio)
-        return self._layer_curves().curve(depth, layer)
+        return _layer_curves(self).curve(depth, layer)
 
     @abstractmethod
     def _master_curve(self, depth: Array, length: float) -> ForceCurve: ...
 
     @abstractmethod
-    def _layer_curves(self) -> Profile | Punch:
+    def _make_layer_curves(self) -> Profile | Punch:
         """Return the curves of the indenter on bonded layers."""
+
+
+@lru_cache(maxsize=64)
+def _layer_curves(indenter: Axisymmetric) -> Profile | Punch:
+    # Splines are kept for each profile, which has to be the same object for equal indenters.
+    return indenter._make_layer_curves()

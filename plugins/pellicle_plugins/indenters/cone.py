@@ -43,7 +43,7 @@ class Cone(Axisymmetric):
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.cone(self.half_angle, depth, length)
 
-    def _layer_curves(self) -> Profile:
+    def _make_layer_curves(self) -> Profile:
         return cone_profile(self.half_angle)
 
 

@@ -31,7 +31,7 @@ class FlatPunch(Axisymmetric):
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.flat_punch(self.radius, depth, length)
 
-    def _layer_curves(self) -> Punch:
+    def _make_layer_curves(self) -> Punch:
         return Punch(self.radius)
 
 

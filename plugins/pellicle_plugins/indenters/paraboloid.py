@@ -40,7 +40,7 @@ class Paraboloid(Axisymmetric):
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.paraboloid(self.radius, depth, length)
 
-    def _layer_curves(self) -> Profile:
+    def _make_layer_curves(self) -> Profile:
         return smooth_profile(self.radius, inf, self.abel_slope)
 
     def whole_shape(self) -> Sphere:

@@ -56,7 +56,7 @@ class Sphere(Axisymmetric):
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.sphere(self.radius, depth, length)
 
-    def _layer_curves(self) -> Profile:
+    def _make_layer_curves(self) -> Profile:
         return smooth_profile(self.radius, self.radius, self.abel_slope)
 
 

@@ -81,7 +81,8 @@ def _many(rows: Sequence[Row]) -> tuple[list[Block], list[Block]]:
     models = [row["model"] for row in rows if "model" in row]
     columns: dict[Column, Sequence[str | Cell]] = {}
     columns[Column("curve", words=True)] = [row["curve"] for row in rows]
-    for name, unit in (("reduced_modulus", "Pa"), ("tension", "N/m"), ("contact_point", "m")):
+    names = {"reduced_modulus": "Pa", "tension": "N/m", "thickness": "m", "contact_point": "m"}
+    for name, unit in names.items():
         if any(name in row for row in rows):
             columns |= _intervals(name.replace("_", " "), [row.get(name) for row in rows], unit)
     verdicts = [row["status"].partition(":")[0] for row in rows]
