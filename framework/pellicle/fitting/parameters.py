@@ -31,6 +31,11 @@ class Parameter:
         """The last word of the name, for sentences."""
         return self.name.rpartition("_")[2]
 
+    @property
+    def is_length(self) -> bool:
+        """Whether it varies as a logarithm between limits that the range of positions sets."""
+        return self.logarithmic and self.unit == "m"
+
     def of_curve(self, index: int) -> Parameter:
         """Return the parameter of one curve of a pooled fit."""
         return self if self.shared else replace(self, curve=index)

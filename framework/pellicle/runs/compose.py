@@ -8,10 +8,10 @@ from pellicle.components.calls import (
     check_solver,
     check_value,
     instantaneous,
-    law_of,
     profile_of,
     target_of,
 )
+from pellicle.components.checked_law import law_of
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
 from pellicle.numerics.grid_checks import warn_of_cells, warn_of_period
