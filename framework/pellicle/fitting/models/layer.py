@@ -16,7 +16,7 @@ from .solid import Solid, layer_table
 
 ACCURACY = 1e-4
 """Relative error of the force of the shipped indenters on a layer."""
-_THICKNESSES = (0.3, 1.0, 3.0, 30.0)
+_THICKNESSES = (0.5, 2.0, 10.0, 200.0)
 """Thicknesses of the initial guesses, over the measured range of positions."""
 
 

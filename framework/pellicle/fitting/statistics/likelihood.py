@@ -20,7 +20,7 @@ REACH = np.log(100.0)
 """Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""
 _FARTHEST = 10.0
 """Largest distance of the contact point before the first position, over the range of positions."""
-_LENGTHS = (0.05, 1e3)
+_LENGTHS = (0.05, 1e6)
 """Least and largest length (thickness of a layer) over the range of positions."""
 _LARGEST_CHANGE = 20.0
 """Largest change of a logarithm in one search: beyond every interval, and exp does not overflow."""
