@@ -30,7 +30,7 @@ from pellicle.runs.lock import locked
 from pellicle.runs.progress import ProgressReporter, StudyProgress
 
 from . import table
-from .summary import coarse, failures, progress_of
+from .summary import caveats, failures, progress_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -224,7 +224,7 @@ def _execute(
             return Runs.of_study(read_only_dataset(whole), directory, study.to_json(as_given=True))
 
         written = runner.all_done(runner.writers(outputs, runs, directory / "study", first))
-    for message in (*messages, *(f"{message}; see status" for message in coarse(whole))):
+    for message in (*messages, *(f"{message}; see status" for message in caveats(whole))):
         warnings.warn(message, stacklevel=4)
     return StudyResult(whole, (*files.paths, *chain(*written)), resumed)
 
