@@ -123,7 +123,8 @@ def execute(
     """
     import scipy.fft
 
-    memory.require(run.grid, len(run.loading.values), run.solver)
+    sticks = run.interaction is not None
+    memory.require(run.grid, len(run.loading.values), run.solver, sticks=sticks)
     steps = Steps(len(run.loading.values))
     outputs = [output for output in outputs if journal and output.scope != "study"]
     files: tuple[Path, ...] = ()

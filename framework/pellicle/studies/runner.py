@@ -55,7 +55,10 @@ class RunTask:
     @property
     def memory(self) -> int:
         """Estimated peak memory of the run [bytes]."""
-        return int(min(memory.estimate(self.run.grid, self.steps, self.run.solver), sys.maxsize))
+        run = self.run
+        sticks = run.interaction is not None
+        needed = memory.estimate(run.grid, self.steps, run.solver, sticks=sticks)
+        return int(min(needed, sys.maxsize))
 
     @property
     def steps(self) -> int:
