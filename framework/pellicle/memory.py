@@ -34,13 +34,16 @@ _VERSION_2 = "memory.max", "memory.current", "inactive_file"
 _VERSION_1 = "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"
 
 
-def estimate(grid: Grid, steps: int, solver: object = None, *, sticks: bool = False) -> float:
+def estimate(
+    grid: Grid, steps: int, solver: object = None, history: float = 0.0, *, sticks: bool = False
+) -> float:
     """Return the peak memory [bytes] of a run on ``grid``, without that of the libraries.
 
     The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
     of the contact is unknown, so full contact is assumed, which takes up to a quarter more memory
-    than a small contact. A ``solver`` that is not a `HasMemory` counts as active_set; ``sticks``
-    says whether an interaction acts.
+    than a small contact. A ``solver`` that is not a `HasMemory` counts as active_set.
+    ``history`` is what a solid that relaxes needs for its memory, in arrays of the grid's shape;
+    ``sticks`` says whether an interaction acts.
     """
     try:
         cells = float(grid.points[0] * grid.points[1])
@@ -50,7 +53,7 @@ def estimate(grid: Grid, steps: int, solver: object = None, *, sticks: bool = Fa
     iterating = solver.arrays(grid) if isinstance(solver, HasMemory) else _SOLVER[grid.boundary]
     if sticks:
         iterating += _STICKS
-    arrays = operator + iterating + (_STEP + _SERIALISED) * (steps - 1)
+    arrays = operator + iterating + history + (_STEP + _SERIALISED) * (steps - 1)
     return _FIXED + 8 * cells * arrays
 
 
@@ -107,7 +110,9 @@ def _lines(path: Path) -> list[str]:
         return []
 
 
-def require(grid: Grid, steps: int, solver: object = None, *, sticks: bool = False) -> None:
+def require(
+    grid: Grid, steps: int, solver: object = None, history: float = 0.0, *, sticks: bool = False
+) -> None:
     """Refuse a run that needs more memory than is available.
 
     Raises
@@ -115,7 +120,7 @@ def require(grid: Grid, steps: int, solver: object = None, *, sticks: bool = Fal
     ConfigError
         The estimate exceeds the available memory.
     """
-    needed, limit = estimate(grid, steps, solver, sticks=sticks), available()
+    needed, limit = estimate(grid, steps, solver, history, sticks=sticks), available()
     if limit is not None and needed > limit:
         nx, ny = grid.points
         raise ConfigError(

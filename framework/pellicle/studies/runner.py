@@ -28,6 +28,7 @@ from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.lock import locked
 from pellicle.runs.progress import ProgressReporter, StudyProgress
+from pellicle.runs.relaxation import history_arrays
 
 from . import table
 from .summary import caveats, failures, progress_of
@@ -56,8 +57,8 @@ class RunTask:
     def memory(self) -> int:
         """Estimated peak memory of the run [bytes]."""
         run = self.run
-        sticks = run.interaction is not None
-        needed = memory.estimate(run.grid, self.steps, run.solver, sticks=sticks)
+        history, sticks = history_arrays(run), run.interaction is not None
+        needed = memory.estimate(run.grid, self.steps, run.solver, history, sticks=sticks)
         return int(min(needed, sys.maxsize))
 
     @property
