@@ -8,10 +8,12 @@ from .components import Executor as Executor
 from .components import Force as Force
 from .components import ForceCurve as ForceCurve
 from .components import HasForceCurve as HasForceCurve
+from .components import HasLayerForceCurve as HasLayerForceCurve
 from .components import Indenter as Indenter
 from .components import Interaction as Interaction
 from .components import IterativeSolver as IterativeSolver
 from .components import Kernel as Kernel
+from .components import LayerForceCurve as LayerForceCurve
 from .components import Output as Output
 from .components import Prescription as Prescription
 from .components import Runs as Runs
@@ -36,6 +38,7 @@ from .fitting.config import FitConfig as FitConfig
 from .fitting.fit import Fit as Fit
 from .fitting.fit import fit as fit
 from .fitting.many import fit_many as fit_many
+from .fitting.maps import fit_map as fit_map
 from .fitting.pooled import PooledCurve as PooledCurve
 from .fitting.pooled import PooledFit as PooledFit
 from .fitting.pooled import fit_pooled as fit_pooled

@@ -36,6 +36,7 @@ _EXAMPLES = {
     "m**2": "0.01 mm**2",
     "rad": "70 degree",
     "s": "1 s",
+    "Hz": "1 Hz",
 }
 _NUMBER_AND_UNIT = re.compile(
     r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)", re.DOTALL | re.IGNORECASE
@@ -93,6 +94,23 @@ def split(text: str) -> tuple[float, str] | None:
 def _is_unit(text: str) -> bool:
     """Whether a text is a product of names with powers, which pint parses quickly."""
     return len(text) <= _LONGEST_UNIT and _UNIT.fullmatch(text) is not None
+
+
+def one(unit: str) -> Any:
+    """Return 1 of a unit as a pint quantity in SI, whose arithmetic keeps dimensions.
+
+    Raises
+    ------
+    ValueError
+        The unit is unknown.
+    """
+    if _is_unit(unit):
+        try:
+            return _registry().Quantity(1.0, unit).to_base_units()
+        except Exception:
+            # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
+            pass
+    raise ValueError(f"has an unknown unit ({shown(unit)})")
 
 
 # pint takes half a millisecond for a conversion, and a study has thousands of values.

@@ -29,11 +29,12 @@ def print_steps(result: Result) -> None:
 
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    shown = {"depth", "force", *areas, *names_of("other")}
+    shown = {"time", "depth", "force", *areas, *names_of("other")}
     loading = [name for name in result.configuration["loading"] if name in data]
     requested = [name for name in (*loading, "stiffness") if name in {*data} - shown]
     requested = [*dict.fromkeys(reversed(requested))][::-1]
-    names = ["depth", "force", *areas, *requested, "iterations"]
+    time = ["time"] if "time" in data else []
+    names = [*time, "depth", "force", *areas, *requested, "iterations"]
     coarse = dict(result.coarse())
     numbers = data["step"].values.tolist()
     converged = dict(zip(numbers, data["converged"].values.tolist(), strict=True))
@@ -42,7 +43,7 @@ def print_steps(result: Result) -> None:
         for n in numbers
     ]
     _print_steps(data, names, {"status": verdicts})
-    several = {**coarse, **dict(result.steep())}
+    several = {**coarse, **dict(result.steep()), **dict(result.cramped())}
     for number, status in zip(numbers, data["status"].values.tolist(), strict=True):
         if converged[number] and status != "converged" and number not in several:
             typer.echo(f"step {number}: {for_document(status)}", err=True)
@@ -63,10 +64,11 @@ def print_path(result: Result) -> None:
     """Print the events on the path and its work, where there is an interaction."""
     import math
 
-    from pellicle.results.variables import VARIABLES
+    from pellicle.results.variables import VARIABLES, names_of
     from pellicle.units import readable
 
-    if summary := result.path_summary:
+    events = names_of("path")
+    if summary := {n: value for n, value in result.path_summary.items() if n in events}:
         typer.echo("path:")
         rows = [
             {
@@ -77,6 +79,21 @@ def print_path(result: Result) -> None:
             for name, value in summary.items()
         ]
         print_table(["name", "value", "meaning"], rows)
+
+
+def print_oscillations(result: Result) -> None:
+    """Print a row for each oscillation on the path."""
+    from dataclasses import asdict
+
+    from pellicle.results.variables import VARIABLES, names_of
+
+    if rows := [asdict(oscillation) for oscillation in result.oscillations]:
+        typer.echo("oscillations:")
+        names = names_of("oscillation")
+        units = {name: VARIABLES[name].unit for name in names}
+        heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
+        lines = [{name: f"{value:.6g}" for name, value in row.items()} for row in rows]
+        print_table(list(names), lines, heads)
 
 
 def _print_steps(data: xr.Dataset, names: list[str], texts: dict[str, list[str]]) -> None:
@@ -95,7 +112,7 @@ def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
 
 def print_runs(table: xr.Dataset) -> None:
     """Print parameters, last step and verdict of each run of a study, and its path."""
-    from pellicle.studies.summary import paths, rows, steep
+    from pellicle.studies.summary import paths, rows
 
     for caption, lines in (("", rows(table)), ("path:", paths(table))):
         if lines:
@@ -103,8 +120,6 @@ def print_runs(table: xr.Dataset) -> None:
                 typer.echo(caption)
             names = list(lines[0])
             print_table(names, lines, _heads(table, [name for name in names if name in table]))
-    for message in steep(table):
-        typer.echo(message, err=True)
 
 
 def exit_by_convergence(result: Result) -> None:
@@ -113,7 +128,7 @@ def exit_by_convergence(result: Result) -> None:
 
     for step, message in result.failures():
         typer.echo(f"step {step} did not converge: {for_document(message)}", err=True)
-    for steps in (result.coarse(), result.steep()):
+    for steps in (result.coarse(), result.steep(), result.cramped()):
         if steps:
             print_warning(first_message(steps))
     if not result.converged:

@@ -13,6 +13,7 @@ from .results import (
     exit_by_status,
     print_contact,
     print_origin,
+    print_oscillations,
     print_path,
     print_runs,
     print_steps,
@@ -27,11 +28,14 @@ def show(
     """Print the steps of a result, or the runs of a study, and its origin."""
     from pellicle.results.result import load
     from pellicle.studies.runner import is_table, read
+    from pellicle.studies.summary import caveats
 
     if is_table(results):
         table, _ = read(results)
         print_origin(table)
         print_runs(table)
+        for message in caveats(table):
+            typer.echo(message, err=True)
         exit_by_status(table)
         return
     result = load(results)
@@ -40,6 +44,7 @@ def show(
     print_steps(result)
     print_contact(result)
     print_path(result)
+    print_oscillations(result)
     exit_by_convergence(result)
     if done < total:
         typer.echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)

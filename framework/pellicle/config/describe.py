@@ -7,9 +7,12 @@ from contextlib import suppress
 from typing import Any, NamedTuple, get_args
 
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 
 from pellicle.components import Component
 from pellicle.errors import ConfigError, PluginError
+from pellicle.loading import LoadSteps
+from pellicle.model.legs import KINDS, fields_of
 from pellicle.plugins import Origin, Registered, registry
 from pellicle.units import quantity_of, readable
 
@@ -34,11 +37,10 @@ def inputs(configuration: Mapping[str, Any]) -> Iterator[Input]:
 
     Fields of components that are not installed have no unit.
     """
-    yield from _table(configuration, Run, "")
+    yield from _table(configuration, Run.model_fields, "")
 
 
-def _table(table: Mapping[str, Any], model: type[BaseModel] | None, path: str) -> Iterator[Input]:
-    fields = model.model_fields if model else {}
+def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str) -> Iterator[Input]:
     for key, value in table.items():
         info = fields.get(key)
         name = f"{path}{key}"
@@ -46,7 +48,10 @@ def _table(table: Mapping[str, Any], model: type[BaseModel] | None, path: str) -
             yield from _one(value, info.annotation if info else None, name)
         elif isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
             for index, entry in enumerate(value):
-                yield from _one(entry, info.annotation if info else None, f"{name}.{index}")
+                if info and any(isinstance(m, LoadSteps) for m in info.metadata):
+                    yield from _table(entry, _fields_of_leg(entry, info), f"{name}.{index}.")
+                else:
+                    yield from _one(entry, info.annotation if info else None, f"{name}.{index}")
         elif value not in ([], ""):
             quantity = quantity_of(info) if info else None
             text = readable(value, quantity.unit if quantity else "1")
@@ -60,13 +65,20 @@ def _one(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[Input
         if model is Loading:
             with suppress(ConfigError, PluginError):
                 model = model_of(table)
-        yield from _table(table, model, f"{name}.")
+        yield from _table(table, model.model_fields if model else {}, f"{name}.")
         return
     known = _registered(model, table["type"])
     summary, origin = (known.summary, known.origin) if known else ("", None)
     yield Input(name, str(table["type"]), summary, origin)
     inner = {key: value for key, value in table.items() if key != "type"}
-    yield from _table(inner, known.component if known else None, f"{name}.")
+    yield from _table(inner, known.component.model_fields if known else {}, f"{name}.")
+
+
+def _fields_of_leg(leg: Mapping[str, Any], info: FieldInfo) -> Mapping[str, FieldInfo]:
+    """Return the fields of a leg of the load steps described by ``info``."""
+    quantity = quantity_of(info)
+    kind = next((kind for kind in KINDS if kind.key in leg), None)
+    return fields_of(kind, quantity.unit) if kind and quantity else {}
 
 
 def _registered(model: type[BaseModel] | None, type_: object) -> Registered | None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
+    AfterValidator,
     BeforeValidator,
     Field,
     PlainSerializer,
@@ -15,12 +16,17 @@ from pydantic import (
     model_validator,
 )
 
-from pellicle.components import Executor, HasForceCurve, Indenter
+from pellicle.components import (
+    Executor,
+    HasForceCurve,
+    HasLayerForceCurve,
+    Indenter,
+)
 from pellicle.config.component_field import FromRegistry
 from pellicle.config.study import DEFAULT_EXECUTOR
 from pellicle.errors import ConfigError, shown
 from pellicle.model.from_file import FromFile, overridden
-from pellicle.model.input_path import paths_relative_to
+from pellicle.model.input_path import InputPath, paths_relative_to
 from pellicle.model.messages import nearest
 from pellicle.model.paths import replaced
 from pellicle.model.toml import read_toml
@@ -29,16 +35,21 @@ from pellicle.units import PoissonsRatio, Quantity
 
 from .curves.columns import Calibration
 from .curves.curve import LARGEST, Segment
-from .curves.readers import Curves, Source, expanded, gather
+from .curves.readers import CurveFile, Curves, Source, expanded, gather
 from .models.force_model import ForceModel, described, tension_model
+from .models.layer import FreeLayerModel, known_layer
 from .models.simulation import GRID_POINTS, Simulation
-from .models.solid import DEFAULT_KERNEL, Solid, solid
+from .models.solid import DEFAULT_KERNEL, Solid, layer_table, solid
 from .parameters import CONTACT_POINT, MODULUS, TENSION
+from .population.judgement import group_pattern
+from .population.rules import rules
 
 Baseline = Literal["none", "offset", "slope"]
 
 FIXABLE = {parameter.name: parameter for parameter in (CONTACT_POINT, MODULUS, TENSION)}
 """Parameters that can be fixed, by their names."""
+FREE = "free"
+"""Thickness that the fit determines."""
 _COMPONENTS = ("indenter", "kernel", "executor")
 
 
@@ -82,6 +93,16 @@ def _fixed(value: object) -> dict[str, float]:
     return values
 
 
+def _thickness(value: object) -> float | str:
+    """Return a thickness in m, or "free"."""
+    if value == FREE:
+        return FREE
+    try:
+        return Quantity("m", at_least=1 / LARGEST, at_most=LARGEST)(value)
+    except ValueError as error:
+        raise ConfigError(f'{error}; or "{FREE}"') from None
+
+
 def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
     """Return the content of a file with its relative paths starting from ``folder``."""
     curves, cache = data.get("curves"), data.get("cache")
@@ -117,6 +138,14 @@ class FitConfig(FromFile, Calibration):
         BeforeValidator(_component),
         Field(description="the solid without its modulus and tension; a half-space if not given"),
     ] = None
+    thickness: Annotated[
+        float | str | None,
+        PlainValidator(_thickness, json_schema_input_type=float | str | None),
+        Field(
+            description="of a layer bonded to a rigid base, in place of a half-space; "
+            f'"{FREE}" fits it. It needs poissons_ratio'
+        ),
+    ] = None
     fix: Annotated[
         dict[str, float],
         BeforeValidator(_fixed),
@@ -138,6 +167,22 @@ class FitConfig(FromFile, Calibration):
     contact_points: bool = Field(
         False, description="whether a pool gives the interval of each contact point too"
     )
+    accept: Annotated[
+        tuple[str, ...],
+        BeforeValidator(lambda value: [value] if isinstance(value, str) else value),
+        AfterValidator(rules),
+        Field(description="rules for the curves of a population, such as r_squared > 0.95"),
+    ] = ()
+    accepted: InputPath | None = Field(
+        None, description="file that names the only curves that can be accepted, one on each line"
+    )
+    rejected: InputPath | None = Field(
+        None, description="file that names curves that are rejected, one on each line, and why"
+    )
+    group_by: str = Field(
+        "",
+        description="column of a table of files, or a pattern of file names such as {group}_*.csv",
+    )
     executor: Annotated[
         Executor,
         FromRegistry(),
@@ -152,14 +197,32 @@ class FitConfig(FromFile, Calibration):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
+        group_pattern(self.group_by)
         if self.contact_points and not self.pool:
             raise ConfigError(
                 "needs pool = true; fits of single curves always have these intervals",
                 "contact_points",
             )
+        if self.thickness is not None:
+            self._solid = self._layer()
         if self.kernel is not None:
             self._solid = solid(self.kernel, self.poissons_ratio)
         return self
+
+    def _layer(self) -> Solid | None:
+        """Return the solid of a layer whose thickness is given."""
+        if self.kernel is not None:
+            raise ConfigError("cannot be given with a kernel; leave out one of them", "thickness")
+        if self.poissons_ratio is None:
+            raise ConfigError(
+                "is missing: the force on a layer depends on it as well as on the thickness; give "
+                "it, such as 0.5 for a gel",
+                "poissons_ratio",
+            )
+        if isinstance(self.thickness, str):
+            return None
+        assert self.thickness is not None
+        return solid(layer_table(self.poissons_ratio, thickness=self.thickness))
 
     @classmethod
     def from_toml(cls, path: str | Path, overrides: Iterable[str] = ()) -> Self:
@@ -225,10 +288,21 @@ class FitConfig(FromFile, Calibration):
         """Return the whole configuration as JSON data, defaults included, in SI."""
         return self.model_dump(mode="json", exclude_none=True, fallback=str)
 
+    def files(self, curves: Curves | None = None) -> list[CurveFile]:
+        """Return the files of ``curves``, or of those of the configuration if None."""
+        chosen, indenter = self.curves if curves is None else curves, self.indenter
+        kind = (
+            registry().find(Indenter.family, indenter["type"])
+            if isinstance(indenter, Mapping)
+            else type(indenter)
+        )
+        fields = {*getattr(kind, "model_fields", ()), *Calibration.model_fields}
+        column = self.group_by
+        return gather(chosen, self.segment, self, self.per_file, column, column in fields)
+
     def sources(self, curves: Curves | None = None) -> list[Source]:
         """Return ``curves``, or those of the configuration if None, as read from their files."""
-        chosen = self.curves if curves is None else curves
-        return gather(chosen, self.segment, self, self.per_file)
+        return [source for file in self.files(curves) for source in file.open()]
 
     def force_model(self, fields: Mapping[str, Any]) -> ForceModel | Simulation:
         """Return the model of the force on the indenter, or what has to be simulated to get one.
@@ -252,10 +326,24 @@ class FitConfig(FromFile, Calibration):
                 indenter = registry().make(Indenter, indenter)
             except ConfigError as error:
                 raise error.within("indenter") from None
+        if self.thickness == FREE:
+            return self._free_layer(indenter)
         if self._solid is None and isinstance(indenter, HasForceCurve):
             return tension_model(indenter)
         if not isinstance(indenter, Indenter):
-            raise ConfigError(
-                "cannot be given with a force curve, which includes its solid", "kernel"
-            )
-        return Simulation(indenter, self._solid or solid(DEFAULT_KERNEL, self.poissons_ratio))
+            name = "kernel" if self.thickness is None else "thickness"
+            raise ConfigError("cannot be given with a force curve, which includes its solid", name)
+        known = self._solid or solid(DEFAULT_KERNEL, self.poissons_ratio)
+        return known_layer(indenter, known) or Simulation(indenter, known)
+
+    def _free_layer(self, indenter: object) -> FreeLayerModel:
+        assert self.poissons_ratio is not None
+        if isinstance(indenter, HasLayerForceCurve) and self.poissons_ratio >= 0:
+            return FreeLayerModel(indenter, self.poissons_ratio)
+        name = described(indenter).get("type")
+        raise ConfigError(
+            f"cannot be free with the indenter {name!r} and ν = {self.poissons_ratio:g}, only for "
+            "a paraboloid, a sphere, a cone and a flat punch, and for 0 ≤ ν ≤ 0.5; give it, then "
+            "the force is simulated",
+            "thickness",
+        )

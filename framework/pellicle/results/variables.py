@@ -18,6 +18,7 @@ Kind = Literal[
     "interaction",
     "contact",
     "path",
+    "oscillation",
     "effort",
     "residual",
     "status",
@@ -25,7 +26,7 @@ Kind = Literal[
 """``field`` has a value for each cell; ``main`` is listed for each run of a study; ``requested``
 exists only if the loading requests it, like variables of a prescription; ``contact`` describes the
 shape of the contact; ``interaction`` exists only with an interaction; so does ``path``, which has
-one value for all steps of a run."""
+one value for all steps of a run; so has ``oscillation``, which exists where a leg oscillates."""
 Type = Literal["number", "count", "truth", "text"]
 
 
@@ -61,13 +62,14 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
     "other": (("mean_pressure", "Pa", "force over the area of the domain"),),
     "requested": (
         ("stiffness", "N/m", "contact stiffness dF/dδ, where loading.stiffness asks for it"),
-        ("time", "s", "time at the end of the step, where loading.time gives it"),
+        ("time", "s", "time at the end of the step, where the loading gives it"),
+        ("cycle", "1", "cycles since the oscillation began, in the legs that oscillate"),
         ("wall_pressure", "Pa", "pressure of the indenter without the traction across the gap"),
     ),
     "interaction": (
         ("zone_area", "m2", "area off the contact where the traction exceeds 1 % of the strength"),
         ("zone_width", "m", "mean distance from the contact to the outer edge of the zone"),
-        ("energy", "J", "elastic energy plus energy of the interaction"),
+        ("energy", "J", "energy of solid and interaction; NaN on a solid that relaxes"),
         ("force_error", "N", "estimated error of the force, from a wider zone"),
         ("jumped", "1", "whether all contact was gained or lost in this step", "truth"),
         ("residual_traction", "1", "error of the traction across the gap over all tractions"),
@@ -110,6 +112,15 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         ("work", "J", "∫F dδ over the path, by the trapezoidal rule"),
         ("work_accuracy", "J", "Σ|ΔF Δδ|/2 of the steps in which contact is lost or gained"),
         ("dissipated_energy", "J", "work less the change of the energy over the path"),
+    ),
+    "oscillation": (
+        ("oscillation_frequency", "Hz", "frequency of the last oscillation on the path"),
+        ("oscillation_amplitude", "m", "amplitude of the depth over its last whole cycle"),
+        ("storage_stiffness", "N/m", "force in phase with the depth over the amplitude, K′"),
+        ("loss_stiffness", "N/m", "force a quarter of a cycle ahead over the amplitude, K″"),
+        ("phase", "rad", "angle by which the force is ahead of the depth"),
+        ("cycle_dissipation", "J", "∮F dδ over the last whole cycle"),
+        ("cycle_drift", "1", "gain of depth or force over that cycle, over its amplitude"),
     ),
     "effort": (
         ("iterations", "1", "iterations of the solver", "count"),

@@ -13,6 +13,7 @@ from pellicle.numerics.problem import Equilibrium, Stiffness
 from pellicle.numerics.solution import Stop
 from pellicle.results.status import Status
 
+from .relaxation import least_domain
 from .target_search import Reached
 
 # Relative distance from its goal above which a search has not converged.
@@ -24,8 +25,11 @@ _RESOLVED_ACROSS = 4
 _STEEPEST = 0.3
 
 
-def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) -> tuple[Status, str]:
-    """Return the status of a step, from its measured residuals, and the message to the user."""
+def judge(run: Run, index: int, step: Reached, stiffness: Stiffness | None) -> tuple[Status, str]:
+    """Return the status of a step, from its measured residuals, and the message to the user.
+
+    ``index`` counts the steps from 0.
+    """
     equilibrium = step.equilibrium
     tolerance = run.solver.tolerance
     if not np.isfinite(equilibrium.force):
@@ -58,36 +62,49 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
         return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
             size=f"{nx:g} × {ny:g} m",
             prescribed=f"loading.{loading.prescribed} = "
-            f"{in_unit(value, loading.prescription.unit)}",
+            f"{in_unit(loading.values[index], loading.prescription.unit)}",
         )
     if step.search and (step.how != "met" or step.missed > _NEAR):
         return _not_met(step, step.search)
-    cells = int(np.count_nonzero(equilibrium.contact))
-    enough = _RESOLVED_ACROSS if min(equilibrium.contact.shape) == 1 else _RESOLVED
+    contact = equilibrium.contact
+    # An interaction of a range of its own acts beyond the contact, however small that is.
+    ranged = run.interaction is not None and not run.interaction.needs_contact
+    cells = int(np.count_nonzero(contact | equilibrium.zone if ranged else contact))
+    enough = _RESOLVED_ACROSS if min(contact.shape) == 1 else _RESOLVED
     problem = equilibrium.problem
     # A surface that was left behind may be out of the indenter's reach at a depth above 0.
     least = problem.first_touch if problem.prescribed == "depth" else 0.0
-    if problem.control.value > least and cells < min(enough, equilibrium.contact.size):
+    # An interaction holds a contact at any depth.
+    sticks = run.interaction is not None and bool(contact.any())
+    if (problem.control.value > least or sticks) and cells < min(enough, contact.size):
         return Status.COARSE, Status.COARSE.value.format(cells=cells or "none")
-    if run.interaction:
-        return _doubt(run, run.interaction, equilibrium)
+    doubt = run.interaction and _doubt(run, run.interaction, equilibrium)
+    if doubt:
+        return doubt
+    needed = least_domain(run, index, contact)
+    if needed > min(run.grid.size):
+        return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
+            size="{:g} × {:g} m".format(*run.grid.size), least=needed
+        )
     return Status.CONVERGED, Status.CONVERGED.value
 
 
-def _doubt(run: Run, interaction: Interaction, equilibrium: Equilibrium) -> tuple[Status, str]:
-    """Return the status of a step that is solved, where an interaction acts."""
-    width = equilibrium.zone_width / max(run.grid.spacing)
+def _doubt(
+    run: Run, interaction: Interaction, equilibrium: Equilibrium
+) -> tuple[Status, str] | None:
+    """Return the caveat of a step that is solved, where an interaction acts, if there is one."""
+    width = equilibrium.zone_width / run.grid.cell_size
     if width < interaction.least_cells:
         return Status.COARSE_ZONE, Status.COARSE_ZONE.value.format(
             cells=width, least=interaction.least_cells
         )
     slope = max(
-        steepest(equilibrium.problem.profile, equilibrium.contact, run.grid),
+        steepest(equilibrium.problem.heights, equilibrium.contact, run.grid),
         rim_slope(run.kernel.compliance, equilibrium) if equilibrium.contact.any() else 0.0,
     )
     if slope > _STEEPEST:
         return Status.STEEP, Status.STEEP.value.format(slope=slope, most=_STEEPEST)
-    return Status.CONVERGED, Status.CONVERGED.value
+    return None
 
 
 def _not_met(step: Reached, search: Search) -> tuple[Status, str]:

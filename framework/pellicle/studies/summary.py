@@ -20,7 +20,10 @@ _FAILURES = {
     "not run": "were not finished",
 }
 """Phrases for messages such as "3 did not converge", by verdict."""
-_EVENTS = "pull_off", "detach", "jump_in", "dissipated_energy"
+_EVENTS = (
+    *("pull_off", "detach", "jump_in", "dissipated_energy"),
+    *("storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation"),
+)
 _WORST_FIRST = "failed", "not run", "NOT CONVERGED"
 
 
@@ -48,7 +51,7 @@ def rows(table: xr.Dataset) -> list[dict[str, str]]:
 
 
 def paths(table: xr.Dataset) -> list[dict[str, str]]:
-    """Return a row for each run with the events on its path; none without an interaction."""
+    """Return a row for each run with the main numbers of its whole path, where it has any."""
     derived = json.loads(table.attrs["configuration"])["study"].get("derived", {})
     per_run = [n for n in derived if n in table and "step" not in table[n].dims]
     names = [n for n in (*_EVENTS, *per_run) if n in table]
@@ -101,19 +104,19 @@ def failures(table: xr.Dataset) -> str:
     return f"of {len(verdicts)} runs {', '.join(parts)}" if parts else ""
 
 
-def coarse(table: xr.Dataset) -> Iterator[str]:
-    """Yield a message with the number of runs whose cells do not resolve the contact, if any."""
+def caveats(table: xr.Dataset) -> Iterator[str]:
+    """Yield a message for each caveat, with the number of runs that have it."""
     statuses = _statuses(table)
-    count = sum(any(status.is_coarse for status in run) for run in statuses)
-    if count:
-        yield f"of {len(statuses)} runs, in {count} the cells are too coarse for this contact"
-
-
-def steep(table: xr.Dataset) -> Iterator[str]:
-    """Yield a message with the number of runs with slopes beyond those of the theory, if any."""
-    statuses = _statuses(table)
-    if count := sum(Status.STEEP in run for run in statuses):
-        yield f"of {len(statuses)} runs, in {count} slopes in contact are beyond the theory"
+    for caveat, reason in (
+        (
+            {status for status in Status if status.is_coarse},
+            "the cells are too coarse for this contact",
+        ),
+        ({Status.STEEP}, "slopes in contact are beyond the theory"),
+        ({Status.SMALL_DOMAIN}, "the domain is small for a skin on a solid that relaxes"),
+    ):
+        if count := sum(not caveat.isdisjoint(run) for run in statuses):
+            yield f"of {len(statuses)} runs, in {count} {reason}"
 
 
 def _statuses(table: xr.Dataset) -> list[list[Status]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Annotated, Literal
 
@@ -9,7 +10,7 @@ from pydantic import Field
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Branch, HasRelaxation, Kernel
+from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel, MayBeBondedLayer
 from pellicle.config.component_field import FromRegistry
 from pellicle.numerics.operators import mean_compliance
 
@@ -42,6 +43,11 @@ class Coated(Skin):
         """Return the branches of the substrate: the skin is elastic."""
         return self.substrate.branches() if isinstance(self.substrate, HasRelaxation) else ()
 
+    def time_span(self) -> tuple[float, float]:
+        """Return the span of the substrate [s]; all times if it states none."""
+        substrate = self.substrate
+        return substrate.time_span() if isinstance(substrate, HasTimeSpan) else (0.0, math.inf)
+
     def scaled(self, share: float) -> Kernel:
         """Return the skin on an elastic substrate ``share`` times as stiff."""
         return self.model_copy(update={"substrate": stiffened(self.substrate, share)})
@@ -51,6 +57,15 @@ class Coated(Skin):
         if isinstance(self.substrate, HasRelaxation):
             return self.substrate.without_skin()
         return self.substrate
+
+    def bonded_layer(self) -> tuple[float, float] | None:
+        """Return thickness [m] and Poisson's ratio of a substrate that is a bonded layer.
+
+        None if it is not, or if the skin resists bending.
+        """
+        if self.bending or not isinstance(self.substrate, MayBeBondedLayer):
+            return None
+        return self.substrate.bonded_layer()
 
 
 @hookimpl

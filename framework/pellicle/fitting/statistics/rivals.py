@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pellicle.components import HasContactRadius, HasForceCurve, Indenter
+from pellicle.components import HasContactRadius, HasForceCurve, HasLayerForceCurve, Indenter
 from pellicle.errors import ConvergenceError, PellicleError
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.drag import DRAG, DragModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel, TensionModel
+from pellicle.fitting.models.layer import FreeLayerModel
 from pellicle.fitting.models.relaxing import (
     EXPONENT,
     RELAXATION_TIME,
@@ -23,10 +24,10 @@ from pellicle.fitting.models.relaxing import (
 )
 from pellicle.fitting.parameters import (
     CONTACT_POINT,
-    MODULUS,
     OFFSET,
     SLOPE,
     TENSION,
+    THICKNESS,
     Coordinates,
     Parameter,
 )
@@ -38,6 +39,10 @@ from .pooled_likelihood import Pool
 
 _THIN = 200
 """Rows of a curve that is scanned for initial guesses."""
+_INCOMPRESSIBLE = 0.5
+"""Poisson's ratio of a layer, whose effect is that of another thickness to first order."""
+_THICKNESSES = (2.0, 10.0)
+"""Thicknesses from which a search starts, over the range of positions."""
 _CONE = np.pi / 4
 """Half angle of a cone in place of a bead, which its modulus cannot be told from."""
 _SHARES = (0.0, 0.1)
@@ -77,7 +82,7 @@ class Rival:
 
     def start(self, chi_squared: ChiSquared, known: Coordinates) -> Coordinates:
         """Return coordinates for all parameters of a χ² of this model."""
-        defaults = {WORK_OF_ADHESION: -20.0, RELAXATION_TIME: 0.0}
+        defaults = {WORK_OF_ADHESION: -20.0, RELAXATION_TIME: 0.0, THICKNESS: -10.0}
         missing = {p: defaults.get(p, 0.0) for p in chi_squared.parameters if p not in known}
         start = {p: known.get(p, missing.get(p, 0.0)) for p in chi_squared.parameters}
         return start if self.has_tension or TENSION not in start else start | {TENSION: 0.0}
@@ -107,6 +112,9 @@ class Rival:
                 for number, guess in enumerate(own)
                 if guess not in own[:number]
             ]
+        if isinstance(model, FreeLayerModel):
+            span = chi_squared.ranges[CONTACT_POINT].scale
+            return [{THICKNESS: float(np.log(share * span))} for share in _THICKNESSES]
         if isinstance(model, AdhesiveModel):
             return list(_adhesive_guesses(self, chi_squared, start))
         scales = chi_squared.ranges
@@ -137,6 +145,10 @@ def _adhesive_guesses(
         yield chi_squared.joined(chosen) if isinstance(chi_squared, Pool) else chosen[0]
 
 
+def _same(likelihood: Likelihood) -> ForceModel:
+    return likelihood.force_model
+
+
 def _elastic(likelihood: Likelihood) -> TensionModel:
     """Return the elastic solid under tension in a force model."""
     model = likelihood.force_model
@@ -152,8 +164,19 @@ def _adhesive(likelihood: Likelihood) -> ForceModel:
     return AdhesiveModel(elastic, likelihood.moves_out, attached, likelihood.stiffness)
 
 
+def _layer(likelihood: Likelihood) -> ForceModel:
+    elastic = _elastic(likelihood)
+    assert isinstance(elastic, ClosedFormModel)
+    assert isinstance(elastic.indenter, HasLayerForceCurve)
+    return FreeLayerModel(elastic.indenter, _INCOMPRESSIBLE)
+
+
 def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
     """Yield what can bend the curves beside a tension."""
+    if any(p not in member.free for member in members for p in (OFFSET, SLOPE)):
+        yield Rival("baseline_slope", "a sloping baseline", False, _same, baseline=(OFFSET, SLOPE))
+    if not all(isinstance(member.force_model, TensionModel) for member in members):
+        return
     if all(member.segment != "retract" for member in members):
         yield Rival(
             "power_law",
@@ -182,15 +205,16 @@ def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
         for model in elastic
     ):
         yield Rival("adhesion", "adhesion", False, _adhesive, (WORK_OF_ADHESION,))
-    if any(p not in member.free for member in members for p in (OFFSET, SLOPE)):
-        yield Rival(
-            "baseline_slope", "a sloping baseline", False, _elastic, baseline=(OFFSET, SLOPE)
-        )
+    if all(
+        isinstance(model, ClosedFormModel) and isinstance(model.indenter, HasLayerForceCurve)
+        for model in elastic
+    ):
+        yield Rival("thickness", "a thin layer", False, _layer, (THICKNESS,))
 
 
 def _shapes(members: Sequence[Likelihood]) -> Iterator[Rival]:
     """Yield other shapes of the same size, without tension."""
-    indenters = [getattr(_elastic(member), "indenter", None) for member in members]
+    indenters = [getattr(member.force_model, "indenter", None) for member in members]
     if not all(isinstance(indenter, Indenter) for indenter in indenters):
         return
     types = {getattr(indenter, "type", "") for indenter in indenters}
@@ -220,8 +244,8 @@ def _shape(name: str, indenter: object) -> HasForceCurve | None:
     return shape if isinstance(shape, HasForceCurve) else None
 
 
-NONE = Rival("none", "no tension", False, _elastic)
-TENSED = Rival("tension", "tension", True, _elastic)
+NONE = Rival("none", "no tension", False, _same)
+TENSED = Rival("tension", "tension", True, _same)
 
 
 def rivals(chi_squared: ChiSquared) -> list[Rival]:
@@ -240,8 +264,3 @@ def rivals(chi_squared: ChiSquared) -> list[Rival]:
         if not effect.of_shape
     ]
     return [NONE, *effects, TENSED, *pairs]
-
-
-def modulus_of(parameters: Coordinates) -> float:
-    """Return E* [Pa]."""
-    return MODULUS.value(parameters[MODULUS])
