@@ -438,19 +438,23 @@ def main() -> None:
     given = [int(text) for text in sys.argv[1:3]]
     curves, seed = [*given, *_DEFAULT[len(given) :]]
     names = sys.argv[3:] or list(KINDS)
-    print(f"{curves} curves each, verdicts: approach → with the measurement that it names")
+    print(f"{curves} curves each | approach | with the measurement named | named | right | E* | s")
+    print("--- | --- | --- | --- | --- | --- | ---")
     for name in names:
         results = list(outcomes(name, curves, seed))
-        count = Counter(result.verdict for result in results)
-        after = Counter(result.second for result in results if result.second)
-        named = Counter(" ".join(result.named.split()[:4]) for result in results if result.named)
+        columns = [
+            Counter(result.verdict for result in results),
+            Counter(result.second for result in results if result.second),
+            Counter(" ".join(result.named.split()[:4]) for result in results if result.named),
+        ]
+        cells = [", ".join(f"{n} {key}" for key, n in count.items()) for count in columns]
         right, covers = (
             100 * np.mean([getattr(result, field) for result in results])
             for field in ("right", "covers")
         )
         seconds = np.median([result.seconds for result in results])
-        print(f"{name}: {dict(count)} → {dict(after)}; {dict(named)}; right model {right:.0f} %;")
-        print(f"    modulus {covers:.0f} %; {seconds:.2f} s a fit", flush=True)
+        cells += [f"{right:.0f} %", f"{covers:.0f} %", f"{seconds:.2f}"]
+        print(f"{name} | {' | '.join(cells)}", flush=True)
 
 
 if __name__ == "__main__":

@@ -32,6 +32,9 @@ def print_fit(fit: FitResult) -> None:
     print_table(["", "value", "95 % interval", "unit"], rows)
     if curves := fit.curve_rows():
         print_table(list(curves[0]), curves)
+    if fit.rivals is not None and fit.config is not None and fit.config.compare:
+        models = fit.rivals.rows()
+        print_table(list(models[0]), models)
     for sentence in fit.sentences:
         typer.echo(sentence)
     for note in fit.notes:

@@ -111,7 +111,8 @@ class FitResult:
         """The moduli of all explanations that the curves cannot tell apart, in words."""
         if self.rivals is None or self.rivals.verdict != "undecided":
             return ""
-        moduli = [fit.estimates["reduced_modulus"].value for fit in self.rivals.tied]
+        tied = [fit for fit in self.rivals.tied if fit.rival.is_single] or self.rivals.tied
+        moduli = [fit.estimates["reduced_modulus"].value for fit in tied]
         return (
             f"the reduced modulus is {min(moduli):.3g} to {max(moduli):.3g} Pa over the "
             f"{len(moduli)} models that the data cannot tell apart; the interval above holds for "

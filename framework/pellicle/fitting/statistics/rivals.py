@@ -68,6 +68,11 @@ class Rival:
     of_shape: bool = False
     """Whether it is another shape, for which a tension can make up in any curve."""
 
+    @property
+    def is_single(self) -> bool:
+        """Whether it is one effect alone."""
+        return "+" not in self.code
+
     def of(self, chi_squared: ChiSquared) -> ChiSquared:
         """Return χ² with this model in place of an elastic solid under tension."""
         if isinstance(chi_squared, Pool):
