@@ -31,7 +31,7 @@ from pellicle.runs.progress import ProgressReporter, StudyProgress
 from pellicle.runs.relaxation import history_arrays
 
 from . import table
-from .summary import coarse, failures, progress_of
+from .summary import caveats, coarse, failures, progress_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -227,7 +227,8 @@ def _execute(
             return Runs.of_study(read_only_dataset(whole), directory, study.to_json(as_given=True))
 
         written = runner.all_done(runner.writers(outputs, runs, directory / "study", first))
-    for message in (*messages, *(f"{message}; see status" for message in coarse(whole))):
+    doubts = (f"{message}; see status" for message in (*coarse(whole), *caveats(whole)))
+    for message in (*messages, *doubts):
         warnings.warn(message, stacklevel=4)
     return StudyResult(whole, (*files.paths, *chain(*written)), resumed)
 
