@@ -18,6 +18,7 @@ from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, shown
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate
 from pellicle.model.from_file import FromFile, read
+from pellicle.model.html import summary
 from pellicle.model.input_path import paths_relative_to
 from pellicle.model.paths import get
 from pellicle.model.ranges import Axes, expand
@@ -105,6 +106,13 @@ class Study(FromFile):
         Executor, FromRegistry(), Field(description="what carries out the runs")
     ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
     _points: tuple[Point, ...] = PrivateAttr()
+
+    def _repr_html_(self) -> str:
+        """Return HTML for a notebook: the varied parameters and the number of runs."""
+        varied = [*self.vary.items(), *(pair for table in self.zip for pair in table.items())]
+        rows = [(name, ", ".join(map(str, values))) for name, values in varied]
+        title = str(self.run.get("title") or "Study")
+        return summary(title, f"{len(self.points)} runs", ("varied", "values"), rows)
 
     @model_validator(mode="after")
     def _expand(self) -> Self:
