@@ -15,7 +15,7 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle.grid import Grid
 from pellicle.model.html import summary
 from pellicle.model.legs import number_of_steps
-from pellicle.units import readable
+from pellicle.units import axis_unit, readable
 
 from . import storage
 from .path import oscillations_of, path_variables
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _SHOWN = "time", "depth", "force", "contact_area"
+_NO_CONTACT = "0.93"
 _MOST = 12
 """Rows of the table in a notebook."""
 
@@ -131,7 +132,7 @@ class Result:
             return file.getvalue()
 
     def plot(self, variable: str = "pressure", *, step: int = -1, **options: Any) -> Any:
-        """Draw a field of a load step as a map, x to the right and y up.
+        """Draw a field of a load step as a map, x to the right and y up; grey without pressure.
 
         Parameters
         ----------
@@ -158,9 +159,16 @@ class Result:
                 f"{variable!r} is not a field; give one of {', '.join(map(str, fields))}",
                 "variable",
             )
-        field = self.dataset[variable].isel(step=step)
+        data = self.dataset.isel(step=step)
+        field = data[variable]
+        if variable == "pressure":
+            field = field.where(data["contact"] | (field != 0))
+        factor, unit = axis_unit([*data["x"].values, *data["y"].values], "m")
+        for name in ("x", "y"):
+            scaled = data[name] * factor
+            field = field.assign_coords({name: scaled.assign_attrs(units=unit, long_name=name)})
         mesh = field.plot.pcolormesh(x="x", y="y", **options)
-        mesh.axes.set_aspect("equal")
+        mesh.axes.set(aspect="equal", facecolor=_NO_CONTACT)
         return mesh
 
     def save(self, path: str | Path) -> None:
