@@ -14,7 +14,8 @@ def new(
     path: Annotated[
         Path | None,
         typer.Argument(
-            help="File to write (default: indent.toml); with --plugin, the component's name."
+            metavar="PATH",
+            help="File to write (default: indent.toml); with --plugin, the component's name.",
         ),
     ] = None,
     plugin: Annotated[

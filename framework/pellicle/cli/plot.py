@@ -19,13 +19,18 @@ class Format(StrEnum):
 
 def plot(
     results: Annotated[
-        Path, typer.Argument(help="Result file (.h5), or the folder or study.h5 of a study.")
+        Path,
+        typer.Argument(
+            metavar="RESULTS", help="Result file (.h5), or the folder or study.h5 of a study."
+        ),
     ],
     directory: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder (default: that of the result).")
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Folder (default: that of the result)."),
     ] = None,
     formats: Annotated[
-        list[Format] | None, typer.Option("--format", help="png, svg or pdf; repeat for several.")
+        list[Format] | None,
+        typer.Option("--format", metavar="FORMAT", help="png, svg or pdf; repeat for several."),
     ] = None,
 ) -> None:
     """Draw the figures of a result or of a study."""

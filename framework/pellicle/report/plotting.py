@@ -19,6 +19,7 @@ from pellicle.files import for_document, storage_errors
 from pellicle.numerics.problem import height_scale
 from pellicle.results.path import has_interaction
 from pellicle.results.result import Result
+from pellicle.results.variables import CONTACT_AREA, wording
 from pellicle.units import axis_unit
 
 if TYPE_CHECKING:
@@ -180,18 +181,18 @@ def _shade(axes: Axes, x: Array, where: Mask) -> None:
 
 def force_depth(result: Result, axes: Axes) -> None:
     """Draw force against depth over the load steps."""
-    _curve(result, axes, [("force", None, "o-")], "force", "N", "depth", "m")
+    _curve(result, axes, [("force", None, "o-")], "depth")
 
 
 def area_force(result: Result, axes: Axes) -> None:
     """Draw the contact area, of the cells and corrected, against force."""
     corrected = [
-        (str(name), f"{str(name).removeprefix('contact_area_')} correction", "s--")
-        for name in result.dataset.data_vars
+        (str(name), wording(variable).words.removeprefix(f"{CONTACT_AREA}, "), "s--")
+        for name, variable in result.dataset.data_vars.items()
         if str(name).startswith("contact_area_")
     ]
     series = [("contact_area", "cells in contact", "o-"), *corrected]
-    _curve(result, axes, series, "contact area", "m2", "force", "N")
+    _curve(result, axes, series, "force")
     if not has_interaction(result.dataset):
         axes.legend()
 
@@ -253,8 +254,8 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     # Seeds are repetitions, not values to compare.
     rest = [d for d in dimensions if d != along]
     compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
-    scale, name = _unit_near_one(table[variable])
-    x_scale, x_name = _unit_near_one(table[against])
+    shown, shown_x = wording(table[variable]), wording(table[against])
+    named_by = wording(table[compared[0]]) if compared else None
     stacked = [d for d in table["status"].dims if d not in (along, *compared)]
     many = table.sizes[compared[0]] if compared else 1
     pulls, paths = has_interaction(table), list[list[Leg]]()
@@ -262,9 +263,10 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
         colour = _colour(number, many)
         # Of many values only some are named: colours change evenly between them.
         named = compared and number % -(-many // _MOST_NAMED) == 0
-        label = _label(part, compared[0]) if named else ""
+        label = named_by.text(part[compared[0]].item()) if named and named_by else ""
         for line in _parts(part, stacked):
-            x, y = line[against].values * x_scale, line[variable].values * scale
+            x = line[against].values * shown_x.scale.factor
+            y = line[variable].values * shown.scale.factor
             if pulls and against == "depth":
                 finished = np.isfinite(line["depth"].values)
                 paths.append(legs(line["depth"].values[finished]))
@@ -285,8 +287,8 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
             axes.plot(x[~good], y[~good], "x", color="red", markersize=9)
             label = ""
     axes.set(
-        xlabel=f"{against} [{x_name}]" if x_name else against,
-        ylabel=f"{variable.replace('_', ' ')} [{name}]" if name else variable.replace("_", " "),
+        xlabel=shown_x.head,
+        ylabel=shown.head,
         title=table.attrs.get("title", ""),
     )
     if pulls:
@@ -372,18 +374,6 @@ def _parts(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Dat
         yield table.isel(dict(zip(dimensions, index, strict=True)))
 
 
-def _unit_near_one(values: xr.DataArray) -> tuple[float, str]:
-    return axis_unit(values.values, values.attrs.get("units", "1"))
-
-
-def _label(part: xr.Dataset, name: str) -> str:
-    value = part[name]
-    if value.dtype.kind not in "if":
-        return f"{name} = {value.item()}"
-    scale, unit = _unit_near_one(value)
-    return f"{name} = {value.item() * scale:.4g} {unit}".rstrip()
-
-
 def _colour(number: int, count: int) -> str | tuple[float, float, float, float]:
     if count <= 10:
         return f"C{number}"
@@ -396,18 +386,15 @@ def _curve(
     result: Result,
     axes: Axes,
     series: Sequence[tuple[str, str | None, str]],
-    what: str,
-    unit: str,
     against: str,
-    against_unit: str,
 ) -> None:
     data = result.dataset
-    scale, name = axis_unit(data[series[0][0]].values, unit)
-    x_scale, x_name = axis_unit(data[against].values, against_unit)
+    shown, shown_x = wording(data[series[0][0]]), wording(data[against])
     good = data["converged"].values.astype(bool)
     pulls = has_interaction(data)
     for number, (variable, label, style) in enumerate(series):
-        x, y = data[against].values * x_scale, data[variable].values * scale
+        x = data[against].values * shown_x.scale.factor
+        y = data[variable].values * shown.scale.factor
         if pulls:
             draw_legs(
                 axes,
@@ -424,7 +411,7 @@ def _curve(
             (line,) = axes.plot(x, y, style, label=label, markersize=4)
             line.set_markerfacecolor("white")
         axes.plot(x[~good], y[~good], "x", color="red", markersize=9, label="_not converged")
-    axes.set(xlabel=f"{against} [{x_name}]", ylabel=f"{what} [{name}]")
+    axes.set(xlabel=shown_x.head, ylabel=shown.head)
     if pulls:
         axes.axhline(0.0, color="0.4", linewidth=0.6)
         name_legs(axes, [legs(data["depth"].values)])
@@ -493,8 +480,7 @@ def _point_along(axes: Axes, x: Array, y: Array, colour: Any) -> None:
 
 def _caption(result: Result, step: int) -> str:
     data = result.dataset.isel(step=step)
-    scale, name = axis_unit(data["depth"].values, "m")
-    caption = f"depth {data['depth'].item() * scale:.4g} {name}"
+    caption = wording(data["depth"]).text(data["depth"].item())
     title = result.dataset.attrs.get("title", "")
     if not bool(data["converged"]):
         caption += ", NOT CONVERGED"

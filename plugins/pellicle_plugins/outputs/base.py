@@ -14,14 +14,16 @@ import numpy as np
 from pydantic import Field
 
 from pellicle.components import Output, Runs
+from pellicle.config.run import Run
+from pellicle.config.wording import words_at
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
-from pellicle.model.expression import evaluate
+from pellicle.model.expression import evaluate, formula
 from pellicle.model.messages import nearest
 from pellicle.report.plotting import save_figure, without_round_off
-from pellicle.results.derived import names
+from pellicle.results.derived import FIRST_RUN, names
 from pellicle.results.result import Result
-from pellicle.units import axis_unit, readable
+from pellicle.results.variables import wording, words_of_name
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,7 +79,7 @@ class TableFigure(Output):
         first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
         for index in along(table, self.by):
             point = table.isel({**first, **index})
-            yield label(self.label, point, self.by), point
+            yield label(self.label, point, self.by, table), point
 
     def steps(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
         """Yield the name of each curve or panel and the last load step of its run, if finished."""
@@ -122,8 +124,12 @@ def along(table: xr.Dataset, dim: str | None) -> list[dict[str, int]]:
     return [{dim: index} for index in range(table.sizes[dim])] if dim else [{}]
 
 
-def label(template: str | None, data: xr.Dataset, dim: str | None) -> str:
+def label(
+    template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dataset | None = None
+) -> str:
     """Return the name of a curve or a panel.
+
+    ``data`` is the part of the table ``whole`` that it shows; values are in one unit for all parts.
 
     ``{…}`` in the template is an expression, replaced by its mean over ``data``. Without a template
     the name is the value of the dimension ``dim``; without that, the values of all axes of the
@@ -135,24 +141,40 @@ def label(template: str | None, data: xr.Dataset, dim: str | None) -> str:
             lambda match: f"{np.nanmean(np.asarray(evaluate(match[1], variables))):.3g}", template
         )
     axes = [dim] if dim else json.loads(data.attrs.get("axes", "[]"))
-    return ", ".join(_value(data[axis]) for axis in axes if data[axis].ndim == 0)
+    shown = whole if whole is not None else data
+    return ", ".join(
+        wording(shown[axis]).text(data[axis].item()) for axis in axes if data[axis].ndim == 0
+    )
 
 
-def _value(value: xr.DataArray) -> str:
-    unit = value.attrs.get("units", "1")
-    text = readable(value.item(), unit, digits=4) if unit != "1" else str(value.item())
-    return f"{value.name} = {text}"
+def scaled(
+    text: str, values: xr.DataArray, axis_label: str | None, data: xr.Dataset
+) -> tuple[float, str]:
+    """Return the factor and the label of an axis that shows the expression ``text`` over ``data``.
 
-
-def scaled(text: str, values: xr.DataArray, axis_label: str | None) -> tuple[float, str]:
-    """Return the factor and the label of an axis that shows the expression ``text``.
-
-    A bare variable is converted to a unit with a prefix, unless ``axis_label`` is given.
+    A bare variable is converted to a unit with a prefix, unless ``axis_label`` is given. Other
+    expressions are in SI, since their unit is not known.
     """
     if axis_label is not None:
         return 1.0, axis_label
-    factor, name = axis_unit(values.values, values.attrs.get("units", "1"))
-    return factor, f"{text} [{name}]" if name else text
+    name = text.strip()
+    if name not in data.variables:
+        return 1.0, in_words(text, data)
+    # xarray keeps the unit of one operand, so that only the bare variable has its own.
+    shown = wording(values.rename(name))
+    return shown.scale.factor, shown.head
+
+
+def in_words(text: str, data: xr.Dataset) -> str:
+    """Return an expression over a result or a table with words in place of its names."""
+    configuration = json.loads(data.attrs.get(FIRST_RUN, data.attrs.get("configuration", "{}")))
+
+    def words(name: str) -> str:
+        if name in data.variables:
+            return wording(data[name]).words
+        return words_at(configuration, Run, name) if "." in name else words_of_name(name)
+
+    return formula(text, words)
 
 
 def set_scales(axes: Axes, log: Sequence[str], *, signed: bool = False) -> None:

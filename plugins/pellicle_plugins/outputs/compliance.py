@@ -16,7 +16,7 @@ from pellicle.errors import StorageError
 from pellicle.model.expression import evaluate
 from pellicle.results.derived import names
 
-from .base import XYFigure, set_scales
+from .base import XYFigure, in_words, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,8 +69,10 @@ class Compliance(XYFigure):
                     yield {"curve": name, "series": series, "x": px, "y": py}
         axes.plot([], [], color="0.4", linewidth=1.0, label="symbol")
         axes.set(
-            xlabel=self.x_label or (f"{self.x} [rad/m]" if self.x == "q" else self.x),
-            ylabel=self.y_label or (f"{self.y} [m/Pa]" if self.y == "compliance" else self.y),
+            xlabel=self.x_label
+            or ("wavenumber q [rad/m]" if self.x == "q" else in_words(self.x, runs.table)),
+            ylabel=self.y_label
+            or ("compliance [m/Pa]" if self.y == "compliance" else in_words(self.y, runs.table)),
             title=self.title,
         )
         set_scales(axes, ("x", "y"))

@@ -27,6 +27,7 @@ from .base import (
     Reference,
     XYFigure,
     along,
+    in_words,
     label,
     one_axis,
     scaled,
@@ -144,8 +145,8 @@ class Curves(XYFigure):
         one_axis(runs.table.sizes, self.by, "by")
         one_axis(runs.table.sizes, self.over, "over")
         x, *ys = (runs.column(text) for text in (self.x, *self.y))
-        factor_x, x_label = scaled(self.x, x, self.x_label)
-        factor_y, y_label = scaled(self.y[0], ys[0], self.y_label)
+        factor_x, x_label = scaled(self.x, x, self.x_label, runs.table)
+        factor_y, y_label = scaled(self.y[0], ys[0], self.y_label, runs.table)
         lines = list(self._lines(runs, x, ys))
         for line in lines:
             line.draw(axes, factor_x, factor_y, bool(self.log))
@@ -167,17 +168,18 @@ class Curves(XYFigure):
         directions: set[str] = set()
         for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
             series = self.series[number] if self.series else text
+            named = self.series[number] if self.series else in_words(text, runs.table)
             exact_x, exact_y = (
                 (reference.column(self.x), reference.column(text)) if reference else (x, y)
             )
             for index, point in enumerate(along(runs.table, self.by)):
                 part = runs.table.isel(point)
-                name = label(self.label, part, self.by)
+                name = label(self.label, part, self.by, runs.table)
                 # Colours distinguish the values of `by`, markers those of `y`.
                 style = _Style(f"C{index if self.by else number}", number, reference is not None)
                 legend = "" if number else name
                 if not self.by and (self.series or len(ys) > 1):
-                    legend = series
+                    legend = named
                 points, path = self._points(part, _at(x, point), _at(y, point))
                 directions |= {leg.direction for leg in path}
                 yield _Line(points, style, legend, name, series, path)
@@ -191,7 +193,7 @@ class Curves(XYFigure):
                     thin = _Style(style.colour, None)
                     yield _Line(points.ordered(), thin, "", name, f"{series}, semi-analytic")
             if self.by and len(ys) > 1:
-                yield _Line(_NO_POINTS, _Style("0.4", number, reference is not None), series)
+                yield _Line(_NO_POINTS, _Style("0.4", number, reference is not None), named)
         if reference:
             yield _Line(_NO_POINTS, _Style("0.4", None), "semi-analytic")
         if len(directions) > 1:

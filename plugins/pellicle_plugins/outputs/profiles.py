@@ -45,8 +45,8 @@ class Profiles(XYFigure):
             line = run.isel({_ACROSS[self.along]: run.sizes[_ACROSS[self.along]] // 2})
             x, y = self._columns(line)
             if factors is None:
-                factor_x, x_label = scaled(self.x or self.along, x, self.x_label)
-                factor_y, y_label = scaled(self.y, y, self.y_label)
+                factor_x, x_label = scaled(self.x or self.along, x, self.x_label, line)
+                factor_y, y_label = scaled(self.y, y, self.y_label, line)
                 factors = factor_x, factor_y
                 axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
             axes.plot(
