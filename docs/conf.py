@@ -23,7 +23,7 @@ extensions = [
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
 default_role = "code"
-exclude_patterns = ["_build"]
+exclude_patterns = ["_build", "joss"]
 html_theme = "furo"
 html_title = f"pellicle {release}"
 

@@ -86,10 +86,13 @@ def fields(model: Any) -> str:
     return _table(("field", "takes", "default", "meaning"), rows) if rows else "No fields.\n"
 
 
+_DIMENSIONS = {"field": "step, x, y", "path": "none", "oscillation": "none"}
+
+
 def variables() -> str:
     """Return a table of the variables of a result."""
     rows = [
-        (f"`{v.name}`", "step, x, y" if v.kind == "field" else "step", v.unit, v.meaning)
+        (f"`{v.name}`", _DIMENSIONS.get(v.kind, "step"), v.unit, v.meaning)
         for v in (*VARIABLES.values(), *_prescribed())
     ]
     return _table(("variable", "dimensions", "unit", "meaning"), rows)

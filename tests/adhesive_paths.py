@@ -131,3 +131,36 @@ def rough_path(points: int, length: float) -> xr.Dataset:
     work = {"type": "jkr", "work_of_adhesion": 0.02}
     path = [*down, *down[-2::-1], 0.0, -0.1, -0.2]
     return solved(points, length, path, indenter=rough, interaction=work)
+
+
+def relaxing(
+    fraction: float = 0.8, time: float = 1.0, solid: dict[str, Any] | None = None
+) -> dict[str, Any]:
+    """Return a kernel of which a fraction relaxes; by default E* = 5 relaxes to 1 in a time 1."""
+    solid = solid or {"type": "half_space", "reduced_modulus": 5.0}
+    relaxation = [{"fraction": fraction, "time": time}]
+    return {"type": "viscoelastic", "solid": solid, "relaxation": relaxation}
+
+
+def pulled_off(
+    points: int, speed: float, interaction: dict[str, Any], number: int = 40, **options: Any
+) -> float:
+    """Return the lowest force of a paraboloid that is pressed, dwells and is pulled at a speed.
+
+    The path has ``number`` steps from the depth 0.5, where it has dwelt for 50 relaxation times,
+    to −1.6.
+    """
+    pressed, pulled = [0.25, 0.5, 0.5], np.linspace(0.5, -1.6, number + 1)[1:]
+    times = [0.0, 25.0, 50.0, *(50.0 + (0.5 - pulled) / speed)]
+    path = solved(
+        points,
+        0.0,
+        [*pressed, *pulled],
+        size=7.0,
+        interaction=interaction,
+        time=times,
+        **{"kernel": relaxing(), **options},
+    )
+    lowest = int(path["force"].values.argmin())
+    assert len(pressed) < lowest < path.sizes["step"] - 1
+    return float(path["force"][lowest])

@@ -102,6 +102,15 @@ class Grid(Model):
         return self.size[0] / self.points[0], self.size[1] / self.points[1]
 
     @property
+    def cell_size(self) -> float:
+        """Longest edge of a cell [m], along directions with more than one cell if there are any.
+
+        A line of cells resolves what varies along it, however wide it is.
+        """
+        along = [edge for edge, n in zip(self.spacing, self.points, strict=True) if n > 1]
+        return max(along or self.spacing)
+
+    @property
     def cell_area(self) -> float:
         """Area of a cell [m²]."""
         return self.spacing[0] * self.spacing[1]

@@ -1,4 +1,4 @@
-"""The values of load steps: one value, a list or a ramp."""
+"""The values of load steps: one value, a list, a ramp or legs."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 from pydantic_core import core_schema
 
 from .errors import ConfigError, Problem, shown
+from .model.legs import KINDS, Leg, json_schema, legs_of
 from .model.ranges import RANGE, SPACINGS, ranged
 from .units import Quantity
 
@@ -25,9 +26,11 @@ class LoadSteps:
     """Annotation of load steps: one value, a list, or a ramp, which may return to its start."""
 
     quantity: Quantity
+    legs: bool = False
+    """Whether a list of legs is allowed too."""
 
-    def __call__(self, given: object) -> tuple[float, ...]:
-        """Return the load steps in order, SI.
+    def __call__(self, given: object) -> tuple[float, ...] | tuple[Leg, ...]:
+        """Return the load steps in order, SI, or their legs.
 
         Raises
         ------
@@ -41,9 +44,13 @@ class LoadSteps:
         values = list(cast("Iterable[object]", given)) if several else [given]
         if not values:
             raise ValueError("is empty; give at least one load step")
+        if self.legs and any(isinstance(value, (Mapping, Leg)) for value in values):
+            return legs_of(values, self.quantity)
         return self._all({str(i) if several else "": value for i, value in enumerate(values)})
 
     def _ramp(self, given: Mapping[Any, Any]) -> tuple[float, ...]:
+        if self.legs and any(kind.key in given for kind in KINDS):
+            raise ConfigError("is one leg; give a list of legs, [ { … } ]")
         back = given.get("back", False)
         if not isinstance(back, bool):
             raise ConfigError(f"{shown(back)} is not allowed; give true or false", "back")
@@ -86,4 +93,5 @@ class LoadSteps:
             "required": sorted(RANGE),
             "additionalProperties": False,
         }
-        return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}, ramp]}
+        several = {"type": "array", "items": one, "minItems": 1}
+        return {"anyOf": [one, several, ramp, *[json_schema(one)] * self.legs]}

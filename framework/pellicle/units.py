@@ -37,6 +37,7 @@ _EXAMPLES = {
     "m**3": "0.001 mm**3",
     "rad": "70 degree",
     "s": "1 s",
+    "Hz": "1 Hz",
 }
 _NUMBER_AND_UNIT = re.compile(
     r"([-+]?(?:nan\b|inf\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)", re.DOTALL | re.IGNORECASE

@@ -26,6 +26,7 @@ from pellicle_plugins.analytic.dugdale import dugdale_contact
 from tests.adhesive_paths import (
     FORCE,
     cantilever_path,
+    pulled_off,
     retracted,
     retraction_cases,
     rough_path,
@@ -225,6 +226,23 @@ def full_contact(points: Sequence[int]) -> Iterator[Row]:
         yield Row("full contact opens, over p*", "linear", number, (last - opens) / opens, 0.1)
 
 
+def speeds(points: Sequence[int]) -> Iterator[Row]:
+    """Pull-off of a solid that relaxes, at three speeds and a fixed range: change to twice N."""
+    laws = {
+        "linear": {"type": "linear", "work_of_adhesion": 1.0, "strength": 2.0},
+        "dugdale": {"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0},
+    }
+    for name, interaction in laws.items():
+        for speed in (0.01, 0.3, 10.0):
+            pulls = [pulled_off(number, speed, interaction) for number in points]
+            case = f"{name}, v = {speed:g}"
+            for number, pull in zip(points, pulls, strict=True):
+                yield Row("pull-off at a speed, over πwR", case, number, pull / FORCE, np.inf)
+            for number, (coarse, fine) in zip(points[1:], pairwise(pulls), strict=True):
+                bar = 0.02 if number >= 128 else np.inf
+                yield Row("change of it, relative", case, number, fine / coarse - 1, bar)
+
+
 def applications(points: Sequence[int]) -> Iterator[Row]:
     """Operator applications of a step, the largest and the mean of a path there and back."""
     down = np.linspace(0.1, 1.3, 7)
@@ -244,7 +262,7 @@ def applications(points: Sequence[int]) -> Iterator[Row]:
 
 FIGURES: tuple[Callable[[Sequence[int]], Iterator[Row]], ...] = (
     retraction, hysteresis, pull_off, jump_in, cantilever, dugdale, maugis, rigid, law, wave,
-    full_contact, applications,
+    full_contact, speeds, applications,
 )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ import importlib
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import textwrap
@@ -22,7 +23,7 @@ import pellicle as pl
 from pellicle.cli import app
 from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
 from pellicle.model import ranges as axes
-from tests.docs.blocks import PAGES, ROOT, Block, blocks
+from tests.docs.blocks import DOCS, PAGES, ROOT, Block, blocks
 
 LANGUAGES = {"python", "pycon", "toml", "console", "sh"}
 DIRECTIVES = {"{eval-rst}", "{toctree}"}
@@ -201,7 +202,9 @@ def _commands(text: str) -> Iterator[tuple[str, str]]:
 
 @pytest.fixture
 def reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Reader]:
-    """Someone in an empty folder."""
+    """Someone in a folder that holds nothing but the reference tables."""
+    for table in (DOCS / "reference-data").glob("*.csv"):
+        shutil.copy(table, tmp_path)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("PELLICLE_DISABLE_PLUGINS", raising=False)
     reader = Reader(tmp_path, monkeypatch)

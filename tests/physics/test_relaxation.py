@@ -334,9 +334,9 @@ def test_resumed_run_has_the_same_numbers(
         (
             {
                 "loading": {"depth": 1e-6, "time": 0.0},
-                "interaction": {"type": "linear", "work_of_adhesion": 0.05, "range": 1e-6},
+                "interaction": {"type": "jkr", "work_of_adhesion": 0.05},
             },
-            "interaction",
+            "interaction.type: 'jkr' takes its range from the cells",
         ),
     ],
 )

@@ -11,6 +11,7 @@ from .adhesive_curve import AdhesiveContact, AdhesiveCurve, adhesive_curve
 from .distribution import Distribution, distribution
 from .ellipse import Ellipse, ellipse
 from .extrapolation import Extrapolation, extrapolate
+from .oscillation import Oscillation, oscillations
 from .patches import Patches, coordination, patches
 from .path import Leg, PathSummary, legs, path_summary
 from .perimeter import perimeter
@@ -23,6 +24,7 @@ __all__ = [
     "Ellipse",
     "Extrapolation",
     "Leg",
+    "Oscillation",
     "Patches",
     "PathSummary",
     "Spectrum",
@@ -32,6 +34,7 @@ __all__ = [
     "ellipse",
     "extrapolate",
     "legs",
+    "oscillations",
     "patches",
     "path_summary",
     "perimeter",

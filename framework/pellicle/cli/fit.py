@@ -59,7 +59,7 @@ def fit(
         ),
     ] = None,
     segment: Annotated[
-        str | None, typer.Option(help="Pass to fit: approach (default), retract.")
+        str | None, typer.Option(help="Pass to fit: approach (default), retract, both.")
     ] = None,
     spring_constant: Annotated[
         str | None,
@@ -67,6 +67,12 @@ def fit(
     ] = None,
     sensitivity: Annotated[
         str | None, typer.Option(help='Deflection over the signal in volts: "50 nm/V".')
+    ] = None,
+    speed: Annotated[
+        list[str] | None,
+        typer.Option(
+            help='Speed where a file holds no time: "2 um/s"; repeat it to give one for each file.'
+        ),
     ] = None,
     pool: Annotated[
         bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
@@ -136,6 +142,7 @@ def fit(
         segment=segment,
         spring_constant=spring_constant,
         sensitivity=sensitivity,
+        speed=speed[0] if speed and len(speed) == 1 else speed or None,
         pool=pool or None,
         contact_points=contact_points or None,
         executor=executor,

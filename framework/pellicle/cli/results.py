@@ -32,11 +32,12 @@ def print_steps(result: Result, *, si: bool = False) -> None:
 
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    shown = {"depth", "force", *areas, *names_of("other")}
+    shown = {"time", "depth", "force", *areas, *names_of("other")}
     loading = [name for name in result.configuration["loading"] if name in data]
     requested = [name for name in (*loading, "stiffness") if name in {*data} - shown]
     requested = [*dict.fromkeys(reversed(requested))][::-1]
-    names = ["depth", "force", *areas, *requested, "iterations"]
+    time = ["time"] if "time" in data else []
+    names = [*time, "depth", "force", *areas, *requested, "iterations"]
     coarse = dict(result.coarse())
     numbers = data["step"].values.tolist()
     converged = dict(zip(numbers, data["converged"].values.tolist(), strict=True))
@@ -67,14 +68,15 @@ def print_contact(result: Result, *, si: bool = False) -> None:
 
 def print_path(result: Result, *, si: bool = False) -> None:
     """Print the events on the path and its work, where there is an interaction."""
-    from pellicle.results.variables import VARIABLES
+    from pellicle.results.variables import VARIABLES, names_of
     from pellicle.units import DIGITS, Scale, printed, readable
 
     def value(number: float, unit: str) -> str:
         text = Scale(1.0, printed(unit)).text(number, 6) if si else readable(number, unit, DIGITS)
         return "none" if number != number else text
 
-    rows = [(VARIABLES[name], number) for name, number in result.path_summary.items()]
+    summary, events = result.path_summary, names_of("path")
+    rows = [(VARIABLES[name], number) for name, number in summary.items() if name in events]
     if rows:
         columns = [
             ("path", [variable.words for variable, _ in rows]),
@@ -82,6 +84,19 @@ def print_path(result: Result, *, si: bool = False) -> None:
             ("meaning", [variable.meaning for variable, _ in rows]),
         ]
         print_columns(columns)
+
+
+def print_oscillations(result: Result, *, si: bool = False) -> None:
+    """Print a row for each oscillation on the path."""
+    from pellicle.results.variables import names_of, wording_of
+
+    if oscillations := result.oscillations:
+        columns = []
+        for name in names_of("oscillation"):
+            values = [getattr(oscillation, name) for oscillation in oscillations]
+            shown = wording_of(name, values, si=si)
+            columns.append((shown.head, [shown.number(value) for value in values]))
+        print_columns(columns, "oscillations")
 
 
 def _columns(data: xr.Dataset, names: Sequence[str], si: bool) -> list[tuple[str, list[str]]]:

@@ -13,6 +13,7 @@ from .results import (
     exit_by_status,
     print_contact,
     print_origin,
+    print_oscillations,
     print_path,
     print_result_json,
     print_runs,
@@ -55,6 +56,7 @@ def show(
         print_steps(result, si=si)
         print_contact(result, si=si)
         print_path(result, si=si)
+        print_oscillations(result, si=si)
     exit_by_convergence(result)
     if done < total:
         typer.echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)

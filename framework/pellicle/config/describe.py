@@ -6,13 +6,22 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 
+from pellicle.loading import LoadSteps
 from pellicle.plugins import Origin
 from pellicle.units import quantity_of, readable
 
 from .run import Run
-from .wording import field_words, model_in, model_of_table, registered, type_words, words_at
+from .wording import (
+    field_words,
+    fields_of_leg,
+    model_in,
+    model_of_table,
+    registered,
+    type_words,
+    words_at,
+)
 
 
 class Input(NamedTuple):
@@ -36,7 +45,7 @@ def inputs(configuration: Mapping[str, Any]) -> Iterator[Input]:
 
     Fields of components that are not installed have no unit.
     """
-    for name, value, meaning, origin in _table(configuration, Run, ""):
+    for name, value, meaning, origin in _table(configuration, Run.model_fields, ""):
         top = name.partition(".")[0]
         part = field_words(top, Run.model_fields.get(top))
         yield Input(name, part, words_at(configuration, Run, name), value, meaning, origin)
@@ -46,8 +55,7 @@ _SNAKE = re.compile(r"\b[a-z]+(?:_[a-z]+)+\b")
 _Row = tuple[str, str, str, Origin | None]
 
 
-def _table(table: Mapping[str, Any], model: type[BaseModel] | None, path: str) -> Iterator[_Row]:
-    fields = model.model_fields if model else {}
+def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str) -> Iterator[_Row]:
     for key, value in table.items():
         info = fields.get(key)
         name = f"{path}{key}"
@@ -55,16 +63,18 @@ def _table(table: Mapping[str, Any], model: type[BaseModel] | None, path: str) -
             yield from _one(value, info.annotation if info else None, name)
         elif isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
             for index, entry in enumerate(value):
-                yield from _one(entry, info.annotation if info else None, f"{name}.{index}")
+                if info and any(isinstance(m, LoadSteps) for m in info.metadata):
+                    yield from _table(entry, fields_of_leg(entry, info), f"{name}.{index}.")
+                else:
+                    yield from _one(entry, info.annotation if info else None, f"{name}.{index}")
         elif value not in ([], ""):
             quantity = quantity_of(info) if info else None
             text = readable(value, quantity.unit if quantity else "1")
-            yield name, text, _worded((info.description if info else None) or "", model), None
+            yield name, text, _worded((info.description if info else None) or "", fields), None
 
 
-def _worded(description: str, model: type[BaseModel] | None) -> str:
+def _worded(description: str, fields: Mapping[str, FieldInfo]) -> str:
     """Return the description of a field with words for other fields that it names."""
-    fields = model.model_fields if model else {}
     return _SNAKE.sub(lambda match: field_words(match[0], fields.get(match[0])), description)
 
 
@@ -77,4 +87,4 @@ def _one(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[_Row]
         summary, origin = (known.summary, known.origin) if known else ("", None)
         yield name, type_words(family, str(table["type"])), summary, origin
     inner = {key: value for key, value in table.items() if key != "type"}
-    yield from _table(inner, model, f"{name}.")
+    yield from _table(inner, model.model_fields if model else {}, f"{name}.")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import itertools
+import math
 from collections.abc import Mapping
 from functools import cache, cached_property
 from itertools import filterfalse
@@ -16,6 +17,7 @@ from pellicle.components import Prescription
 from pellicle.errors import ConfigError, Problem
 from pellicle.loading import OPTIONS, LoadSteps
 from pellicle.model.base import Model
+from pellicle.model.legs import Leg, Sample, sampled
 from pellicle.model.messages import nearest
 from pellicle.plugins import registry
 from pellicle.units import Quantity
@@ -29,7 +31,9 @@ class Loading(Model):
 
     The key is the type of a prescription; its value is one value, a list, or a ramp
     ``{start, stop, num}``, optionally with ``spacing = "log"``; with ``back = true`` the ramp
-    returns to its start through the same values. The fields of the prescription are further keys.
+    returns to its start through the same values. A list of legs ``{to, time, num}``, ``{hold,
+    num}`` and ``{amplitude, frequency, cycles, num}`` gives values and times. The fields of the
+    prescription are further keys.
     """
 
     model_config = ConfigDict(extra="allow")
@@ -63,6 +67,12 @@ class Loading(Model):
     def _check_time(self) -> Self:
         if self.time is None:
             return self
+        if self.samples:
+            raise ConfigError(
+                f"is given beside the legs of {self.prescribed}, which have their own times; leave "
+                "it out",
+                "time",
+            )
         if len(self.time) != len(self.values):
             raise ConfigError(
                 f"has {len(self.time)} values for {len(self.values)} load steps; give one for each "
@@ -95,17 +105,53 @@ class Loading(Model):
         """The options, the prescribed values and the fields of the prescription."""
         return loading_model(self.prescribed).model_fields
 
+    @cached_property
+    def samples(self) -> tuple[Sample, ...]:
+        """The load steps of a path in legs; none of any other path."""
+        given = getattr(self, self.prescribed)
+        return sampled(given) if isinstance(given[0], Leg) else ()
+
     @property
     def values(self) -> tuple[float, ...]:
         """The load steps in order, SI."""
+        if self.samples:
+            return tuple(sample.value for sample in self.samples)
         values: tuple[float, ...] = getattr(self, self.prescribed)
         return values
+
+    @property
+    def times(self) -> tuple[float, ...] | None:
+        """Time [s] at the end of each load step, given or that of the legs; None without times."""
+        return tuple(sample.time for sample in self.samples) if self.samples else self.time
+
+    @property
+    def durations(self) -> tuple[float, ...]:
+        """Duration [s] of each load step; 0 for a jump.
+
+        Legs begin at time 0. Before the first of other steps nothing is known, so it is a jump.
+        """
+        times = self.times or ()
+        start = (0.0,) if self.samples else times[:1]
+        return tuple(after - before for before, after in itertools.pairwise((*start, *times)))
+
+    @property
+    def oscillates(self) -> bool:
+        """Whether a leg is an oscillation."""
+        return not all(math.isnan(sample.cycle) for sample in self.samples)
+
+    def field_of(self, index: int) -> str:
+        """Return the dotted path of load step ``index``, counted from 0, or of its leg."""
+        return f"{self.prescribed}.{self.samples[index].leg if self.samples else index}"
 
     @property
     def variables(self) -> set[str]:
         """The names of the result variables that this loading adds."""
         names = {variable.name for variable in self.prescription.variables}
-        options = {"stiffness": self.stiffness, "time": self.time is not None}
+        options = {
+            "stiffness": self.stiffness,
+            "time": self.times is not None,
+            "cycle": self.oscillates,
+        }
         return names | {name for name, used in options.items() if used}
 
 
@@ -157,7 +203,7 @@ def loading_model(type_: str, interaction: bool = True) -> type[Model]:
     meaning = (inspect.getdoc(component) or "").partition("\n")[0]
     steps: Any = Annotated[
         tuple[float, ...],
-        LoadSteps(component.quantity(interaction)),
+        LoadSteps(component.quantity(interaction), legs=True),
         Field(description=meaning),
     ]
     definitions: dict[str, Any] = {type_: (steps, ...)}

@@ -9,12 +9,12 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Self
 
+import numpy as np
 from pydantic import (
     Field,
     ValidationInfo,
@@ -23,6 +23,7 @@ from pydantic import (
     model_validator,
 )
 
+from pellicle.checks import errors_attributed_to
 from pellicle.components import (
     AreaCorrection,
     HasRelaxation,
@@ -47,6 +48,9 @@ from .loading import Loading, refuse_pulls
 DEFAULT_SOLVER = "active_set"
 # Increment if an equal configuration gives different numbers, not if the file layout changes.
 _NUMBERS_VERSION = 1
+# Length 2τ₀/E* of the instantaneous solid, in cells, from which on the pull-off force of an
+# interaction without a range changes by less than 2 % if the cells are halved.
+_TENSED_CELLS = 3.0
 
 
 class Run(FromFile):
@@ -109,9 +113,10 @@ class Run(FromFile):
         if not branches_of(self.kernel):
             return self
         name = self.kernel.type_name
-        if self.loading.time is None:
+        if self.loading.times is None:
             raise ConfigError(
-                f"is missing, and {name!r} relaxes in time; give one time for each load step",
+                f"is missing, and {name!r} relaxes in time; give one time for each load step, or "
+                f"legs of {self.loading.prescribed}",
                 "loading.time",
             )
         is_free = self.grid.boundary == "free"
@@ -123,13 +128,14 @@ class Run(FromFile):
                 'boundary = "periodic"',
                 "kernel",
             )
-        _refuse_times(self.kernel, self.loading.time)
-        if self.interaction:
-            raise ConfigError(
-                f"cannot act on a solid that relaxes ({name!r}) yet; leave the interaction out, or "
-                "use an elastic kernel",
-                "interaction",
-            )
+        _refuse_times(self.kernel, self.loading)
+        return self
+
+    @model_validator(mode="after")
+    def _range_where_it_relaxes(self) -> Self:
+        kernel = self.kernel
+        if self.interaction and branches_of(kernel) and isinstance(kernel, HasRelaxation):
+            _refuse_range_of_the_grid(self.interaction, kernel, self.grid)
         return self
 
     @model_validator(mode="after")
@@ -192,7 +198,7 @@ class Run(FromFile):
         return hashlib.sha256(json.dumps(identifying, sort_keys=True).encode()).hexdigest()
 
 
-def _refuse_times(kernel: Kernel, times: Sequence[float]) -> None:
+def _refuse_times(kernel: Kernel, loading: Loading) -> None:
     """Refuse steps at times for which the relaxation of a kernel is not meant.
 
     Raises
@@ -203,14 +209,41 @@ def _refuse_times(kernel: Kernel, times: Sequence[float]) -> None:
     if not isinstance(kernel, HasTimeSpan):
         return
     shortest, longest = kernel.time_span()
-    duration = times[-1] - times[0]
-    least = min((b - a for a, b in pairwise(times) if b > a), default=math.inf)
+    duration = math.fsum(loading.durations)
+    least = min((step for step in loading.durations if step > 0), default=math.inf)
     if least < shortest or duration > longest:
         what = f"has a step of {least:g} s" if least < shortest else f"lasts {duration:g} s"
         raise ConfigError(
             f"{what}, and the relaxation of {kernel.type_name!r} holds from {shortest:g} to "
             f"{longest:g} s; give it a wider span, or other times",
-            "loading.time",
+            f"loading.{loading.prescribed if loading.samples else 'time'}",
+        )
+
+
+def _refuse_range_of_the_grid(interaction: Interaction, kernel: HasRelaxation, grid: Grid) -> None:
+    """Refuse an interaction without a range on a solid that relaxes and is not under tension.
+
+    The solid in the zone relaxes at a rate that depends on the width of the zone, so the force has
+    no limit as the cells shrink, unless an elastic skin is much stiffer than the solid there.
+
+    Raises
+    ------
+    ConfigError
+        The interaction has no range of its own, and no skin dominates at the size of the cells.
+    """
+    if interaction.cutoff() > 0:
+        return
+    q = np.array([np.pi / grid.cell_size])
+    with errors_attributed_to(kernel):
+        solid, whole = (one.compliance(q).item() for one in (kernel.without_skin(), kernel))
+    cells = (solid / whole - 1) / np.pi
+    if cells < _TENSED_CELLS:
+        raise ConfigError(
+            f"{interaction.type_name!r} takes its range from the cells, and where the solid "
+            "relaxes the force depends on the range; give linear or dugdale with a range, or a "
+            f"tension τ₀ whose length 2τ₀/E* is {_TENSED_CELLS:g} cells or more: here it is "
+            f"{cells:.2g}",
+            "interaction.type",
         )
 
 

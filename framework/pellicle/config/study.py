@@ -242,6 +242,8 @@ class Study(FromFile):
         known -= texts | {*names_of("requested")}
         if all(point.run.interaction is None for point in self.points):
             known -= {*names_of("interaction", "path")}
+        if not any(point.run.loading.oscillates for point in self.points):
+            known -= {*names_of("oscillation")}
         known |= run.loading.variables
         known |= {corrected_area(correction.type_name).name for correction in run.corrections}
         known |= {*self.vary, *itertools.chain.from_iterable(self.zip)}

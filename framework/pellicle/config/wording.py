@@ -12,8 +12,11 @@ from pydantic.fields import FieldInfo
 from pellicle.components import Component
 from pellicle.components.base import words_of_type
 from pellicle.errors import ConfigError, PluginError
+from pellicle.loading import LoadSteps
+from pellicle.model.legs import KINDS, fields_of
 from pellicle.plugins import Registered, registry
 from pellicle.results.variables import words_of_name
+from pellicle.units import quantity_of
 
 from .loading import Loading, model_of
 
@@ -39,11 +42,14 @@ def words_at(configuration: Mapping[str, Any], model: type[BaseModel], key: str)
             break
         if name.isdecimal():
             noun = _entry(noun, field, table, int(name))
+            if field is not None and _is_leg(field, table):
+                noun = f"leg {int(name) + 1}"
             entries = table if isinstance(table, list) else []
             table = entries[int(name)] if int(name) < len(entries) else None
         else:
             owner = _with_owner(noun, owner) if depth > 1 else ""
-            field = inner.model_fields.get(name) if inner else None
+            leg = fields_of_leg(table, field) if field is not None and inner is None else {}
+            field = inner.model_fields.get(name) if inner else leg.get(name)
             noun = field_words(name, field)
             table = table.get(name) if isinstance(table, Mapping) else None
         is_table = isinstance(table, Mapping)
@@ -63,6 +69,20 @@ def _entry(noun: str, field: FieldInfo | None, values: object, index: int) -> st
         return f"{noun} along {'xy'[index]}"
     tables = isinstance(values, list) and any(isinstance(value, Mapping) for value in values)
     return f"{noun.removesuffix('s') if tables else noun} {index + 1}"
+
+
+def _is_leg(field: FieldInfo, values: object) -> bool:
+    steps = any(isinstance(annotation, LoadSteps) for annotation in field.metadata)
+    return steps and isinstance(values, list) and any(isinstance(v, Mapping) for v in values)
+
+
+def fields_of_leg(leg: object, info: FieldInfo) -> Mapping[str, FieldInfo]:
+    """Return the fields of a leg of the load steps described by ``info``; none of another table."""
+    quantity = quantity_of(info)
+    if not isinstance(leg, Mapping) or quantity is None:
+        return {}
+    kind = next((kind for kind in KINDS if kind.key in leg), None)
+    return fields_of(kind, quantity.unit) if kind else {}
 
 
 def _is_pair(field: FieldInfo) -> bool:

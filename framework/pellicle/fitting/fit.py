@@ -6,10 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from numpy.typing import ArrayLike
 
+from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError
 
 from .config import FitConfig
@@ -71,6 +72,7 @@ def fit(
     force: ArrayLike | None = None,
     *,
     depth: ArrayLike | None = None,
+    time: ArrayLike | None = None,
     config: FitConfig | str | Path | None = None,
     progress: bool = False,
     **options: Any,
@@ -93,6 +95,8 @@ def fit(
         its deflection, so that the noise of the deflection is in both.
     depth
         Depth [m] instead of position: the contact point is then fixed at 0.
+    time
+        Time [s] of each row, in order; without it the option ``speed`` [m/s] gives a constant one.
     config
         A configuration or its TOML file.  Without position and force, the curve that it names is
         fitted.
@@ -124,6 +128,9 @@ def fit(
         raise ConfigError(f"names {count} curves; use fit_many or fit_pooled", "curves")
     if depth is not None and isinstance(source.curve, Curve):
         source = source._replace(curve=replace(source.curve, is_depth=True))
+    if time is not None and isinstance(source.curve, Curve):
+        # `clean` checks the array.
+        source = source._replace(curve=replace(source.curve, time=cast("Array", time)))
     return fit_source(config, source, progress=progress)
 
 

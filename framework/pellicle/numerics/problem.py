@@ -319,7 +319,13 @@ class Equilibrium:
 
     @property
     def energy(self) -> float:
-        """Elastic energy and energy of the law [J]; the spring of a holder is not counted."""
+        """Elastic energy and energy of the law [J]; the spring of a holder is not counted.
+
+        NaN where earlier steps have left a displacement behind: the energy that is stored in a
+        solid that relaxes does not follow from its surface.
+        """
+        if self.problem.left is not None:
+            return np.nan
         elastic = 0.5 * float((self.pressure * self.displacement).sum())
         bound = 0.0
         if self.problem.law:
@@ -381,7 +387,7 @@ class Equilibrium:
     @cached_property
     def _scale(self) -> float:
         if self.problem.law:
-            return adhesive_scale(self.problem.profile, self.contact, self.displacement)
+            return adhesive_scale(self.problem, self.contact, self._by_pressure)
         return self.problem.height_scale(self.contact, self._base, self.total)
 
     @property
@@ -421,13 +427,14 @@ def height_scale(
     return max(abs(depth), wave) or float(np.ptp(indenter)) or 1.0
 
 
-def adhesive_scale(profile: Array, contact: Mask, displacement: Array) -> float:
+def adhesive_scale(problem: Problem, contact: Mask, displacement: Array) -> float:
     """Return the length [m] to which gaps are compared where a law acts.
 
-    It is the height range in contact or, if the indenter is flat there, the greatest displacement:
-    a surface that is pulled may be far from flat at a depth near 0.
+    It is the height range in contact or, if the indenter is flat there, the greatest
+    ``displacement`` [m] by the pressure: a surface that is pulled may be far from flat at a depth
+    near 0.
     """
-    heights = profile[contact]
+    heights = problem.heights[contact]
     in_contact = float(np.ptp(heights)) if heights.size else 0.0
     greatest = float(np.abs(displacement).max())
     return in_contact if in_contact > _FLAT * greatest else greatest or 1.0

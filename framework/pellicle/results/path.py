@@ -1,4 +1,4 @@
-"""The variables of a run's whole path, where there is an interaction."""
+"""The variables of a run's whole path: where it sticks, and where it oscillates."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellicle.analysis import path_summary
+from pellicle.analysis import Oscillation, oscillations, path_summary
 
 from .variables import VARIABLES
 
@@ -20,11 +20,37 @@ def has_interaction(data: xr.Dataset) -> bool:
     return "zone_area" in data
 
 
-def path_variables(steps: xr.Dataset) -> dict[str, float]:
-    """Return the variables of kind ``path`` of the steps of a run; none without an interaction.
+def has_path(data: xr.Dataset) -> bool:
+    """Whether a result, or any run in the table of a study, has variables of its whole path."""
+    return has_interaction(data) or has_oscillation(data)
 
-    They are those of `pellicle.analysis.PathSummary`, by name.
+
+def has_oscillation(data: xr.Dataset) -> bool:
+    """Whether a leg of the path of a result, or of any run in the table of a study, oscillates."""
+    return "cycle" in data
+
+
+def oscillations_of(steps: xr.Dataset) -> list[Oscillation]:
+    """Return the response of each oscillation on the path of a run."""
+    if not has_oscillation(steps):
+        return []
+    done = steps.isel(step=np.isfinite(steps["time"].values))
+    names = "time", "cycle", "depth", "force", "converged"
+    return oscillations(*(done[name].values for name in names))
+
+
+def path_variables(steps: xr.Dataset) -> dict[str, float]:
+    """Return the variables of kinds ``path`` and ``oscillation`` of the steps of a run.
+
+    They are those of `pellicle.analysis.PathSummary` where there is an interaction, and of the last
+    `pellicle.analysis.Oscillation` where there is one, by name.
     """
+    last = oscillations_of(steps)[-1:]
+    return _events(steps) | (asdict(last[0]) if last else {})
+
+
+def _events(steps: xr.Dataset) -> dict[str, float]:
+    """Return the variables of kind ``path``; none without an interaction."""
     if not has_interaction(steps):
         return {}
     done = steps.isel(step=~np.isnan(steps["zone_area"].values))
@@ -37,9 +63,9 @@ def path_variables(steps: xr.Dataset) -> dict[str, float]:
 def with_path(table: xr.Dataset) -> xr.Dataset:
     """Return the numbers of a run, or the table of a study, with the path variables of each run.
 
-    Without an interaction the table is returned as it is.
+    Without an interaction or an oscillation the table is returned as it is.
     """
-    if not has_interaction(table):
+    if not has_path(table):
         return table
     dims = [dim for dim in table["converged"].dims if dim != "step"]
     shape = [table.sizes[dim] for dim in dims]

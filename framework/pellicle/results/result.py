@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle.analysis import Oscillation
 from pellicle.errors import ConfigError, StorageError
 from pellicle.grid import Grid
+from pellicle.model.legs import number_of_steps
 
 from . import storage
-from .path import path_variables
+from .path import oscillations_of, path_variables
 from .status import Status
 from .variables import FIELDS, REQUIRED, damage
 
@@ -44,7 +46,7 @@ class Result:
     def planned_steps(self) -> int:
         """The number of load steps of the configuration, solved or not."""
         loading = self.configuration["loading"]
-        return next(len(value) for value in loading.values() if isinstance(value, list))
+        return next(number_of_steps(v) for v in loading.values() if isinstance(v, list))
 
     @property
     def converged(self) -> bool:
@@ -53,12 +55,18 @@ class Result:
 
     @property
     def path_summary(self) -> dict[str, float]:
-        """Pull-off, loss and gain of contact, and work of the path; empty without an interaction.
+        """Numbers of the whole path: events and work where it sticks, the last oscillation.
 
-        The names, units and meanings are those of `pellicle.analysis.PathSummary`; events that the
-        path does not contain are NaN.
+        The names, units and meanings are those of `pellicle.analysis.PathSummary`, where there is
+        an interaction, and of `pellicle.analysis.Oscillation`, where a leg oscillates; events that
+        the path does not contain are NaN. It is empty where there is neither.
         """
         return path_variables(self.dataset)
+
+    @property
+    def oscillations(self) -> list[Oscillation]:
+        """The complex stiffness and dissipation of each oscillation on the path."""
+        return oscillations_of(self.dataset)
 
     def failures(self) -> list[tuple[int, str]]:
         """Return number, counted from 1, and status of each step that did not converge."""

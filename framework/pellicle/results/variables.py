@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 
@@ -23,6 +23,7 @@ Kind = Literal[
     "interaction",
     "contact",
     "path",
+    "oscillation",
     "effort",
     "residual",
     "status",
@@ -30,7 +31,7 @@ Kind = Literal[
 """``field`` has a value for each cell; ``main`` is listed for each run of a study; ``requested``
 exists only if the loading requests it, like variables of a prescription; ``contact`` describes the
 shape of the contact; ``interaction`` exists only with an interaction; so does ``path``, which has
-one value for all steps of a run."""
+one value for all steps of a run; so has ``oscillation``, which exists where a leg oscillates."""
 Type = Literal["number", "count", "truth", "text"]
 
 
@@ -88,12 +89,13 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
     "requested": (
         ("stiffness", "N/m", "contact stiffness dF/dδ, if it is asked for"),
         ("time", "s", "time at the end of the step"),
+        ("cycle", "1", "cycles since the oscillation began, in the legs that oscillate"),
         ("wall_pressure", "Pa", "pressure of the indenter without the traction across the gap"),
     ),
     "interaction": (
         ("zone_area", "m2", "area off the contact where the traction exceeds 1 % of the strength"),
         ("zone_width", "m", "mean distance from the contact to the outer edge of the zone"),
-        ("energy", "J", "elastic energy plus energy of the interaction"),
+        ("energy", "J", "energy of solid and interaction; NaN on a solid that relaxes"),
         ("force_error", "N", "estimated error of the force, from a wider zone"),
         ("jumped", "1", "whether all contact was gained or lost in this step", "truth"),
         ("residual_traction", "1", "error of the traction across the gap over all tractions"),
@@ -137,6 +139,15 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         ("work_accuracy", "J", "Σ|ΔF Δδ|/2 of the steps in which contact is lost or gained"),
         ("dissipated_energy", "J", "work less the change of the energy over the path"),
     ),
+    "oscillation": (
+        ("oscillation_frequency", "Hz", "frequency of the last oscillation on the path"),
+        ("oscillation_amplitude", "m", "amplitude of the depth over its last whole cycle"),
+        ("storage_stiffness", "N/m", "force in phase with the depth over the amplitude, K′"),
+        ("loss_stiffness", "N/m", "force a quarter of a cycle ahead over the amplitude, K″"),
+        ("phase", "rad", "angle by which the force is ahead of the depth"),
+        ("cycle_dissipation", "J", "∮F dδ over the last whole cycle"),
+        ("cycle_drift", "1", "gain of depth or force over that cycle, over its amplitude"),
+    ),
     "effort": (
         ("iterations", "1", "iterations of the solver", "count"),
         ("operator_applications", "1", "applications of the operator on the finest grid", "count"),
@@ -177,6 +188,11 @@ _TITLES = {
     "jump_in_accuracy": "accuracy of the depth at jump-in",
     "work_accuracy": "accuracy of the work",
     "wall_time": "computing time",
+    "storage_stiffness": "storage stiffness K′",
+    "loss_stiffness": "loss stiffness K″",
+    "phase": "phase angle",
+    "cycle_dissipation": "dissipation of a cycle",
+    "cycle_drift": "drift of a cycle",
     "residual_traction": "residual of the traction",
     "residual_contact": "residual of the contact",
     "residual_penetration": "residual of penetration",
@@ -280,6 +296,14 @@ def wording(variable: xr.DataArray, *, si: bool = False) -> Wording:
     scale = axis_unit(variable.values, unit)
     is_axis = variable.ndim == 1 and name in variable.coords
     return Wording(words, scale, _digits(variable.values, scale) if is_axis else DIGITS)
+
+
+def wording_of(name: str, values: Sequence[float], *, si: bool = False) -> Wording:
+    """Return how values of a variable of `VARIABLES` are shown."""
+    import xarray as xr
+
+    attributes = VARIABLES[name].attributes
+    return wording(xr.DataArray(list(values), dims="row", name=name, attrs=attributes), si=si)
 
 
 def _known_words(name: str) -> str:

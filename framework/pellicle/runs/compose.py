@@ -38,7 +38,7 @@ def compose(run: Run) -> Setting:
     if law:
         check_solver(run.solver, setting.problem(Force(0.0)))
     for index, value in enumerate(run.loading.values):
-        field = f"loading.{run.loading.prescribed}.{index}"
+        field = f"loading.{run.loading.field_of(index)}"
         check_value(run.loading.prescription, setting, value, field)
         if law:
             _check_search(run.loading.prescription, setting, value, field)

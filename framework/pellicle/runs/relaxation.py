@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import pairwise
 from typing import Final, Self
 
 from pellicle.arrays import Array
@@ -76,12 +75,11 @@ class Relaxation:
     def __init__(
         self,
         branches: Sequence[Branch],
-        times: Sequence[float],
+        durations: Sequence[float],
         shape: tuple[int, ...],
         skin: Skin | None = None,
     ) -> None:
-        # The first step is a jump: the solid is undeformed before it.
-        durations = [0.0, *(b - a for a, b in pairwise(times))]
+        # The solid is undeformed before the first step.
         self._steps = [TimeStep.of(branches, duration) for duration in durations]
         self._memory = Memory.at_rest(branches, shape)
         self._skin = skin
@@ -93,11 +91,9 @@ class Relaxation:
         kernel, branches = run.kernel, branches_of(run.kernel)
         if not branches:
             return None
-        # Validation requires times where the kernel relaxes.
-        assert run.loading.time is not None
         assert isinstance(kernel, HasRelaxation)
         skin = Skin(kernel, run.grid) if kernel.without_skin() != kernel else None
-        return cls(branches, run.loading.time, run.grid.shape, skin)
+        return cls(branches, run.loading.durations, run.grid.shape, skin)
 
     def setting(self, setting: Setting, pressures: Array, displacements: Array) -> Setting:
         """Return the setting of the step after those with these pressures and displacements.

@@ -62,12 +62,17 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
         )
     if step.search and (step.how != "met" or step.missed > _NEAR):
         return _not_met(step, step.search)
-    cells = int(np.count_nonzero(equilibrium.contact))
-    enough = _RESOLVED_ACROSS if min(equilibrium.contact.shape) == 1 else _RESOLVED
+    contact = equilibrium.contact
+    # An interaction of a range of its own acts beyond the contact, however small that is.
+    ranged = run.interaction is not None and not run.interaction.needs_contact
+    cells = int(np.count_nonzero(contact | equilibrium.zone if ranged else contact))
+    enough = _RESOLVED_ACROSS if min(contact.shape) == 1 else _RESOLVED
     problem = equilibrium.problem
     # A surface that was left behind may be out of the indenter's reach at a depth above 0.
     least = problem.first_touch if problem.prescribed == "depth" else 0.0
-    if problem.control.value > least and cells < min(enough, equilibrium.contact.size):
+    # An interaction holds a contact at any depth.
+    sticks = run.interaction is not None and bool(contact.any())
+    if (problem.control.value > least or sticks) and cells < min(enough, contact.size):
         return Status.COARSE, Status.COARSE.value.format(cells=cells or "none")
     if run.interaction:
         return _doubt(run, run.interaction, equilibrium)
@@ -76,13 +81,13 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
 
 def _doubt(run: Run, interaction: Interaction, equilibrium: Equilibrium) -> tuple[Status, str]:
     """Return the status of a step that is solved, where an interaction acts."""
-    width = equilibrium.zone_width / max(run.grid.spacing)
+    width = equilibrium.zone_width / run.grid.cell_size
     if width < interaction.least_cells:
         return Status.COARSE_ZONE, Status.COARSE_ZONE.value.format(
             cells=width, least=interaction.least_cells
         )
     slope = max(
-        steepest(equilibrium.problem.profile, equilibrium.contact, run.grid),
+        steepest(equilibrium.problem.heights, equilibrium.contact, run.grid),
         rim_slope(run.kernel.compliance, equilibrium) if equilibrium.contact.any() else 0.0,
     )
     if slope > _STEEPEST:

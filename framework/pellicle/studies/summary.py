@@ -20,7 +20,10 @@ _FAILURES = {
     "not run": "were not finished",
 }
 """Phrases for messages such as "3 did not converge", by verdict."""
-_EVENTS = "pull_off", "detach", "jump_in", "dissipated_energy"
+_EVENTS = (
+    *("pull_off", "detach", "jump_in", "dissipated_energy"),
+    *("storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation"),
+)
 _SHORT = 8
 Columns = list[tuple[str, list[str]]]
 """Head and cells of each column."""
@@ -52,7 +55,7 @@ def columns(table: xr.Dataset, *, si: bool = False) -> Columns:
 
 
 def paths(table: xr.Dataset, *, si: bool = False) -> Columns:
-    """Return the events on the path of each run; no columns without an interaction."""
+    """Return the main numbers of the whole path of each run; no columns where it has none."""
     derived = json.loads(table.attrs["configuration"])["study"].get("derived", {})
     per_run = [n for n in derived if n in table and "step" not in table[n].dims]
     names = [n for n in (*_EVENTS, *per_run) if n in table]

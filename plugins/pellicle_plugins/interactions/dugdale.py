@@ -59,7 +59,7 @@ class Dugdale(Adhesive):
 
     def resolved(self, kernel: Kernel, grid: Grid) -> GapLaw:
         """Return the law whose drop is spread over the gap's change across one cell."""
-        cell = max(grid.spacing)
+        cell = grid.cell_size
         width = zone_width(self.work_of_adhesion, self.greatest_traction, kernel, cell)
         share = np.clip(_OUTER_CHANGE * cell / (_NARROWER * width), 1 / _MOST_CELLS, 1.0)
         return Spread(self.greatest_traction, self.reach, self.reach * float(share))

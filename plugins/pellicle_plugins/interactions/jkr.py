@@ -65,7 +65,7 @@ class JKR(Interaction):
 
     def resolved(self, kernel: Kernel, grid: Grid) -> GapLaw:
         """Return linear softening over about two to three cells on this kernel."""
-        width = self._cells * max(grid.spacing)
+        width = self._cells * grid.cell_size
         strength = softening_strength(self.work_of_adhesion, width, kernel)
         return Joined(work_of_adhesion=self.work_of_adhesion, strength=strength)
 

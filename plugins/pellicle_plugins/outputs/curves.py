@@ -18,7 +18,7 @@ from pellicle.errors import ConfigError
 from pellicle.model.base import Model
 from pellicle.model.expression import names_in
 from pellicle.report.plotting import RETRACTION, draw_legs
-from pellicle.results.path import has_interaction
+from pellicle.results.path import has_interaction, has_path
 from pellicle.results.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.analytic.reference import exact
 
@@ -134,7 +134,7 @@ class Curves(XYFigure):
 
     def _over_steps(self, table: xr.Dataset) -> bool:
         """Whether the expressions have a value for each step, not just one for each run."""
-        if not has_interaction(table):
+        if not has_path(table):
             return True
         used = set[str]().union(*(names_in(text) for text in (self.x, *self.y)))
         of_runs = {name for name in used & {*map(str, table.variables)} if _of_run(table[name])}
@@ -222,7 +222,7 @@ class Curves(XYFigure):
         import xarray as xr
 
         converged = table["converged"]
-        if has_interaction(table) and "step" not in (*x.dims, *y.dims):
+        if has_path(table) and "step" not in (*x.dims, *y.dims):
             # Runs may have fewer steps than the table.
             converged = (converged | (table["status"] == "")).all("step")
         x, y, good = xr.broadcast(x, y, converged.astype(float))

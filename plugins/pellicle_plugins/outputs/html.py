@@ -49,7 +49,14 @@ from pellicle.results.path import has_interaction
 from pellicle.results.result import Result, first_message
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
-from pellicle.results.variables import VARIABLES, WALL_PRESSURE, Wording, names_of, wording
+from pellicle.results.variables import (
+    VARIABLES,
+    WALL_PRESSURE,
+    Wording,
+    names_of,
+    wording,
+    wording_of,
+)
 from pellicle.studies.summary import (
     coarse,
     failures,
@@ -125,7 +132,7 @@ class Html(Output):
             result = Result(data)
             sections = [
                 Section("Status", [_status(result)]),
-                Section("Results", [*_steps(data), *_path(result)]),
+                Section("Results", [*_steps(data), *_path(result), *_oscillations(result)]),
                 Section("Maps", [self._maps_of_steps(result, Grid(**run["grid"]))]),
                 Section("Curves", _pictures_of(result)),
                 Section("Inputs", [_inputs(list(inputs(run)))]),
@@ -276,6 +283,7 @@ def _path(result: Result) -> list[Table]:
     rows: list[list[str | Cell]] = [
         [known.words, readable(value, known.unit, DIGITS), known.meaning]
         for name, value in result.path_summary.items()
+        if name in names_of("path")
         for known in (VARIABLES[name],)
     ]
     columns = [Column(head, words=True) for head in ("path", "value", "meaning")]
@@ -283,8 +291,21 @@ def _path(result: Result) -> list[Table]:
     return [Table(caption, columns, rows)] if rows else []
 
 
+def _oscillations(result: Result) -> list[Table]:
+    """Return the numbers of each oscillation, where a leg oscillates."""
+    oscillations, columns, cells = result.oscillations, [], []
+    for name in names_of("oscillation"):
+        values = [getattr(oscillation, name) for oscillation in oscillations]
+        shown = wording_of(name, values)
+        columns.append(Column(shown.words, shown.scale.unit, VARIABLES[name].meaning))
+        cells.append([shown.number(value) for value in values])
+    rows: list[list[str | Cell]] = [list(row) for row in zip(*cells, strict=True)]
+    caption = "Response over the last whole cycle of each oscillation."
+    return [Table(caption, columns, rows)] if rows else []
+
+
 def _paths(table: xr.Dataset, runs: list[xr.Dataset]) -> list[Table]:
-    """Return the numbers of the path of each run, where there is an interaction."""
+    """Return the numbers of the path of each run, where there is an interaction or oscillation."""
     names = [
         str(name)
         for name, variable in table.data_vars.items()
@@ -299,7 +320,8 @@ def _paths(table: xr.Dataset, runs: list[xr.Dataset]) -> list[Table]:
         for number, run in enumerate(runs, start=1)
     ]
     heads = [Column("run"), *(column for _, column, _ in columns)]
-    return [Table("The path of each run: its events, to a step, and its work.", heads, rows)]
+    caption = "The path of each run: events, to a step, and work; the last oscillation."
+    return [Table(caption, heads, rows)]
 
 
 def _numbers(data: xr.Dataset) -> list[str]:

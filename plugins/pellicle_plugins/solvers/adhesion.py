@@ -94,13 +94,13 @@ class _Round:
         contact, gap = self.contact, self.gap
         closed = np.abs(gap[contact])
         error = max(float(closed.max(initial=0.0)), -float(gap.min(initial=0.0, where=~contact)))
-        magnitude = max(
-            float(np.abs(part).sum()) for part in (self.wall + self.traction, self.exerted)
-        )
+        magnitude = float(np.abs(self.wall + self.traction).sum())
         missed = work = 0.0
         if magnitude:
-            missed = float(np.abs(self.missed).sum()) / magnitude
             work = float((np.abs(self.wall[contact]) * closed).sum()) / magnitude / self.scale
+        # Without any pressure the law may still attract.
+        if magnitude := max(magnitude, float(np.abs(self.exerted).sum())):
+            missed = float(np.abs(self.missed).sum()) / magnitude
         return max(error / self.scale, missed, work, 0.0 if self.settled else _UNSETTLED)
 
     @property
@@ -119,7 +119,7 @@ class _Round:
 
     @cached_property
     def scale(self) -> float:
-        return adhesive_scale(self.problem.profile, self.contact, self.displacement)
+        return adhesive_scale(self.problem, self.contact, self.displacement)
 
 
 class AdhesionSolver(ScaledSolver):

@@ -123,7 +123,7 @@ def _curve(
         bending = force / Calibration(spring_constant=stiffness).required_spring_constant()
         tip = np.asarray(data[height], dtype=float) + bending
     rows: Any = slice(None)
-    if "segment" in data:
+    if "segment" in data and segment != "both":
         # The first and the last segment are the same if there is only one.
         segments = np.asarray(data["segment"])
         rows = segments == (segments.min() if segment == "approach" else segments.max())

@@ -29,6 +29,8 @@ _VOLTS = ("V", "mV", "volt", "volts")
 
 SpringConstant = Annotated[float, Quantity("N/m", above=0)]
 """Spring constant of a cantilever [N/m]."""
+Speed = Annotated[float, Quantity("m/s", above=0)]
+"""Speed of a cantilever's base, or of the indenter [m/s]."""
 Sensitivity = Annotated[float, Quantity("m/V", above=0)]
 """Deflection of a cantilever over the signal of its detector [m/V]."""
 
@@ -48,6 +50,9 @@ class Calibration(Model):
     )
     sensitivity: Sensitivity | None = Field(
         None, description="deflection of the cantilever over the signal of its detector"
+    )
+    speed: Speed | None = Field(
+        None, description="constant speed of the base, where a file holds no time"
     )
 
     def required_spring_constant(self, purpose: str = "") -> float:
@@ -108,7 +113,13 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
             else force / calibration.required_spring_constant(purpose)
         )
         position = (position if name == "extension" else -position) - deflection
-    return Curve(position, force, name == "depth", stiffness=calibration.spring_constant)
+    return Curve(
+        position,
+        force,
+        name == "depth",
+        stiffness=calibration.spring_constant,
+        speed=calibration.speed,
+    )
 
 
 def _deflection(column: Channel, calibration: Calibration) -> Array:

@@ -8,10 +8,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, shown
 
-Segment = Literal["approach", "retract"]
+Segment = Literal["approach", "retract", "both"]
+"""The pass that is fitted; both: approach, dwell and retract in order of time."""
 
 FEWEST = 8
 """Least number of points of a fit."""
@@ -38,12 +39,17 @@ class Curve:
     """Rows that were left out, and warnings."""
     stiffness: float | None = None
     """Spring constant of the cantilever [N/m], if its deflection was subtracted from position."""
+    time: Array | None = None
+    """Time [s] of each row, of shape (n,), increasing; None if it is not known."""
+    speed: float | None = None
+    """Constant speed [m/s] of the base, from which the time follows if `time` is None."""
 
 
 def clean(curve: Curve, segment: Segment = "approach") -> Curve:
-    """Return the rows of one pass into the solid (or out of it), sorted by position.
+    """Return the rows of one pass into the solid (or out of it), sorted by position, or of both.
 
-    Where the spring constant is known, the passes are told apart by the position of the
+    Both passes are in order of time.  A speed is replaced by the time that follows from it.  Where
+    the spring constant is known, the passes are told apart by the position of the
     cantilever's base, which has no noise.
 
     Raises
@@ -61,7 +67,8 @@ def clean(curve: Curve, segment: Segment = "approach") -> Curve:
     finite = np.isfinite(z) & np.isfinite(f)
     if missing := int(np.sum(~finite)):
         messages.append(f"{missing} of {z.size} rows hold no finite number and were left out")
-        z, f = z[finite], f[finite]
+    t = None if curve.time is None else _time(curve.time, finite)
+    z, f = z[finite], f[finite]
     _check_count(z, "the curve")
     _check_si(z, "position", "m")
     _check_si(f, "force", "N")
@@ -70,19 +77,36 @@ def clean(curve: Curve, segment: Segment = "approach") -> Curve:
         raise ConfigError(f"is {z[0]:g} m in every row; give a curve that moves", "position")
     base = z if curve.stiffness is None else _base(z, f, curve.stiffness)
     _check_rise(base, f)
-    rows = _one_pass(base, segment, messages)
-    z, f, base = z[rows], f[rows], base[rows]
-    _check_count(z, f"its {segment}")
-    # The position of a tip holds the noise of the force: sorted by it, the noise has a slope.
-    order = np.argsort(base, kind="stable")
-    z, f = z[order], f[order]
+    if t is None and curve.speed is not None:
+        t = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(base)))]) / curve.speed
+    rows = _rows(base, segment, messages)
+    z, f, base, t = z[rows], f[rows], base[rows], None if t is None else t[rows]
+    _check_count(z, "it" if segment == "both" else f"its {segment}")
+    if segment != "both":
+        # The position of a tip holds the noise of the force: sorted by it, the noise has a slope.
+        order = np.argsort(base, kind="stable")
+        z, f, t = z[order], f[order], None if t is None else t[order]
     if z.size < _FEW:
         messages.append(f"only {z.size} points: expect wide intervals")
     if np.unique(z).size < FEWEST:
         raise ConfigError(
             f"has {np.unique(z).size} different values; give at least {FEWEST}", "position"
         )
-    return replace(curve, position=z, force=f, messages=tuple(messages))
+    return replace(curve, position=z, force=f, time=t, speed=None, messages=tuple(messages))
+
+
+def _time(values: Array, rows: Mask) -> Array:
+    """Return the time of some rows; an error names what is wrong with it."""
+    time = _array(values, "time")
+    if time.shape != rows.shape:
+        raise ConfigError(f"has {time.size} values; give one for each of {rows.size} rows", "time")
+    time = time[rows]
+    if not np.isfinite(time).all() or (np.diff(time) < 0).any() or not np.ptp(time):
+        raise ConfigError(
+            "falls, stands still or holds no finite number; give the time of each row [s] in order",
+            "time",
+        )
+    return time
 
 
 def _array(values: ArrayLike, name: str) -> Array:
@@ -151,8 +175,8 @@ def _check_rise(z: Array, f: Array) -> None:
         )
 
 
-def _one_pass(z: Array, segment: Segment, messages: list[str]) -> slice:
-    """Return the rows of the first pass into the solid, or out of it."""
+def _rows(z: Array, segment: Segment, messages: list[str]) -> slice:
+    """Return the rows of the first pass into the solid, or out of it, or of both."""
     turns = _turns(z, _TURN * float(np.ptp(z)))
     passes = list(zip([0, *turns], [*turns, z.size - 1], strict=True))
     inward = [bool(z[last] > z[first]) for first, last in passes]
@@ -162,6 +186,14 @@ def _one_pass(z: Array, segment: Segment, messages: list[str]) -> slice:
             "curve at a time, its rows in order",
             "position",
         )
+    if segment == "both":
+        if inward != [True, False]:
+            raise ConfigError(
+                "does not hold an approach and then a retract, and both are to be fitted; give "
+                "both passes in order of time, or set segment to the one that there is",
+                "position",
+            )
+        return slice(0, z.size)
     approach = segment == "approach"
     if approach not in inward:
         other = "retract" if approach else "approach"

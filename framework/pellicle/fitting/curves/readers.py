@@ -98,7 +98,8 @@ def gather(
             if file in arrays:
                 # `clean` checks the arrays.
                 position, force = (cast("Array", values) for values in arrays[file])
-                contents = {"": Curve(position, force, stiffness=own.spring_constant)}
+                given = Curve(position, force, stiffness=own.spring_constant, speed=own.speed)
+                contents = {"": given}
             else:
                 contents = read(file, own, segment)
         except PellicleError as error:

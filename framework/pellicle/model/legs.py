@@ -1,0 +1,264 @@
+"""Legs of a path in time: to a value, a hold, an oscillation."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
+from typing import Annotated, Any, ClassVar, NamedTuple
+
+from pydantic import Field, PrivateAttr
+from pydantic.fields import FieldInfo
+
+from pellicle.errors import ConfigError, Problem, shown
+from pellicle.units import Quantity, ramp
+
+from .base import Model
+
+_MOST = 1_000_000
+# Three samples are the fewest that show an amplitude and a phase; four meet both extremes.
+_FEWEST_OF_CYCLE = 4
+
+Number = Annotated[
+    int,
+    Field(title="number of steps", ge=1, le=_MOST, description="number of load steps of the leg"),
+]
+
+
+class Sample(NamedTuple):
+    """One load step of a path in legs."""
+
+    value: float
+    """The prescribed value, SI."""
+    time: float
+    """Time at the end of the step [s]."""
+    leg: int
+    """Index of its leg."""
+    cycle: float = math.nan
+    """Cycles since its leg began; NaN unless the leg oscillates."""
+
+
+class Leg(Model):
+    """A part of a path that goes on from the end of the one before."""
+
+    key: ClassVar[str]
+    """The field that only this kind of leg has."""
+
+    _unit: str = PrivateAttr("1")
+
+    @property
+    @abstractmethod
+    def steps(self) -> int:
+        """The number of its load steps."""
+
+    @abstractmethod
+    def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
+        """Yield the load steps of leg ``index`` after ``start``, the value at ``time`` [s]."""
+
+    @property
+    def described_fields(self) -> Mapping[str, FieldInfo]:
+        """The fields by name, with the unit of what is prescribed."""
+        return fields_of(type(self), self._unit)
+
+
+class Move(Leg):
+    """A straight way to a value: { to, time, num }."""
+
+    key: ClassVar[str] = "to"
+    to: Annotated[float, Field(title="end value", description="value at the end of the leg")]
+    time: Annotated[
+        float,
+        Quantity("s", at_least=0),
+        Field(title="duration", description="duration of the leg [s]; 0 is a jump"),
+    ]
+    num: Number
+
+    @property
+    def steps(self) -> int:
+        """The number of its load steps."""
+        return self.num
+
+    def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
+        """Yield ``num`` values evenly spaced, the last one ``to``."""
+        values = ramp(start, self.to, self.num + 1)[1:]
+        times = ramp(time, time + self.time, self.num + 1)[1:]
+        for value, end in zip(values, times, strict=True):
+            yield Sample(value, end, index)
+
+
+class Hold(Leg):
+    """A time at the value reached: { hold, num }."""
+
+    key: ClassVar[str] = "hold"
+    hold: Annotated[
+        float,
+        Quantity("s", above=0),
+        Field(title="duration", description="duration of the leg [s]"),
+    ]
+    num: Number
+
+    @property
+    def steps(self) -> int:
+        """The number of its load steps."""
+        return self.num
+
+    def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
+        """Yield ``num`` times evenly spaced at the value ``start``."""
+        for end in ramp(time, time + self.hold, self.num + 1)[1:]:
+            yield Sample(start, end, index)
+
+
+class Oscillation(Leg):
+    """A sine about the value reached: { amplitude, frequency, cycles, num }."""
+
+    key: ClassVar[str] = "amplitude"
+    amplitude: Annotated[float, Field(description="amplitude of the oscillation")]
+    frequency: Annotated[
+        float, Quantity("Hz", above=0), Field(description="frequency of the oscillation [Hz]")
+    ]
+    cycles: Annotated[
+        int, Field(title="number of cycles", ge=1, le=_MOST, description="number of cycles")
+    ]
+    num: Annotated[
+        int,
+        Field(
+            title="steps of a cycle",
+            ge=_FEWEST_OF_CYCLE,
+            le=_MOST,
+            description="number of load steps of each cycle",
+        ),
+    ]
+
+    @property
+    def steps(self) -> int:
+        """The number of its load steps."""
+        return self.cycles * self.num
+
+    def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
+        """Yield ``num`` values each cycle of ``start`` + amplitude · sin(2πft)."""
+        times = ramp(time, time + self.cycles / self.frequency, self.steps + 1)[1:]
+        for number, end in enumerate(times, start=1):
+            angle = 2 * math.pi * (number % self.num) / self.num
+            # Rounding removes the 1e-16 that sin(π) leaves.
+            wave = round(math.sin(angle), 15)
+            value = float(f"{start + self.amplitude * wave:.15g}")
+            yield Sample(value, end, index, number / self.num)
+
+
+KINDS: tuple[type[Leg], ...] = (Move, Hold, Oscillation)
+_FORMS = (
+    "{ to, time, num }, { hold, num } or { amplitude, frequency, cycles, num }, with num steps "
+    "for each leg, for each cycle of an oscillation"
+)
+
+
+def fields_of(kind: type[Leg], unit: str) -> dict[str, FieldInfo]:
+    """Return the fields of a kind of leg, with the ``unit`` of what is prescribed."""
+    fields = dict(kind.model_fields)
+    for name in fields.keys() & {"to", "amplitude"}:
+        about = FieldInfo(annotation=float, description=fields[name].description)
+        about.metadata.append(Quantity(unit))
+        fields[name] = about
+    return fields
+
+
+def legs_of(given: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
+    """Return the legs of a path, of whose values ``quantity`` is the unit and range.
+
+    Raises
+    ------
+    ConfigError
+        Legs are not allowed; the message names all such legs.
+    """
+    legs: list[Leg] = []
+    problems: list[Problem] = []
+    for index, entry in enumerate(given):
+        try:
+            legs.append(_leg(entry, quantity))
+        except ConfigError as error:
+            problems.extend(error.within(str(index)).problems)
+    if problems:
+        raise ConfigError(problems)
+    if isinstance(legs[0], Hold):
+        raise ConfigError(
+            'holds before any value is reached; begin with { to, time, num }, whose time = "0 s" '
+            "is a jump",
+            "0",
+        )
+    for index, values in enumerate(_values_of_legs(legs)):
+        try:
+            quantity(min(values))
+        except ValueError:
+            raise ConfigError(
+                f"goes down to {min(values):g} {quantity.unit}; it has to stay "
+                f"{' and '.join(quantity.bounds)} {quantity.unit}",
+                str(index),
+            ) from None
+    return tuple(legs)
+
+
+def _leg(given: object, quantity: Quantity) -> Leg:
+    """Return one leg."""
+    if isinstance(given, Leg):
+        given = given.model_dump()
+    if not isinstance(given, Mapping):
+        raise ConfigError(f"{shown(given)} is not a leg, as others of the list are; give {_FORMS}")
+    kinds = [kind for kind in KINDS if kind.key in given]
+    if len(kinds) != 1:
+        keys = " and ".join(kind.key for kind in kinds)
+        has = f"mixes {keys}" if kinds else f"has {', '.join(map(str, given)) or 'no key'}"
+        raise ConfigError(f"{has}; give {_FORMS}")
+    (kind,) = kinds
+    data, problems = dict(given), []
+    for name, allowed in (("to", quantity), ("amplitude", Quantity(quantity.unit, above=0))):
+        if name in data:
+            try:
+                data[name] = allowed(data[name])
+            except ValueError as error:
+                # A valid number in its place, so that the other fields are checked too.
+                data[name] = 0.0
+                problems.append(Problem(name, str(error)))
+    try:
+        leg = kind(**data)
+    except ConfigError as error:
+        problems.extend(error.problems)
+    if problems:
+        raise ConfigError(problems)
+    leg._unit = quantity.unit
+    return leg
+
+
+def _values_of_legs(legs: Sequence[Leg]) -> list[list[float]]:
+    """Return the values of the steps of each leg."""
+    values: list[list[float]] = [[] for _ in legs]
+    for sample in sampled(legs):
+        values[sample.leg].append(sample.value)
+    return values
+
+
+def sampled(legs: Sequence[Leg]) -> tuple[Sample, ...]:
+    """Return the load steps of a path in legs, which begins at the value 0 at time 0."""
+    samples = [Sample(0.0, 0.0, 0)]
+    for index, leg in enumerate(legs):
+        samples += leg.samples(samples[-1].value, samples[-1].time, index)
+    return tuple(samples[1:])
+
+
+def number_of_steps(values: Sequence[object]) -> int:
+    """Return the number of load steps of values, or of legs as tables, of a valid loading."""
+    return sum(
+        value["num"] * value.get("cycles", 1) if isinstance(value, Mapping) else 1
+        for value in values
+    )
+
+
+def json_schema(one: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the JSON schema of a list of legs; ``one`` is that of a prescribed value."""
+    schemas = [kind.model_json_schema() for kind in KINDS]
+    for name, properties in chain.from_iterable(
+        ((name, schema["properties"]) for name in ("to", "amplitude")) for schema in schemas
+    ):
+        if name in properties:
+            properties[name] = {**one, "description": properties[name]["description"]}
+    return {"type": "array", "items": {"anyOf": schemas}, "minItems": 1}

@@ -1,0 +1,262 @@
+"""The reference tables say what they hold, agree with other sources, and hold the solver."""
+
+from __future__ import annotations
+
+import csv
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import reference_tables
+
+import pellicle as pl
+from pellicle.arrays import Array
+from tests.docs.blocks import DOCS, ROOT
+
+TABLES = {table.name: table for table in reference_tables.TABLES}
+SLOW = {"tensed_paraboloid": 3, "tensed_cone": 3, "tensed_punch": 3, "adhesive_paraboloid": 2}
+"""Tables of which only the first rows are made anew."""
+MODULUS, RADIUS = 1e4, 1e-3
+
+
+def read(path: Path) -> dict[str, Array]:
+    """Return the columns of a table."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+def columns(name: str) -> dict[str, Array]:
+    """Return the columns of a reference table."""
+    return read(DOCS / "reference-data" / f"{name}.csv")
+
+
+def row(name: str, **keys: float) -> dict[str, float]:
+    """Return the row of a table with these values."""
+    table = columns(name)
+    (index,) = np.flatnonzero(np.all([table[key] == value for key, value in keys.items()], axis=0))
+    return {column: float(values[index]) for column, values in table.items()}
+
+
+def test_the_folder_holds_the_tables_that_the_script_makes() -> None:
+    """Every table has a file and a line of the page, and no other lies there."""
+    files = {path.stem for path in (DOCS / "reference-data").glob("*.csv")}
+    assert files == set(TABLES)
+    page = (DOCS / "reference-data.md").read_text(encoding="utf-8")
+    assert all(f"[{name}](reference-data/{name}.csv)" in page for name in TABLES)
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_describes_itself(name: str) -> None:
+    """Its comments give title, derivation and the meaning of each column; errors are small."""
+    table = TABLES[name]
+    text = (DOCS / "reference-data" / f"{name}.csv").read_text(encoding="utf-8")
+    assert text.startswith(f"# {table.title}.\n# Derivation: {table.derivation}.\n")
+    assert all(f"#   {column}: {meaning}\n" in text for column, meaning in table.columns)
+    data = columns(name)
+    assert list(data) == [column for column, _ in table.columns]
+    assert np.all((data["error"] >= 0) & (data["error"] <= 1e-6))
+
+
+@pytest.mark.parametrize("name", sorted(set(TABLES) - {"relaxing_punch"}))
+def test_the_script_makes_the_table(name: str) -> None:
+    """Rows made anew are those of the file within their stated error; a minute for the other."""
+    stored = np.array(list(columns(name).values())).T
+    rows = np.array(list(islice(TABLES[name].rows(), SLOW.get(name))))
+    allowed = np.maximum(stored[: len(rows), -1:], 1e-11)
+    assert np.all(np.abs(rows - stored[: len(rows)])[:, :-1] <= allowed * np.abs(rows[:, :-1]))
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "keys"),
+    [
+        (
+            "influence_cells",
+            "kernel_cells",
+            {"s_over_D": "s_over_D", "i": "i", "j": "j", "K_E_over_D": "K_times_Estar_over_D"},
+        ),
+        (
+            "tensed_paraboloid",
+            "paraboloid",
+            {
+                "s_over_a": "s_over_a",
+                "F_over_Hertz": "P_over_PH",
+                "depth_over_Hertz": "delta_over_deltaH",
+                "p_centre": "p0_over_EstaroverR_a",
+                "p_edge": "p_edge_over_EstaroverR_a",
+            },
+        ),
+        (
+            "adhesive_paraboloid",
+            "jkr_tension",
+            {
+                "s_over_a0": "s_over_a0",
+                "F_pull_off": "Fpulloff_over_piwR",
+                "a_no_load": "a_zero_load",
+                "depth_no_load": "depth_zero_load",
+                "depth_fixed_depth": "depth_depth_control",
+            },
+        ),
+    ],
+)
+def test_a_table_agrees_with_an_independent_one(
+    name: str, other: str, keys: dict[str, str]
+) -> None:
+    """Rows for the same arguments agree to the digits of the other table."""
+    ours, theirs = columns(name), read(ROOT / "tests/data" / f"{other}.csv")
+    arguments = [key for key in keys if keys[key] == key]
+    values = [key for key in keys if key not in arguments]
+    rows = {tuple(ours[key][i] for key in arguments): i for i in range(len(ours["error"]))}
+    common = 0
+    for j in range(len(next(iter(theirs.values())))):
+        i = rows.get(tuple(theirs[key][j] for key in arguments))
+        if i is not None:
+            common += 1
+            ours_here = [ours[key][i] for key in values]
+            np.testing.assert_allclose(ours_here, [theirs[keys[key]][j] for key in values], 3e-7)
+    assert common >= 4
+
+
+def solved(**tables: Any) -> Any:
+    """Return the dataset of a run that converged."""
+    result = pl.run(pl.Run(**tables), progress=False, threads=1)
+    assert not result.failures()
+    return result.dataset
+
+
+def tensed(ratio: float, contact_radius: float) -> dict[str, Any]:
+    """Return the kernel of a half-space whose s/a is ``ratio``."""
+    tension = ratio * contact_radius * MODULUS / 2
+    return {"type": "tensed_membrane", "reduced_modulus": MODULUS, "tension": tension}
+
+
+def test_the_operator_has_the_cells() -> None:
+    """One loaded cell displaces the others by the table."""
+    spacing = 1e-5
+    grid = pl.Grid(points=20, size=20 * spacing, boundary="free")
+    pressure = np.zeros((20, 20))
+    pressure[1, 1] = 1.0
+    data = columns("influence_cells")
+    for ratio in (0.1, 1.0, 10.0):
+        kernel = pl.kernel(
+            "tensed_membrane", reduced_modulus=MODULUS, tension=ratio * spacing * MODULUS / 2
+        )
+        u = pl.displacement(pressure, kernel=kernel, grid=grid)
+        here = data["s_over_D"] == ratio
+        i, j = data["i"][here].astype(int), data["j"][here].astype(int)
+        computed = np.asarray(u)[1 + i, 1 + j] * MODULUS / spacing
+        np.testing.assert_allclose(computed, data["K_E_over_D"][here], rtol=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
+def test_the_solver_presses_a_paraboloid(ratio: float) -> None:
+    """At the depth of a radius of contact, the force is that of the table within 0.3 %."""
+    a, entry = 1e-4, row("tensed_paraboloid", s_over_a=ratio)
+    data = solved(
+        grid={"points": 64, "size": 2.5 * a, "boundary": "free"},
+        kernel=tensed(ratio, a),
+        indenter={"type": "paraboloid", "radius": RADIUS},
+        loading={"depth": entry["depth_over_Hertz"] * a**2 / RADIUS},
+    )
+    expected = entry["F_over_Hertz"] * 4 * MODULUS * a**3 / (3 * RADIUS)
+    assert float(data["force"][0]) == pytest.approx(expected, rel=3e-3)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
+def test_the_solver_presses_a_cone(ratio: float) -> None:
+    """The same for a cone, within 0.6 %: its tip is one cell wide."""
+    a, entry = 1e-4, row("tensed_cone", s_over_a=ratio)
+    flank = 0.05
+    data = solved(
+        grid={"points": 64, "size": 2.5 * a, "boundary": "free"},
+        kernel=tensed(ratio, a),
+        indenter={"type": "cone", "half_angle": float(np.arctan(1 / flank))},
+        loading={"depth": entry["depth_over_Sneddon"] * np.pi * a * flank / 2},
+    )
+    expected = entry["F_over_Sneddon"] * np.pi * MODULUS * a**2 * flank / 2
+    assert float(data["force"][0]) == pytest.approx(expected, rel=6e-3)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
+def test_the_solver_presses_a_punch(ratio: float) -> None:
+    """The stiffness of a flat punch is that of the table, from two grids to 0.5 %."""
+    a, entry = 1e-4, row("tensed_punch", s_over_a=ratio)
+    coarse, fine = (
+        float(
+            solved(
+                grid={"points": points, "size": 2.5 * a, "boundary": "free"},
+                kernel=tensed(ratio, a),
+                indenter={"type": "flat_punch", "radius": a},
+                loading={"depth": a / 100},
+            )["force"][0]
+        )
+        for points in (50, 100)
+    )
+    assert (2 * fine - coarse) / (MODULUS * a**2 / 100) == pytest.approx(
+        entry["stiffness"], rel=5e-3
+    )
+
+
+def test_a_wave_on_a_layer_has_the_compliance() -> None:
+    """A wave of pressure on a periodic plane displaces the surface by G(q)."""
+    data = columns("layered_compliance")
+    grid = pl.Grid(points=16, size=1e-4, boundary="periodic")
+    wave = np.cos(2 * np.pi * (np.arange(16) + 0.5) / 16)[:, None] * np.ones(16)
+    for index in range(0, len(data["error"]), 7):
+        ratio, nu = float(data["E_ratio"][index]), float(data["nu"][index])
+        top = {
+            "reduced_modulus": MODULUS,
+            "poissons_ratio": nu,
+            "thickness": float(data["q_h"][index]) * 1e-4 / (2 * np.pi),
+        }
+        base = {"youngs_modulus": ratio * MODULUS * (1 - nu**2), "poissons_ratio": nu}
+        kernel = pl.kernel("layered", layers=[top], substrate=base)
+        u = np.asarray(pl.displacement(wave, kernel=kernel, grid=grid))
+        half_space = 2 * 1e-4 / (2 * np.pi * MODULUS)
+        amplitude = 2 * np.mean((u - u.mean()) * wave)
+        expected = data["G_over_half_space"][index] * half_space
+        assert amplitude == pytest.approx(expected, rel=1e-8)
+
+
+def test_a_sticking_paraboloid_sinks_in_without_load() -> None:
+    """`jkr` at no load sinks to the depth of the table, to the first order of its zone."""
+    length, work = 1e-4, 1e-4**3 * MODULUS / RADIUS**2
+    entry = row("adhesive_paraboloid", s_over_a0=1.0)
+    data = solved(
+        grid={"points": 64, "size": 5 * length, "boundary": "free"},
+        kernel=tensed(1.0, length),
+        indenter={"type": "paraboloid", "radius": RADIUS},
+        interaction={"type": "jkr", "work_of_adhesion": work},
+        loading={"depth": [0.0, entry["depth_no_load"] * length**2 / RADIUS]},
+    )
+    assert abs(float(data["force"][-1])) < 0.05 * np.pi * work * RADIUS
+
+
+def test_a_power_law_solid_is_pressed_and_let_go() -> None:
+    """Force at the turn and time of last contact follow the table within 2 %."""
+    entry = row("power_law", alpha=0.2)
+    depth, steps, t_max = 1e-5, 20, 1.0
+    times = np.linspace(0.0, 2 * t_max, 2 * steps + 1)[1:]
+    depths = depth * np.minimum(times, 2 * t_max - times)[:-1] / t_max
+    result = pl.run(
+        {
+            "grid": {"points": 48, "size": 2.6 * np.sqrt(RADIUS * depth), "boundary": "free"},
+            "kernel": {
+                "type": "viscoelastic",
+                "solid": {"type": "half_space", "reduced_modulus": MODULUS},
+                "power_law": {"exponent": 0.2, "time": "1 s"},
+            },
+            "indenter": {"type": "paraboloid", "radius": RADIUS},
+            "loading": {"depth": [0.0, *depths], "time": [0.0, *times[:-1]]},
+        },
+        progress=False,
+        threads=1,
+    )
+    force, time = (result.dataset[name].values for name in ("force", "time"))
+    expected = entry["F"] * 4 / 3 * np.sqrt(RADIUS) * MODULUS * (depth / t_max) ** 1.5
+    assert force[steps] == pytest.approx(expected * t_max**1.3, rel=0.02)
+    last = time[np.flatnonzero(force > 0)[-1]]
+    assert last <= entry["t_end"] * t_max * 1.02
+    assert last + t_max / steps >= entry["t_end"] * t_max * 0.98

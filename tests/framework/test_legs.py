@@ -1,0 +1,215 @@
+"""Paths in legs: their samples, what describes them, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from jsonschema import Draft202012Validator
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle.cli import app
+from pellicle.config.describe import inputs
+
+LEGS: list[dict[str, Any]] = [
+    {"to": "1 um", "time": "1 s", "num": 4},
+    {"hold": "5 s", "num": 2},
+    {"amplitude": "10 nm", "frequency": "0.5 Hz", "cycles": 2, "num": 4},
+]
+RUN: dict[str, Any] = {
+    "title": "legs",
+    "grid": {"points": 12, "size": "1 mm", "boundary": "free"},
+    "kernel": {
+        "type": "viscoelastic",
+        "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
+        "relaxation": [{"fraction": 0.8, "time": "2 s"}],
+    },
+    "indenter": {"type": "flat_punch", "radius": "0.2 mm"},
+    "loading": {"depth": LEGS},
+    "outputs": [],
+}
+
+
+def test_samples_go_on_from_the_end_of_the_leg_before() -> None:
+    """A leg has num steps, an oscillation num each cycle; the first begins from 0 at 0 s."""
+    loading = pl.Loading(depth=LEGS)
+    about = [1.01e-6, 1e-6, 0.99e-6, 1e-6]
+    assert loading.values == (2.5e-7, 5e-7, 7.5e-7, 1e-6, 1e-6, 1e-6, *about, *about)
+    assert loading.times == (0.25, 0.5, 0.75, 1, 3.5, 6, 6.5, 7, 7.5, 8, 8.5, 9, 9.5, 10)
+    assert loading.durations == (*[0.25] * 4, 2.5, 2.5, *[0.5] * 8)
+    cycles = [sample.cycle for sample in loading.samples]
+    np.testing.assert_array_equal(cycles, [*[np.nan] * 6, *np.arange(1, 9) / 4])
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "others"),
+    [
+        ("force", ("2 uN", "0.1 uN"), {}),
+        ("base_displacement", ("2 um", "0.1 um"), {"spring_constant": "1 N/m"}),
+        ("contact_radius", ("50 um", "2 um"), {}),
+        ("contact_area", ("100 um^2", "2 um^2"), {}),
+        ("gap_volume", ("2e-12 m^3", "1e-13 m^3"), {}),
+        ("mean_plane_depth", ("-2 um", "1 um"), {}),
+    ],
+)
+def test_every_prescription_takes_legs(
+    name: str, values: tuple[str, str], others: dict[str, str]
+) -> None:
+    """Values have the unit of the prescription."""
+    to, amplitude = values
+    legs = [{**LEGS[0], "to": to}, {**LEGS[2], "amplitude": amplitude}]
+    reached, *about = pl.Loading(**{name: legs}, **others).values[3:8]
+    single = pl.Loading(**{name: [to, amplitude]}, **others).values
+    assert (reached, max(about) - reached) == pytest.approx(single, rel=1e-9)
+
+
+def test_time_of_nought_is_a_jump() -> None:
+    """All steps of such a leg have one time."""
+    loading = pl.Loading(force=[{"to": 2.0, "time": 0, "num": 2}, {"hold": 1, "num": 1}])
+    assert loading.values == (1.0, 2.0, 2.0)
+    assert loading.times == (0.0, 0.0, 1.0)
+
+
+def test_a_run_with_legs_is_one_in_every_form() -> None:
+    """JSON, TOML, a pickle and a copy of its parts describe the same run, which the schema takes.
+
+    The schema refuses legs that mix keys.
+    """
+    run = pl.Run(**RUN)
+    assert pl.Run.from_json(run.to_json()) == run
+    assert pickle.loads(pickle.dumps(run)) == run
+    assert pl.Run(**{name: getattr(run, name) for name in run.model_fields_set}) == run
+    configuration = json.loads(run.to_json())
+    validator = Draft202012Validator(pl.schema())
+    validator.validate(configuration)
+    validator.validate({**configuration, "loading": {"depth": LEGS}})
+    configuration["loading"]["depth"][1]["frequency"] = 1.0
+    assert not validator.is_valid(configuration)
+    assert run.identity != pl.Run(**{**RUN, "loading": {"depth": LEGS[:2]}}).identity
+
+
+def test_inputs_are_listed_leg_by_leg() -> None:
+    """Each value has its unit."""
+    rows = {row.name: row.value for row in inputs(json.loads(pl.Run(**RUN).to_json()))}
+    assert rows["loading.depth.0.to"] == "1 µm"
+    assert rows["loading.depth.1.hold"] == "5 s"
+    assert rows["loading.depth.2.amplitude"] == "10 nm"
+    assert rows["loading.depth.2.frequency"] == "500 mHz"
+    assert rows["loading.depth.2.cycles"] == "2"
+
+
+def test_the_first_leg_is_no_jump() -> None:
+    """Under a flat punch pressed in at a constant speed F(t)/F₀ = ∫ E(t − t′) dt′, from 0 s on."""
+    data = pl.run(RUN, progress=False).dataset
+    t, force = data["time"].values[:4], data["force"].values[:4]
+    growth = 0.2 * t + 0.8 * 2 * -np.expm1(-t / 2)
+    at_once = {**RUN, "loading": {"depth": "1 um", "time": 0}}
+    stiffness = pl.run(at_once, progress=False).dataset["force"].item()
+    np.testing.assert_allclose(force, stiffness * growth, rtol=1e-8)
+
+
+def test_legs_at_the_command_line(tmp_path: Path) -> None:
+    """Values of legs can be set; the plan counts their steps, the listing shows their times."""
+    file, folder = tmp_path / "legs.toml", tmp_path / "out"
+    file.write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
+    shorter = ["--set", "loading.depth.2.cycles=1", "--set", "loading.depth.1.hold='1 s'"]
+    plan = CliRunner().invoke(app, ["run", str(file), "--dry-run", *shorter])
+    assert " 10 " in plan.output
+    done = CliRunner().invoke(app, ["run", str(file), "-o", str(folder), *shorter])
+    assert done.exit_code == 0, done.output
+    result = pl.load(folder / "legs.h5")
+    assert result.planned_steps == result.dataset.sizes["step"] == 10
+    assert result.configuration["loading"]["depth"][1] == {"hold": 1.0, "num": 2}
+    np.testing.assert_allclose(result.dataset["time"][-1], 4.0)
+    shown = CliRunner().invoke(app, ["show", str(folder / "legs.h5")]).output
+    head = next(line for line in shown.splitlines() if line.startswith("step"))
+    assert head.split()[:5] == ["step", "time", "[s]", "depth", "[m]"]
+
+
+def test_a_study_varies_legs() -> None:
+    """The frequency of an oscillation and the end of a leg are axes, with their units."""
+    study = pl.Study(
+        run=RUN,
+        vary={
+            "loading.depth.2.frequency": ["1 Hz", "10 Hz"],
+            "loading.depth.0.to": ["1 um", "2 um"],
+        },
+    )
+    coordinates = study.coordinates()
+    _, (frequencies, about) = coordinates["loading.depth.2.frequency"]
+    np.testing.assert_array_equal(frequencies, [1.0, 10.0])
+    assert about["units"] == "Hz"
+    assert coordinates["loading.depth.0.to"][1].attributes["units"] == "m"
+    assert study.points[-1].run.loading.samples[-1].time == pytest.approx(6.2)
+
+
+@pytest.mark.parametrize(
+    ("legs", "message"),
+    [
+        (LEGS[1:], "depth.0: holds before any value is reached"),
+        ([{**LEGS[0], "time": "-1 s"}], "depth.0.time: '-1 s' is not allowed"),
+        ([LEGS[0], {**LEGS[1], "hold": -1}], "depth.1.hold: -1 is not allowed"),
+        ([LEGS[0], {**LEGS[1], "hold": 0}], "depth.1.hold: 0 is not allowed"),
+        ([LEGS[0], {**LEGS[1], "hold": "5 um"}], "depth.1.hold: '5 um' measures [length]"),
+        ([{**LEGS[0], "to": "1 s"}], "depth.0.to: '1 s' measures [time]"),
+        ([{**LEGS[0], "num": 0}], "depth.0.num: 0 is not allowed; give a value ≥ 1"),
+        ([{**LEGS[0], "num": 2.5}], "depth.0.num: 2.5 is not allowed; give a whole number"),
+        ([{"to": "1 um", "num": 2}], "depth.0.time: is missing"),
+        ([LEGS[0], {**LEGS[2], "num": 3}], "depth.1.num: 3 is not allowed; give a value ≥ 4"),
+        ([LEGS[0], {**LEGS[2], "cycles": 0.5}], "depth.1.cycles: 0.5 is not allowed"),
+        ([LEGS[0], {**LEGS[2], "amplitude": 0}], "depth.1.amplitude: 0 is not allowed"),
+        ([LEGS[0], {**LEGS[2], "frequency": "1 s"}], "depth.1.frequency: '1 s' measures [time]"),
+        ([LEGS[0], {"amplitude": "1 nm", "num": 8}], "depth.1.frequency: is missing"),
+        ([LEGS[0], {"frequency": "1 Hz", "num": 8}], "depth.1: has frequency, num; give {"),
+        ([{**LEGS[0], "hold": "1 s"}], "depth.0: mixes to and hold"),
+        ([{**LEGS[0], "cycles": 3}], "depth.0.cycles: is not a field here"),
+        ([LEGS[0], "2 um"], "depth.1: '2 um' is not a leg"),
+        ([{}], "depth.0: has no key"),
+        (LEGS[0], "depth: is one leg; give a list"),
+        ([LEGS[0], {**LEGS[2], "amplitude": "2 um"}], "depth.1: goes down to -1e-06 m"),
+        ([{**LEGS[0], "to": "-1 um"}], "with an [interaction] it may be negative"),
+    ],
+)
+def test_refuses(legs: object, message: str) -> None:
+    """Legs that are none are refused in words, with the name of leg and field."""
+    with pytest.raises(pl.ConfigError) as caught:
+        pl.Run(**{**RUN, "loading": {"depth": legs}})
+    assert message in str(caught.value)
+
+
+def test_refuses_times_beside_legs() -> None:
+    """Legs have times of their own, and times have no legs."""
+    with pytest.raises(pl.ConfigError, match="time: is given beside the legs of depth"):
+        pl.Loading(depth=LEGS, time=[0.0] * 14)
+    with pytest.raises(pl.ConfigError, match=r"time\.0: .* is not a number"):
+        pl.Loading(depth=[1e-6] * 3, time=LEGS)
+
+
+def test_value_out_of_reach_names_its_leg() -> None:
+    """A value that cannot be reached is refused under the index of its leg."""
+    legs = [{"to": to, "time": 1, "num": 1} for to in ("0.2 mm", "0.25 mm", "1 mm")]
+    with pytest.raises(pl.ConfigError, match=r"loading\.contact_radius\.2: "):
+        pl.run(
+            {
+                **RUN,
+                "indenter": {"type": "sphere", "radius": "10 mm"},
+                "loading": {"contact_radius": legs},
+            },
+            progress=False,
+        )
+
+
+def test_power_law_counts_the_first_step() -> None:
+    """A first leg with steps shorter than the law holds is refused under the prescription."""
+    kernel = {
+        "type": "viscoelastic",
+        "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
+        "power_law": {"exponent": 0.2, "time": "1 s"},
+    }
+    with pytest.raises(pl.ConfigError, match=r"loading\.depth: has a step of 0\.0001 s"):
+        pl.Run(**RUN | {"kernel": kernel, "loading": {"depth": [{**LEGS[0], "time": "0.4 ms"}]}})

@@ -1,0 +1,71 @@
+"""Files that registries and journals read say the same as the package."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+OWNER = "https://example.org/OWNER/pellicle"
+CONDA_NAMES = {"matplotlib": "matplotlib-base"}
+
+
+@pytest.fixture(scope="module")
+def project() -> dict[str, Any]:
+    """Return the table ``project`` of pyproject.toml."""
+    data = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    return dict(data["project"])
+
+
+def text(name: str) -> str:
+    """Return the content of a file of the repository."""
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def test_versions_agree(project: dict[str, Any]) -> None:
+    """The citation, codemeta.json and the conda recipe have the version of the package."""
+    version = project["version"]
+    assert re.search(rf"^version: {re.escape(version)}$", text("CITATION.cff"), re.MULTILINE)
+    assert json.loads(text("codemeta.json"))["version"] == version
+    assert f'  version: "{version}"\n' in text(".conda/recipe.yaml")
+
+
+def test_keywords_and_licence_agree(project: dict[str, Any]) -> None:
+    """The licence is named alike, and every keyword of the package is one of codemeta.json."""
+    meta = json.loads(text("codemeta.json"))
+    assert meta["license"].endswith(f"/{project['license']}")
+    assert f"\nlicense: {project['license']}\n" in text("CITATION.cff")
+    assert {"contact mechanics", "surface tension"} <= {*meta["keywords"], *project["keywords"]}
+
+
+def test_conda_recipe_has_the_dependencies(project: dict[str, Any]) -> None:
+    """The recipe runs with exactly what the package needs."""
+    run = text(".conda/recipe.yaml").partition("  run:\n")[2].partition("\n\n")[0]
+    recipe = {line.strip().removeprefix("- ").replace(" ", "") for line in run.splitlines()}
+    expected = {f"python{project['requires-python']}"}
+    for dependency in project["dependencies"]:
+        name, limit = re.fullmatch(r"([\w-]+)(.*)", dependency).groups()  # type: ignore[union-attr]
+        expected.add(CONDA_NAMES.get(name, name) + limit)
+    assert recipe == expected
+
+
+def test_what_the_owner_has_to_fill_in_is_marked(project: dict[str, Any]) -> None:
+    """Addresses are those of a reserved domain until the owner replaces all of them at once."""
+    addresses = [*project["urls"].values(), json.loads(text("codemeta.json"))["codeRepository"]]
+    addresses += re.findall(r"https://\S+/pellicle\S*", text(".conda/recipe.yaml"))
+    marked = [address.startswith(OWNER) for address in addresses]
+    assert all(marked) or not any(marked)
+
+
+def test_every_python_of_the_workflow_is_allowed(project: dict[str, Any]) -> None:
+    """The workflow tests the lowest Python that the package names, on three systems."""
+    workflow = text(".github/workflows/tests.yml")
+    (versions,) = re.findall(r"python: \[(.+)\]", workflow)
+    lowest = project["requires-python"].removeprefix(">=")
+    assert versions.split(", ")[0] == f'"{lowest}"'
+    assert all(f"{system}-latest" in workflow for system in ("ubuntu", "macos", "windows"))

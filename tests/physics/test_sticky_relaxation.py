@@ -1,0 +1,160 @@
+"""Contacts that stick on solids that relax: the rate decides with the range."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pellicle as pl
+from pellicle.results.path import path_variables
+from pellicle.runs import steps
+from tests.adhesive_paths import FORCE, pulled_off, relaxing
+
+# The units E* = R = w = 1 have slopes beyond the theory.
+pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
+
+LINEAR: dict[str, Any] = {"type": "linear", "work_of_adhesion": 1.0, "strength": 2.0}
+
+
+def configuration(**changes: Any) -> dict[str, Any]:
+    """Return a run in which a paraboloid is pressed, held and pulled, with changes."""
+    return {
+        "grid": {"points": 24, "size": 6.0, "boundary": "free"},
+        "kernel": relaxing(),
+        "indenter": {"type": "paraboloid", "radius": 1.0},
+        "interaction": LINEAR,
+        "loading": {
+            "depth": [0.2, 0.4, 0.4, 0.2, -0.2, -0.6, -0.9],
+            "time": [0.0, 1.0, 9.0, 9.0, 9.5, 10.5, 11.0],
+        },
+        "outputs": [],
+        **changes,
+    }
+
+
+def test_springs_that_relax_open_as_the_law_softens() -> None:
+    """A flat indenter on springs: one equation for the traction, which the law and E(t) share."""
+    stiffness, share, time = 5.0, 0.6, 2.0
+    depth = np.array([0.1, -0.3, -0.5, -0.5, -0.7])
+    times = np.array([0.0, 1.0, 1.5, 1.5, 4.0])
+    law = {"type": "linear", "work_of_adhesion": 0.6, "strength": 1.2}
+    springs = {"type": "winkler", "foundation": stiffness}
+    data = pl.run(
+        configuration(
+            grid={"points": 8, "size": 1.0, "boundary": "periodic"},
+            kernel=relaxing(share, time, springs),
+            indenter={"type": "heights", "values": np.zeros((8, 8)), "unit": 1.0},
+            interaction=law,
+            loading={"depth": depth, "time": times},
+        ),
+        progress=False,
+    ).dataset
+    slope = 1.2**2 / (2 * 0.6)
+    u = carried = 0.0
+    for index, (z, t) in enumerate(zip(depth, times, strict=True)):
+        x = (t - times[index - 1]) / time if index else 0.0
+        mean = -np.expm1(-x) / x if x else 1.0
+        before, old = u, carried
+        rest = stiffness * old * np.exp(-x)
+        growth = stiffness * share * mean
+        permanent = stiffness * (1 - share)
+        u = z
+        pressure = permanent * u + rest + growth * (u - before)
+        if pressure < -1.2:
+            # permanent u + rest + growth (u − before) = −1.2 + slope (u − z)
+            u = (-1.2 - slope * z - rest + growth * before) / (permanent + growth - slope)
+            pressure = -1.2 + slope * (u - z)
+        carried = old * np.exp(-x) + share * mean * (u - before)
+        np.testing.assert_allclose(data["pressure"][index], pressure, rtol=1e-7)
+        np.testing.assert_allclose(data["displacement"][index], u, rtol=1e-7)
+    assert data["contact"].values.all(axis=(1, 2)).tolist() == [True, False, False, False, False]
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        LINEAR,
+        {"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0},
+        {"type": "exponential", "work_of_adhesion": 1.0, "range": 0.4},
+    ],
+    ids=lambda law: law["type"],
+)
+@pytest.mark.parametrize(("time", "share"), [(1e12, 1.0), (1e-12, 0.2)])
+def test_limits_are_elastic(law: dict[str, Any], time: float, share: float) -> None:
+    """Slow relaxation leaves the instantaneous solid, fast relaxation the relaxed one, to 1e-7."""
+    run = configuration(interaction=law, solver={"type": "active_set", "tolerance": 1e-10})
+    run["loading"] = {"depth": [0.2, 0.4, 0.1, -0.3], "time": [0.0, 1.0, 2.0, 3.0]}
+    if law["type"] == "dugdale" and share < 1:
+        # The drop at its range is spread as the instantaneous solid requires.
+        run["interaction"] = {**LINEAR, "strength": 1.0}
+    slow = pl.run(run | {"kernel": relaxing(time=time)}, progress=False).dataset
+    elastic = {"type": "half_space", "reduced_modulus": 5.0 * share}
+    depth = run["loading"]["depth"]
+    other = pl.run(run | {"kernel": elastic, "loading": {"depth": depth}}, progress=False).dataset
+    after = slice(1, None) if share < 1 else slice(None)
+    for name in ("force", "contact_area", "zone_area"):
+        np.testing.assert_allclose(slow[name][after], other[name][after], rtol=1e-7)
+
+
+def test_pull_off_at_a_speed_depends_on_the_range_and_not_on_the_cells() -> None:
+    """Fast retraction pulls harder than slow; twice the points change either by 2 % at most."""
+    pulls = [[pulled_off(points, speed, LINEAR, 16) for points in (32, 64)] for speed in (0.01, 1)]
+    for coarse, fine in pulls:
+        assert coarse == pytest.approx(fine, rel=0.02)
+    assert pulls[1][1] < 2 * pulls[0][1] < -3 * FORCE
+
+
+def test_killed_run_goes_on_with_wall_zone_and_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After four of seven steps, on the way back, bit by bit as one that was not killed."""
+    run = configuration()
+    whole = pl.run(run, progress=False, directory=tmp_path / "whole").dataset
+    assert whole["jumped"].values.tolist()[0]
+    assert (whole["zone_area"][3:] > 0).all()
+    solve_step, solved_steps = steps.solve_step, 0
+
+    def killed(*arguments: Any) -> Any:
+        nonlocal solved_steps
+        if solved_steps == 4:
+            raise KeyboardInterrupt
+        solved_steps += 1
+        return solve_step(*arguments)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(steps, "solve_step", killed)
+        with pytest.raises(KeyboardInterrupt):
+            pl.run(run, directory=tmp_path / "killed", progress=False)
+    resumed = pl.run(run, directory=tmp_path / "killed", progress=False).dataset
+    for name in set(whole.data_vars) - {"wall_time"}:
+        np.testing.assert_array_equal(resumed[name], whole[name], err_msg=name)
+
+
+def test_energy_that_the_solid_stores_is_not_known() -> None:
+    """After the first step energy and dissipated energy are NaN, and the work is a number."""
+    result = pl.run(configuration(), progress=False)
+    assert np.isfinite(result.dataset["energy"].values).tolist() == [True] + 6 * [False]
+    summary = path_variables(result.dataset)
+    assert np.isfinite(summary["work"])
+    assert np.isnan(summary["dissipated_energy"])
+
+
+@pytest.mark.parametrize(("cells", "message"), [(1.5, "here it is 1.5"), (3.5, "")])
+def test_jkr_needs_a_tension_that_the_cells_resolve(cells: float, message: str) -> None:
+    """Its range is that of the cells, and the rate decides with the range."""
+    tension = 0.5 * 5.0 * cells * 6.0 / 24
+    changes = configuration(
+        grid={"points": 24, "size": 6.0, "boundary": "periodic"},
+        kernel={"type": "coated", "tension": tension, "substrate": relaxing()},
+        interaction={"type": "jkr", "work_of_adhesion": 1.0},
+    )
+    if not message:
+        assert pl.Run(**changes).interaction
+        return
+    with pytest.raises(
+        pl.ConfigError, match=f"interaction.type: 'jkr'.*linear or dugdale.*{message}"
+    ):
+        pl.Run(**changes)
