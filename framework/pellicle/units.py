@@ -91,6 +91,10 @@ _NOUNS = {
     "rad": "an angle",
     "s": "a time",
     "m/V": "a length per voltage",
+    "m/s": "a speed",
+    "Hz": "a frequency",
+    "m/Pa": "a compliance",
+    "rad/m": "a wavenumber",
 }
 """Nouns for the values that a field takes, by its SI unit."""
 _MEASURED = {

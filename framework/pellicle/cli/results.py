@@ -212,21 +212,23 @@ def _statuses(data: xr.Dataset) -> list[tuple[int, str, str]]:
 
 
 def _grouped(statuses: Sequence[tuple[int, str, str]]) -> list[tuple[str, str]]:
-    """Return steps and message of each kind of status; the message is that of the first step."""
+    """Return steps and message of each kind of status; of several steps, that of the first."""
     groups: dict[str, list[tuple[int, str]]] = {}
     for number, code, message in statuses:
         groups.setdefault(code, []).append((number, message))
     return [
-        (
-            _steps_text([number for number, _ in group]),
-            group[0][1] if len(group) == 1 else f"{group[0][1]} (step {group[0][0]})",
-        )
+        (_steps_text([number for number, _ in group]), f"{_first(group)}{group[0][1]}")
         for group in groups.values()
     ]
 
 
+def _first(group: Sequence[tuple[int, str]]) -> str:
+    several = len({message for _, message in group}) > 1
+    return f"step {group[0][0]}: " if several else ""
+
+
 def _steps_text(numbers: Sequence[int]) -> str:
-    """Return "step 3", "steps 1 to 4" or "steps 1, 3 to 5"."""
+    """Return "step 3", "steps 1 and 2" or "steps 1, 3 to 5"."""
     spans: list[list[int]] = []
     for number in numbers:
         if spans and number == spans[-1][-1] + 1:
@@ -234,6 +236,8 @@ def _steps_text(numbers: Sequence[int]) -> str:
         else:
             spans.append([number])
     texts = [str(s[0]) if len(s) == 1 else f"{s[0]} to {s[-1]}" for s in spans]
+    if len(numbers) == 2:
+        texts = [f"{numbers[0]} and {numbers[1]}"]
     return f"step{'s' * (len(numbers) > 1)} {', '.join(texts)}"
 
 

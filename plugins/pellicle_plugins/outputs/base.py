@@ -8,7 +8,7 @@ import re
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -24,6 +24,7 @@ from pellicle.report.plotting import save_figure, without_round_off
 from pellicle.results.derived import FIRST_RUN, names
 from pellicle.results.result import Result
 from pellicle.results.variables import wording, words_of_name
+from pellicle.units import DIGITS, readable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -70,7 +71,7 @@ class TableFigure(Output):
         """Suffixes of the figure and of its numbers."""
         return tuple(f".{kind}" for kind in (*self.formats, *["csv"] * self.numbers))
 
-    def picked(self, table: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+    def picked(self, table: xr.Dataset) -> Iterator[tuple[Label, xr.Dataset]]:
         """Yield the name of each curve or panel and the point of the table that it shows.
 
         Other axes are at their first value, steps at the last of the table.
@@ -81,7 +82,7 @@ class TableFigure(Output):
             point = table.isel({**first, **index})
             yield label(self.label, point, self.by, table), point
 
-    def steps(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
+    def steps(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
         """Yield the name of each curve or panel and the last load step of its run, if finished."""
         for name, point in self.picked(runs.table):
             try:
@@ -124,27 +125,39 @@ def along(table: xr.Dataset, dim: str | None) -> list[dict[str, int]]:
     return [{dim: index} for index in range(table.sizes[dim])] if dim else [{}]
 
 
-def label(
-    template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dataset | None = None
-) -> str:
+class Label(NamedTuple):
+    """The name of a curve or a panel."""
+
+    words: str
+    """For the figure, such as "surface tension 30 mN/m"."""
+    key: str
+    """For the column ``curve`` of its numbers, such as "kernel.tension = 30 mN/m"."""
+
+
+def label(template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dataset) -> Label:
     """Return the name of a curve or a panel.
 
-    ``data`` is the part of the table ``whole`` that it shows; values are in one unit for all parts.
-
-    ``{…}`` in the template is an expression, replaced by its mean over ``data``. Without a template
-    the name is the value of the dimension ``dim``; without that, the values of all axes of the
-    study for which ``data`` has only one.
+    ``{…}`` in the template is an expression, replaced by its mean over ``data``, the part of the
+    table ``whole`` that is shown. Without a template the name is the value of the dimension
+    ``dim``; without that, the values of all axes of the study for which ``data`` has only one. The
+    words have values in one unit for all parts.
     """
     if template is not None:
         variables = names(data)
-        return _PLACEHOLDER.sub(
+        text = _PLACEHOLDER.sub(
             lambda match: f"{np.nanmean(np.asarray(evaluate(match[1], variables))):.3g}", template
         )
+        return Label(text, text)
     axes = [dim] if dim else json.loads(data.attrs.get("axes", "[]"))
-    shown = whole if whole is not None else data
-    return ", ".join(
-        wording(shown[axis]).text(data[axis].item()) for axis in axes if data[axis].ndim == 0
-    )
+    values = [data[axis] for axis in axes if data[axis].ndim == 0]
+    words = [wording(whole[value.name]).text(value.item()) for value in values]
+    return Label(", ".join(words), ", ".join(map(_assignment, values)))
+
+
+def _assignment(value: xr.DataArray) -> str:
+    unit = value.attrs.get("units", "1")
+    text = readable(value.item(), unit, DIGITS) if unit != "1" else str(value.item())
+    return f"{value.name} = {text}"
 
 
 def scaled(

@@ -63,10 +63,10 @@ class Compliance(XYFigure):
                     markerfacecolor="white",
                     markevery=list(shown) if style == "o" else None,
                     linewidth=1.0,
-                    label=(name or series) if style == "o" else None,
+                    label=(name.words or series) if style == "o" else None,
                 )
                 for px, py in zip(x, y, strict=True):
-                    yield {"curve": name, "series": series, "x": px, "y": py}
+                    yield {"curve": name.key, "series": series, "x": px, "y": py}
         axes.plot([], [], color="0.4", linewidth=1.0, label="symbol")
         axes.set(
             xlabel=self.x_label

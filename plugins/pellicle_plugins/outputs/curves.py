@@ -177,21 +177,21 @@ class Curves(XYFigure):
                 name = label(self.label, part, self.by, runs.table)
                 # Colours distinguish the values of `by`, markers those of `y`.
                 style = _Style(f"C{index if self.by else number}", number, reference is not None)
-                legend = "" if number else name
+                legend = "" if number else name.words
                 if not self.by and (self.series or len(ys) > 1):
                     legend = named
                 points, path = self._points(part, _at(x, point), _at(y, point))
                 directions |= {leg.direction for leg in path}
-                yield _Line(points, style, legend, name, series, path)
+                yield _Line(points, style, legend, name.key, series, path)
                 if self.extrapolate:
                     _require_grids(_at(x, point))
                     # An interrupted study may lack some of them.
                     if np.unique(points.x).size >= _GRIDS:
-                        yield _Limit(points, style, name, f"{series}, extrapolated")
+                        yield _Limit(points, style, name.key, f"{series}, extrapolated")
                 if reference:
                     points, _ = self._points(part, _at(exact_x, point), _at(exact_y, point))
                     thin = _Style(style.colour, None)
-                    yield _Line(points.ordered(), thin, "", name, f"{series}, semi-analytic")
+                    yield _Line(points.ordered(), thin, "", name.key, f"{series}, semi-analytic")
             if self.by and len(ys) > 1:
                 yield _Line(_NO_POINTS, _Style("0.4", number, reference is not None), named)
         if reference:

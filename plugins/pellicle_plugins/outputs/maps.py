@@ -18,7 +18,7 @@ from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit
 
-from .base import TableFigure, scaled
+from .base import Label, TableFigure, scaled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,7 +66,7 @@ class Maps(TableFigure):
     def _fill(
         self,
         figure: Figure,
-        panels: list[tuple[str, xr.Dataset, xr.DataArray]],
+        panels: list[tuple[Label, xr.Dataset, xr.DataArray]],
         down: int,
         across: int,
     ) -> None:
@@ -107,7 +107,7 @@ class Maps(TableFigure):
             if pulls:
                 outline_contact(run, axes, length)
             axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
-            axes.set_title(title, fontsize="medium")
+            axes.set_title(title.words, fontsize="medium")
             axes.label_outer()
         if not is_bool:
             figure.colorbar(image, ax=list(all_axes), label=name, shrink=0.85)

@@ -58,9 +58,9 @@ class Profiles(XYFigure):
                 markerfacecolor="white",
                 markevery=max(1, x.size // _MARKERS) if self.reference else None,
                 linewidth=1.2,
-                label=name or None,
+                label=name.words or None,
             )
-            yield from _rows(name, "run", x, y)
+            yield from _rows(name.key, "run", x, y)
             if self.reference:
                 x, y = self._columns(exact_line(line))
                 axes.plot(
@@ -70,7 +70,7 @@ class Profiles(XYFigure):
                     linewidth=1.0,
                     zorder=1,
                 )
-                yield from _rows(name, "semi-analytic", x, y)
+                yield from _rows(name.key, "semi-analytic", x, y)
         if self.reference:
             axes.plot([], [], color="0.4", linewidth=1.0, label="semi-analytic")
         set_scales(axes, ())
