@@ -12,7 +12,7 @@ import typer
 from pellicle.errors import ConfigError
 
 from .exits import INTERRUPTED, NOT_CONVERGED
-from .print_fits import print_fit, print_fits
+from .print_fits import print_failures, print_fit, print_fits, print_notes
 from .printing import print_json
 
 if TYPE_CHECKING:
@@ -103,7 +103,8 @@ def fit(
         Path | None, typer.Option(help="Folder that keeps simulated force curves.")
     ] = None,
     directory: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for JSON, table and figure.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Folder for JSON, table and figure."),
     ] = None,
     report: Annotated[
         bool,
@@ -112,10 +113,13 @@ def fit(
         ),
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")
+    ] = False,
 ) -> None:
     """Fit reduced modulus, tension and contact point to measured curves, with intervals.
 
-    Exit code 0 only if every curve was fitted.
+    Exit code 0 only if every curve was fitted, 1 if some could not be fitted.
     """
     from pellicle.fitting.config import FitConfig
     from pellicle.fitting.fit import fit_source
@@ -150,7 +154,7 @@ def fit(
         grid_points=grid_points,
         cache=cache,
     )
-    progress, sources = sys.stderr.isatty(), config.sources()
+    progress, sources = sys.stderr.isatty() and not quiet, config.sources()
     result: Fit | PooledFit | ManyFits
     if config.pool:
         result = pool_sources(config, sources, progress=progress)
@@ -161,7 +165,7 @@ def fit(
     else:
         name, title = "fits", f"Fits of {len(sources)} curves"
         try:
-            result = fit_sources(config, sources, directory, progress=True)
+            result = fit_sources(config, sources, directory, progress=not quiet)
         except KeyboardInterrupt:
             hint = f"; finished fits are in {directory}, and the same command continues"
             typer.echo(f"interrupted{hint if directory else ''}", err=True)
@@ -169,13 +173,13 @@ def fit(
     if json:
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
-        print_fits(result.rows)
+        (print_failures if quiet else print_fits)(result.rows)
     else:
-        print_fit(result)
+        (print_notes if quiet else print_fit)(result)
     written: list[Path] = []
     if isinstance(result, ManyFits):
         written += result.files
-        if result.resumed:
+        if result.resumed and not quiet:
             typer.echo(f"{result.resumed} of {len(sources)} fits were done before", err=json)
     elif directory is not None:
         written.append(result.save(directory / f"{name}.json"))
@@ -183,7 +187,7 @@ def fit(
     if report:
         page = (directory or Path()) / f"{name}.html"
         written.append(save_report(result, page, title))
-    for path in written:
+    for path in [] if quiet else written:
         typer.echo(f"wrote {path}", err=json)
     if isinstance(result, ManyFits) and result.failed:
         typer.echo(f"{result.failed} of {len(sources)} curves could not be fitted", err=True)
