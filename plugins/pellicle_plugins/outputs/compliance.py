@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _MARKERS = 40
+_WORDS = {"q": "wavenumber q"}
 
 
 class Compliance(XYFigure):
@@ -70,9 +71,13 @@ class Compliance(XYFigure):
         axes.plot([], [], color="0.4", linewidth=1.0, label="symbol")
         axes.set(
             xlabel=self.x_label
-            or ("wavenumber q [rad/m]" if self.x == "q" else in_words(self.x, runs.table)),
+            or ("wavenumber q [rad/m]" if self.x == "q" else in_words(self.x, runs.table, _WORDS)),
             ylabel=self.y_label
-            or ("compliance [m/Pa]" if self.y == "compliance" else in_words(self.y, runs.table)),
+            or (
+                "compliance [m/Pa]"
+                if self.y == "compliance"
+                else in_words(self.y, runs.table, _WORDS)
+            ),
             title=self.title,
         )
         set_scales(axes, ("x", "y"))
