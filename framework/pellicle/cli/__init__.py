@@ -19,7 +19,7 @@ from pellicle.version import CITATION, __version__
 from . import explain, fit, new, plot, plugins, run, schema, show, validate
 from .encoding import encode_readably
 from .exits import BAD_INPUT, CRASHED, INTERRUPTED
-from .printing import print_warning
+from .printing import echo, print_warning
 
 
 def _named_by_use(parameters: list[Any]) -> list[Any]:
@@ -54,10 +54,8 @@ class _Group(TyperGroup):
             return super().main(*args, **kwargs)
         except Exception:
             # Python would end with 1, which means that a step did not converge.
-            typer.echo(traceback.format_exc(), err=True)
-            typer.echo(
-                "error: this is a fault of pellicle; please report the lines above", err=True
-            )
+            echo(traceback.format_exc(), err=True)
+            echo("error: this is a fault of pellicle; please report the lines above", err=True)
             sys.exit(CRASHED)
 
     def invoke(self, ctx: Any) -> Any:
@@ -67,16 +65,16 @@ class _Group(TyperGroup):
                 return super().invoke(ctx)
         except PellicleError as error:
             for line in str(error).splitlines():
-                typer.echo(f"error: {line}", err=True)
+                echo(f"error: {line}", err=True)
             raise typer.Exit(BAD_INPUT) from None
         except Exception as error:
             # The orchestrator adds a note that names the component at fault.
             if not (notes := getattr(error, "__notes__", ())):
                 raise
-            typer.echo(f"error: {notes[0]}: {type(error).__name__}: {error}", err=True)
+            echo(f"error: {notes[0]}: {type(error).__name__}: {error}", err=True)
             raise typer.Exit(BAD_INPUT) from None
         except KeyboardInterrupt:
-            typer.echo("interrupted", err=True)
+            echo("interrupted", err=True)
             raise typer.Exit(INTERRUPTED) from None
 
 
@@ -90,8 +88,8 @@ app = typer.Typer(
 
 def _print_version(asked: bool) -> None:
     if asked:
-        typer.echo(f"pellicle {__version__}")
-        typer.echo(f"to cite it: {CITATION}")
+        echo(f"pellicle {__version__}")
+        echo(f"to cite it: {CITATION}")
         raise typer.Exit
 
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from .printing import print_columns, print_json
+from .printing import echo, print_columns, print_json
 
 _FIT = """\
 curves = ["beads/*.csv"]
@@ -38,14 +38,14 @@ def explain(
         return
     for number, explanation in enumerate(found):
         if number:
-            typer.echo("")
+            echo("")
         origin = f", from {explanation.origin}" if explanation.origin else ""
-        typer.echo(f"{explanation.name} ({explanation.kind}{origin})")
-        typer.echo("")
-        typer.echo(explanation.text)
+        echo(f"{explanation.name} ({explanation.kind}{origin})")
+        echo("")
+        echo(explanation.text)
         rows = explanation.fields
         if rows:
-            typer.echo("")
+            echo("")
             columns = [("field", [row.name for row in rows])]
             if explanation.kind == "family":
                 columns = [("type", [row.name for row in rows])]
@@ -56,7 +56,7 @@ def explain(
                 ]
             print_columns([*columns, ("meaning", [row.meaning for row in rows])])
         if explanation.example:
-            typer.echo("")
-            typer.echo("example:")
-            typer.echo("")
-            typer.echo(explanation.example)
+            echo("")
+            echo("example:")
+            echo("")
+            echo(explanation.example)

@@ -13,7 +13,7 @@ from pellicle.errors import ConfigError
 
 from .exits import INTERRUPTED, NOT_CONVERGED
 from .print_fits import print_failures, print_fit, print_fits, print_notes
-from .printing import print_json
+from .printing import echo, print_json
 
 if TYPE_CHECKING:
     from pellicle.fitting.fit import Fit
@@ -168,7 +168,7 @@ def fit(
             result = fit_sources(config, sources, directory, progress=not quiet)
         except KeyboardInterrupt:
             hint = f"; finished fits are in {directory}, and the same command continues"
-            typer.echo(f"interrupted{hint if directory else ''}", err=True)
+            echo(f"interrupted{hint if directory else ''}", err=True)
             raise typer.Exit(INTERRUPTED) from None
     if json:
         print_json(result.to_dict())
@@ -180,7 +180,7 @@ def fit(
     if isinstance(result, ManyFits):
         written += result.files
         if result.resumed and not quiet:
-            typer.echo(f"{result.resumed} of {len(sources)} fits were done before", err=json)
+            echo(f"{result.resumed} of {len(sources)} fits were done before", err=json)
     elif directory is not None:
         written.append(result.save(directory / f"{name}.json"))
         written.append(save_figure(result, directory / f"{name}.png"))
@@ -188,9 +188,9 @@ def fit(
         page = (directory or Path()) / f"{name}.html"
         written.append(save_report(result, page, title))
     for path in [] if quiet else written:
-        typer.echo(f"wrote {path}", err=json)
+        echo(f"wrote {path}", err=json)
     if isinstance(result, ManyFits) and result.failed:
-        typer.echo(f"{result.failed} of {len(sources)} curves could not be fitted", err=True)
+        echo(f"{result.failed} of {len(sources)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
 

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from .printing import echo
+
 
 class Format(StrEnum):
     """File formats of figures."""
@@ -46,4 +48,4 @@ def plot(
         folder = directory or results.parent
         files = save_figures(load(results), folder, results.stem, chosen)
     for path in files:
-        typer.echo(f"wrote {path}")
+        echo(f"wrote {path}")

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-import typer
-
-from .printing import print_columns
+from .printing import echo, print_columns
 
 if TYPE_CHECKING:
     from pellicle.fitting.result import FitResult
@@ -36,14 +34,14 @@ def print_fit(fit: FitResult) -> None:
     if curves := fit.curve_rows():
         print_columns([(_words(name), [row[name] for row in curves]) for name in curves[0]])
     for sentence in fit.sentences:
-        typer.echo(sentence)
+        echo(sentence)
     print_notes(fit)
 
 
 def print_notes(fit: FitResult) -> None:
     """Print the warnings of a fit."""
     for note in fit.notes:
-        typer.echo(f"note: {note}", err=True)
+        echo(f"note: {note}", err=True)
 
 
 def print_fits(rows: list[dict[str, Any]]) -> None:
@@ -75,7 +73,7 @@ def print_failures(rows: list[dict[str, Any]]) -> None:
         if reason := str(row["status"]).partition(": ")[2]:
             reasons.setdefault(reason, []).append(str(row["curve"]))
     for reason, (first, *others) in reasons.items():
-        typer.echo(f"{first}{f' and {len(others)} more' if others else ''}: {reason}", err=True)
+        echo(f"{first}{f' and {len(others)} more' if others else ''}: {reason}", err=True)
 
 
 def _failed_checks(row: Mapping[str, Any]) -> str:

@@ -9,7 +9,6 @@ from collections.abc import Mapping, Sequence
 from numbers import Integral, Real
 from typing import Any, NamedTuple
 
-import typer
 from rich.cells import cell_len
 from rich.console import Console
 
@@ -17,6 +16,13 @@ from pellicle.files import for_document
 
 _GAP = 2
 _NARROWEST_TEXT = 16
+
+
+def echo(text: str = "", err: bool = False) -> None:
+    """Print a line; typer would write UTF-8 where the environment wants ASCII."""
+    stream = sys.stderr if err else sys.stdout
+    stream.write(f"{text}\n")
+    stream.flush()
 
 
 class Column(NamedTuple):
@@ -45,12 +51,12 @@ def print_columns(columns: Sequence[tuple[str, Sequence[str]]], caption: str = "
     if not columns:
         return
     if caption:
-        typer.echo(f"{caption}:")
+        echo(f"{caption}:")
     # A terminal obeys control characters.
     safe = [Column(for_document(head), list(map(for_document, cells))) for head, cells in columns]
     console = Console()
     for line in table_lines(safe, console.width if console.is_terminal else None):
-        typer.echo(line)
+        echo(line)
 
 
 def table_lines(columns: Sequence[Column], width: int | None = None) -> list[str]:
@@ -147,7 +153,7 @@ def _is_number(text: str) -> bool:
 
 def print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
     """Print a warning; further arguments of `warnings.showwarning` are ignored."""
-    typer.echo(f"warning: {message}", err=True)
+    echo(f"warning: {message}", err=True)
 
 
 def print_json(value: object) -> None:

@@ -10,7 +10,7 @@ import typer
 from pellicle.files import for_document
 
 from .exits import NOT_CONVERGED
-from .printing import print_columns, print_json, print_warning
+from .printing import echo, print_columns, print_json, print_warning
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def print_origin(data: xr.Dataset) -> None:
     """Print title, date and versions of a result."""
     for name in ("title", "date", "versions"):
-        typer.echo(f"{name + ':':10}{for_document(str(data.attrs.get(name, '')))}")
+        echo(f"{name + ':':10}{for_document(str(data.attrs.get(name, '')))}")
 
 
 def print_steps(result: Result, *, si: bool = False) -> None:
@@ -53,7 +53,7 @@ def print_steps(result: Result, *, si: bool = False) -> None:
         if converged[number] and code != "CONVERGED" and number not in several
     ]
     for steps, status in _grouped(caveats):
-        typer.echo(f"{steps}: {for_document(status)}", err=True)
+        echo(f"{steps}: {for_document(status)}", err=True)
 
 
 def print_contact(result: Result, *, si: bool = False) -> None:
@@ -117,7 +117,7 @@ def print_runs(table: xr.Dataset, *, si: bool = False) -> None:
     print_columns(columns(table, si=si))
     print_columns(paths(table, si=si), "path")
     for message in steep(table):
-        typer.echo(message, err=True)
+        echo(message, err=True)
 
 
 def print_result_json(result: Result, files: Sequence[Path] = ()) -> None:
@@ -197,7 +197,7 @@ def exit_by_convergence(result: Result) -> None:
 
     failed = result.dataset.isel(step=~result.dataset["converged"].values)
     for steps, message in _grouped(_statuses(failed)):
-        typer.echo(f"{steps} did not converge: {for_document(message)}", err=True)
+        echo(f"{steps} did not converge: {for_document(message)}", err=True)
     for caveats in (result.coarse(), result.steep()):
         if caveats:
             print_warning(first_message(caveats))
@@ -247,6 +247,6 @@ def exit_by_status(table: xr.Dataset) -> None:
 
     if message := failures(table):
         for reason in reasons(table):
-            typer.echo(for_document(reason), err=True)
-        typer.echo(message, err=True)
+            echo(for_document(reason), err=True)
+        echo(message, err=True)
         raise typer.Exit(NOT_CONVERGED)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from .exits import INTERRUPTED
-from .printing import print_json, print_table
+from .printing import echo, print_json, print_table
 from .results import (
     exit_by_convergence,
     exit_by_status,
@@ -120,7 +120,7 @@ def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: b
     print_table(["run", "file", "points", "steps", "memory", "state"], rows)
     done = sum(finished >= task.steps for task, finished, _ in planned)
     most = max(task.memory for task, *_ in planned) / 1e6
-    typer.echo(
+    echo(
         f"{len(planned)} run{'s' * (len(planned) > 1)}, {done} done, "
         f"{len(planned) - done} to do; at most {most:.3g} MB each"
     )
@@ -136,7 +136,7 @@ def _run_one(run: Run, stem: Path, shown: _Shown, *, threads: int | None, overwr
     try:
         executed = execute(run, journal, standard_outputs(run.outputs), bar, threads=threads)
     except KeyboardInterrupt:
-        typer.echo(f"interrupted; finished steps are in {stem.parent}", err=True)
+        echo(f"interrupted; finished steps are in {stem.parent}", err=True)
         raise typer.Exit(INTERRUPTED) from None
     if shown.json:
         print_result_json(executed.result, executed.files)
@@ -156,7 +156,7 @@ def _run_study(
             study, folder, progress=not shown.quiet, overwrite=overwrite, threads=threads
         )
     except KeyboardInterrupt:
-        typer.echo(
+        echo(
             f"interrupted; finished runs are in {folder}, and the same command continues", err=True
         )
         raise typer.Exit(INTERRUPTED) from None
@@ -170,6 +170,6 @@ def _run_study(
 
 def _print_files(files: tuple[Path, ...], resumed: int, whole: str) -> None:
     if resumed:
-        typer.echo(f"{resumed} of {whole} were done before (--overwrite starts over)")
+        echo(f"{resumed} of {whole} were done before (--overwrite starts over)")
     for path in files:
-        typer.echo(f"wrote {path}")
+        echo(f"wrote {path}")

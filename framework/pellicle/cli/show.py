@@ -9,6 +9,8 @@ import typer
 
 from .exits import NOT_CONVERGED
 from .results import (
+
+from .printing import echo
     exit_by_convergence,
     exit_by_status,
     print_contact,
@@ -59,5 +61,5 @@ def show(
         print_oscillations(result, si=si)
     exit_by_convergence(result)
     if done < total:
-        typer.echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
+        echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
         raise typer.Exit(NOT_CONVERGED)

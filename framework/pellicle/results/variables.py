@@ -168,7 +168,7 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
 _TITLES = {
     "semi_major_axis": "major semi-axis",
     "semi_minor_axis": "minor semi-axis",
-    "major_axis_angle": "angle of the major axis",
+    "major_axis_angle": "major-axis angle",
     "stiffness": "contact stiffness",
     "zone_area": "area of the zone",
     "zone_width": "width of the zone",

@@ -161,12 +161,13 @@ def _assignment(value: xr.DataArray) -> str:
 
 
 def scaled(
-    text: str, values: xr.DataArray, axis_label: str | None, data: xr.Dataset
+    text: str, values: Sequence[xr.DataArray], axis_label: str | None, data: xr.Dataset
 ) -> tuple[float, str]:
     """Return the factor and the label of an axis that shows the expression ``text`` over ``data``.
 
-    A bare variable is converted to a unit with a prefix, unless ``axis_label`` is given. Other
-    expressions are in SI, since their unit is not known.
+    ``values`` are those of all curves along the axis. A bare variable is converted to a unit with a
+    prefix, unless ``axis_label`` is given. Other expressions are in SI, since their unit is not
+    known.
     """
     if axis_label is not None:
         return 1.0, axis_label
@@ -174,8 +175,16 @@ def scaled(
     if name not in data.variables:
         return 1.0, in_words(text, data)
     # xarray keeps the unit of one operand, so that only the bare variable has its own.
-    shown = wording(values.rename(name))
+    shown = wording(joined(name, values))
     return shown.scale.factor, shown.head
+
+
+def joined(name: str, arrays: Sequence[xr.DataArray]) -> xr.DataArray:
+    """Return the values of a variable in several runs in one array, with its attributes."""
+    import xarray as xr
+
+    values = np.concatenate([array.values.ravel() for array in arrays])
+    return xr.DataArray(values, dims="value", name=name, attrs=arrays[0].attrs)
 
 
 def in_words(text: str, data: xr.Dataset, further: Mapping[str, str] | None = None) -> str:

@@ -70,8 +70,6 @@ class Maps(TableFigure):
         down: int,
         across: int,
     ) -> None:
-        import xarray as xr
-
         all_axes = figure.subplots(down, across, squeeze=False).ravel()
         for axes in all_axes[len(panels) :]:
             axes.set_axis_off()
@@ -81,9 +79,8 @@ class Maps(TableFigure):
         is_bool = panels[0][2].dtype == bool
         factor, name = 1.0, ""
         if not is_bool:
-            whole = xr.DataArray(np.concatenate([field.values.ravel() for *_, field in panels]))
-            whole.attrs = panels[0][2].attrs
-            factor, name = scaled(self.field, whole, self.field_label, panels[0][1])
+            fields = [field for *_, field in panels]
+            factor, name = scaled(self.field, fields, self.field_label, panels[0][1])
         values = values[np.isfinite(values)] * factor
         low, high = (values.min(), values.max()) if values.size and not is_bool else (0.0, 1.0)
         if low == high:

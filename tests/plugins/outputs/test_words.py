@@ -182,6 +182,7 @@ def test_labels_are_words_with_units(drawn: tuple[list[str], Path, Path]) -> Non
         "indenter cone",
         "contact area, Yastrebov correction",
         "contact area [mm²]",
+        "[mm²]",
         "Yastrebov correction",
         "mean contact pressure / surface tension²",
         "pressure · domain size along x / major semi-axis",
@@ -249,6 +250,6 @@ def test_the_label_of_an_expression_has_no_wrong_unit() -> None:
     table = xr.Dataset(
         {"force": ("step", [1e-6, 2e-6], {"units": "N"})}, attrs={"configuration": "{}"}
     )
-    assert scaled("force", table["force"], None, table) == (1e6, "force [µN]")
-    assert scaled("force / 3", table["force"] / 3, None, table) == (1.0, "force / 3")
-    assert scaled("force", table["force"], "pull [N]", table) == (1.0, "pull [N]")
+    assert scaled("force", [table["force"]], None, table) == (1e6, "force [µN]")
+    assert scaled("force / 3", [table["force"] / 3], None, table) == (1.0, "force / 3")
+    assert scaled("force", [table["force"]], "pull [N]", table) == (1.0, "pull [N]")
