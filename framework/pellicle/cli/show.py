@@ -8,9 +8,8 @@ from typing import Annotated
 import typer
 
 from .exits import NOT_CONVERGED
-from .results import (
-
 from .printing import echo
+from .results import (
     exit_by_convergence,
     exit_by_status,
     print_contact,
