@@ -80,7 +80,7 @@ def test_adds_variables(file: Path) -> None:
     header = next(file.parent.glob("*.csv")).read_text(encoding="utf-8").partition("\n")[0]
     assert {"zone_area [m2]", "zone_width [m]", "energy [J]"} <= {*header.split(",")}
     shown = CliRunner().invoke(app, ["show", str(file.with_suffix(".h5"))]).output
-    assert "zone_area [m2]" in shown
+    assert "area of the zone [" in shown
     hard = pl.run(
         run.model_copy(update={"interaction": None, "loading": pl.Loading(depth="5 um")}),
         progress=False,

@@ -128,7 +128,7 @@ def test_legs_at_the_command_line(tmp_path: Path) -> None:
     np.testing.assert_allclose(result.dataset["time"][-1], 4.0)
     shown = CliRunner().invoke(app, ["show", str(folder / "legs.h5")]).output
     head = next(line for line in shown.splitlines() if line.startswith("step"))
-    assert head.split()[:5] == ["step", "time", "[s]", "depth", "[m]"]
+    assert head.split()[:5] == ["step", "time", "[s]", "depth", "[µm]"]
 
 
 def test_a_study_varies_legs() -> None:
