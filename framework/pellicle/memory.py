@@ -31,12 +31,13 @@ _VERSION_2 = "memory.max", "memory.current", "inactive_file"
 _VERSION_1 = "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"
 
 
-def estimate(grid: Grid, steps: int, solver: object = None) -> float:
+def estimate(grid: Grid, steps: int, solver: object = None, history: float = 0.0) -> float:
     """Return the peak memory [bytes] of a run on ``grid``, without that of the libraries.
 
     The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
     of the contact is unknown, so full contact is assumed, which takes up to a quarter more memory
     than a small contact. A ``solver`` that is not a `HasMemory` counts as active_set.
+    ``history`` is what a solid that relaxes needs for its memory, in arrays of the grid's shape.
     """
     try:
         cells = float(grid.points[0] * grid.points[1])
@@ -44,7 +45,7 @@ def estimate(grid: Grid, steps: int, solver: object = None) -> float:
         return math.inf
     operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
     iterating = solver.arrays(grid) if isinstance(solver, HasMemory) else _SOLVER[grid.boundary]
-    arrays = operator + iterating + (_STEP + _SERIALISED) * (steps - 1)
+    arrays = operator + iterating + history + (_STEP + _SERIALISED) * (steps - 1)
     return _FIXED + 8 * cells * arrays
 
 
@@ -101,7 +102,7 @@ def _lines(path: Path) -> list[str]:
         return []
 
 
-def require(grid: Grid, steps: int, solver: object = None) -> None:
+def require(grid: Grid, steps: int, solver: object = None, history: float = 0.0) -> None:
     """Refuse a run that needs more memory than is available.
 
     Raises
@@ -109,7 +110,7 @@ def require(grid: Grid, steps: int, solver: object = None) -> None:
     ConfigError
         The estimate exceeds the available memory.
     """
-    needed, limit = estimate(grid, steps, solver), available()
+    needed, limit = estimate(grid, steps, solver, history), available()
     if limit is not None and needed > limit:
         nx, ny = grid.points
         raise ConfigError(

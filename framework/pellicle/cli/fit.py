@@ -12,7 +12,7 @@ import typer
 from pellicle.errors import ConfigError
 
 from .exits import INTERRUPTED, NOT_CONVERGED
-from .print_fits import print_failures, print_fit, print_fits, print_notes
+from .print_fits import print_fit, print_fits, print_notes
 from .printing import echo, print_json
 
 if TYPE_CHECKING:
@@ -74,6 +74,14 @@ def fit(
             help='Speed where a file holds no time: "2 um/s"; repeat it to give one for each file.'
         ),
     ] = None,
+    columns: Annotated[
+        str | None,
+        typer.Option(
+            help="What columns of other names are, with their units, by name, number or path in "
+            'the file: "Z = extension nm, Defl = deflection nm". Roles: position, depth, height, '
+            "extension; force, deflection; time; curve.",
+        ),
+    ] = None,
     pool: Annotated[
         bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
     ] = False,
@@ -81,6 +89,20 @@ def fit(
         bool,
         typer.Option("--contact-points", help="With --pool: intervals of contact points, too."),
     ] = False,
+    accept: Annotated[
+        list[str] | None,
+        typer.Option(help='Rule for the curves of a population: --accept "r_squared > 0.95".'),
+    ] = None,
+    accepted: Annotated[
+        Path | None, typer.Option(help="File that names the only curves that can be accepted.")
+    ] = None,
+    rejected: Annotated[
+        Path | None, typer.Option(help="File that names curves that are rejected.")
+    ] = None,
+    group_by: Annotated[
+        str | None,
+        typer.Option(help='Column of a table of files, or a pattern of names: "{group}_*.csv".'),
+    ] = None,
     executor: Annotated[
         str | None,
         typer.Option(help="Executor of many fits and of runs: serial, processes, dask."),
@@ -122,6 +144,7 @@ def fit(
     Exit code 0 only if every curve was fitted, 1 if some could not be fitted.
     """
     from pellicle.fitting.config import FitConfig
+    from pellicle.fitting.curves.readers import SourceStream
     from pellicle.fitting.fit import fit_source
     from pellicle.fitting.many import ManyFits, fit_sources
     from pellicle.fitting.pooled import pool_sources
@@ -147,40 +170,47 @@ def fit(
         spring_constant=spring_constant,
         sensitivity=sensitivity,
         speed=speed[0] if speed and len(speed) == 1 else speed or None,
+        columns=columns,
         pool=pool or None,
         contact_points=contact_points or None,
+        accept=tuple(accept) if accept else None,
+        accepted=accepted and accepted.absolute(),
+        rejected=rejected and rejected.absolute(),
+        group_by=group_by,
         executor=executor,
         kernel=kernel,
         grid_points=grid_points,
         cache=cache,
     )
-    progress, sources = sys.stderr.isatty() and not quiet, config.sources()
+    progress, curves = not quiet and sys.stderr.isatty(), config.files()
     result: Fit | PooledFit | ManyFits
     if config.pool:
+        sources = [source for file in curves for source in file.open()]
         result = pool_sources(config, sources, progress=progress)
         name, title = "pool", "Pooled fit"
-    elif [source.name for source in sources] == [str(config.curves[0])]:
-        result = fit_source(config, sources[0], progress=progress)
+    elif [file.path for file in curves] == [config.curves[0]] and curves[0].open().is_single:
+        (source,) = curves[0].open()
+        result = fit_source(config, source, progress=progress)
         name, title = f"{config.curves[0].stem}-fit", config.curves[0].stem
     else:
-        name, title = "fits", f"Fits of {len(sources)} curves"
         try:
-            result = fit_sources(config, sources, directory, progress=not quiet)
+            result = fit_sources(config, SourceStream(curves), directory, progress=not quiet)
         except KeyboardInterrupt:
             hint = f"; finished fits are in {directory}, and the same command continues"
             echo(f"interrupted{hint if directory else ''}", err=True)
             raise typer.Exit(INTERRUPTED) from None
+        name, title = "fits", f"Fits of {len(result.rows)} curves"
     if json:
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
-        (print_failures if quiet else print_fits)(result.rows)
+        print_fits(result, quiet=quiet, directory=directory)
     else:
         (print_notes if quiet else print_fit)(result)
     written: list[Path] = []
     if isinstance(result, ManyFits):
         written += result.files
         if result.resumed and not quiet:
-            echo(f"{result.resumed} of {len(sources)} fits were done before", err=json)
+            echo(f"{result.resumed} of {len(result.rows)} fits were done before", err=json)
     elif directory is not None:
         written.append(result.save(directory / f"{name}.json"))
         written.append(save_figure(result, directory / f"{name}.png"))
@@ -190,7 +220,7 @@ def fit(
     for path in [] if quiet else written:
         echo(f"wrote {path}", err=json)
     if isinstance(result, ManyFits) and result.failed:
-        echo(f"{result.failed} of {len(sources)} curves could not be fitted", err=True)
+        echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
 

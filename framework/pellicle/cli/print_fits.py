@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .printing import echo, print_columns
 
 if TYPE_CHECKING:
+    from pellicle.fitting.many import ManyFits
     from pellicle.fitting.result import FitResult
     from pellicle.units import Scale
 
@@ -18,6 +20,9 @@ _WORDS = {
     "chi_squared": "χ²",
 }
 _PARAMETERS = (("reduced_modulus", "Pa"), ("tension", "N/m"), ("contact_point", "m"))
+
+_LINES = 50
+"""Largest number of curves that are listed although a table is written."""
 
 
 def print_fit(fit: FitResult) -> None:
@@ -44,8 +49,26 @@ def print_notes(fit: FitResult) -> None:
         echo(f"note: {note}", err=True)
 
 
-def print_fits(rows: list[dict[str, Any]]) -> None:
-    """Print a line for each curve; the table in the folder has their sentences."""
+def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None) -> None:
+    """Print a line for each curve and for each group, and what to know of them.
+
+    Of many curves, lines are left out if the table is in the folder.
+    """
+    _print_failures(fits.rows)
+    for note in fits.notes:
+        echo(f"note: {note}", err=True)
+    if quiet:
+        return
+    if directory is None or len(fits.rows) <= _LINES:
+        print_columns(_curves(fits.rows))
+    else:
+        echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
+    if len(fits.rows) > 1:
+        print_columns(_groups(fits))
+
+
+def _curves(rows: list[dict[str, Any]]) -> list[tuple[str, list[str]]]:
+    """Return a row for each curve; the table in the folder has their sentences."""
     from pellicle.units import axis_unit
 
     columns = [("curve", [str(row["curve"]) for row in rows])]
@@ -57,16 +80,41 @@ def print_fits(rows: list[dict[str, Any]]) -> None:
         if name != "contact_point":
             ends = [_interval_of(estimate, scale) for estimate in estimates]
             columns.append((f"95 % of {_words(name)}", ends))
-    columns += [
+    return [
+        *columns,
         ("failed checks", [_failed_checks(row) for row in rows]),
         ("notes", [str(len(row.get("messages", ()))) for row in rows]),
-        ("status", [str(row["status"]).partition(": ")[0] for row in rows]),
+        ("status", list(map(_verdict, rows))),
     ]
-    print_failures(rows)
-    print_columns(columns)
 
 
-def print_failures(rows: list[dict[str, Any]]) -> None:
+def _verdict(row: Mapping[str, Any]) -> str:
+    verdict = str(row["status"]).partition(": ")[0]
+    return "rejected" if verdict == "fitted" and not row["accepted"] else verdict
+
+
+def _groups(fits: ManyFits) -> list[tuple[str, list[str]]]:
+    """Return a row for each parameter of each group of curves; no columns without any."""
+    from pellicle.units import axis_unit
+
+    parts, quartiles = fits.summary(), []
+    for part in parts:
+        numbers = part.lower_quartile, part.median, part.upper_quartile
+        scale = axis_unit(numbers, part.unit)
+        low, middle, high = map(scale.number, numbers)
+        quartiles.append((scale.with_unit(middle), scale.with_unit(f"{low} to {high}")))
+    columns = [
+        ("group", [part.group for part in parts]),
+        ("parameter", [_words(part.parameter) for part in parts]),
+        ("accepted", [f"{part.n} of {part.curves}" for part in parts]),
+        ("outliers", [str(part.outliers) for part in parts]),
+        ("median", [median for median, _ in quartiles]),
+        ("quartiles", [ends for _, ends in quartiles]),
+    ]
+    return columns if parts else []
+
+
+def _print_failures(rows: list[dict[str, Any]]) -> None:
     """Print why curves could not be fitted; curves of one reason on one line."""
     reasons: dict[str, list[str]] = {}
     for row in rows:

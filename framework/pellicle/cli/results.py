@@ -46,7 +46,7 @@ def print_steps(result: Result, *, si: bool = False) -> None:
         for n in numbers
     ]
     print_columns([*_columns(data, names, si), ("status", verdicts)])
-    several = {**coarse, **dict(result.steep())}
+    several = {**coarse, **dict(result.steep()), **dict(result.cramped())}
     caveats = [
         (number, code, status)
         for number, code, status in _statuses(data)
@@ -112,11 +112,11 @@ def _columns(data: xr.Dataset, names: Sequence[str], si: bool) -> list[tuple[str
 
 def print_runs(table: xr.Dataset, *, si: bool = False) -> None:
     """Print parameters, last step and verdict of each run of a study, and its path."""
-    from pellicle.studies.summary import columns, paths, steep
+    from pellicle.studies.summary import caveats, columns, paths
 
     print_columns(columns(table, si=si))
     print_columns(paths(table, si=si), "path")
-    for message in steep(table):
+    for message in caveats(table):
         echo(message, err=True)
 
 
@@ -198,7 +198,7 @@ def exit_by_convergence(result: Result) -> None:
     failed = result.dataset.isel(step=~result.dataset["converged"].values)
     for steps, message in _grouped(_statuses(failed)):
         echo(f"{steps} did not converge: {for_document(message)}", err=True)
-    for caveats in (result.coarse(), result.steep()):
+    for caveats in (result.coarse(), result.steep(), result.cramped()):
         if caveats:
             print_warning(first_message(caveats))
     if not result.converged:

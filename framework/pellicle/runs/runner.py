@@ -28,6 +28,7 @@ from .compose import compose
 from .journal import Journal
 from .lock import locked
 from .progress import Bar, Progress
+from .relaxation import history_arrays
 from .steps import solve_steps
 
 if TYPE_CHECKING:
@@ -85,7 +86,7 @@ def run(
     result = execute(run, journal, outputs, bar, threads=threads).result
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
-    for steps in (result.coarse(), result.steep()):
+    for steps in (result.coarse(), result.steep(), result.cramped()):
         if steps:
             warnings.warn(first_message(steps), ConvergenceWarning, stacklevel=2)
     return result
@@ -123,7 +124,7 @@ def execute(
     """
     import scipy.fft
 
-    memory.require(run.grid, len(run.loading.values), run.solver)
+    memory.require(run.grid, len(run.loading.values), run.solver, history_arrays(run))
     steps = Steps(len(run.loading.values))
     outputs = [output for output in outputs if journal and output.scope != "study"]
     files: tuple[Path, ...] = ()

@@ -14,6 +14,7 @@ from pellicle.numerics.solution import Stop
 from pellicle.results.status import Status
 from pellicle.units import DIGITS, readable
 
+from .relaxation import least_domain
 from .target_search import Reached
 
 # Relative distance from its goal above which a search has not converged.
@@ -25,8 +26,11 @@ _RESOLVED_ACROSS = 4
 _STEEPEST = 0.3
 
 
-def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) -> tuple[Status, str]:
-    """Return the status of a step, from its measured residuals, and the message to the user."""
+def judge(run: Run, index: int, step: Reached, stiffness: Stiffness | None) -> tuple[Status, str]:
+    """Return the status of a step, from its measured residuals, and the message to the user.
+
+    ``index`` counts the steps from 0.
+    """
     equilibrium = step.equilibrium
     tolerance = run.solver.tolerance
     if not np.isfinite(equilibrium.force):
@@ -59,7 +63,7 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
         return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
             size=f"{nx:g} × {ny:g} m",
             prescribed=f"loading.{loading.prescribed} = "
-            f"{in_unit(value, loading.prescription.unit)}",
+            f"{in_unit(loading.values[index], loading.prescription.unit)}",
         )
     if step.search and (step.how != "met" or step.missed > _NEAR):
         return _not_met(step, step.search)
@@ -76,6 +80,11 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
     if (problem.control.value > least or sticks) and cells < min(enough, contact.size):
         return Status.COARSE, Status.COARSE.value.format(
             cells=cells or "none", width=readable(run.grid.cell_size, "m", DIGITS)
+        )
+    least = least_domain(run, index, equilibrium.contact)
+    if least > min(run.grid.size):
+        return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
+            size="{:g} × {:g} m".format(*run.grid.size), least=least
         )
     if run.interaction:
         return _doubt(run, run.interaction, equilibrium)

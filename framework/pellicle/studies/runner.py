@@ -28,6 +28,7 @@ from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.lock import locked
 from pellicle.runs.progress import ProgressReporter, StudyProgress
+from pellicle.runs.relaxation import history_arrays
 
 from . import table
 from .summary import coarse, failures, progress_of, run_names
@@ -55,7 +56,9 @@ class RunTask:
     @property
     def memory(self) -> int:
         """Estimated peak memory of the run [bytes]."""
-        return int(min(memory.estimate(self.run.grid, self.steps, self.run.solver), sys.maxsize))
+        history = history_arrays(self.run)
+        needed = memory.estimate(self.run.grid, self.steps, self.run.solver, history)
+        return int(min(needed, sys.maxsize))
 
     @property
     def steps(self) -> int:

@@ -5,27 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, NamedTuple
 
+import numpy as np
 from pydantic import Field
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, shown
 from pellicle.model.base import Model
 from pellicle.units import Quantity
 
 from .curve import Curve
-
-EXAMPLE = "position [um],force [nN]"
-_POSITIONS = {
-    "position": "position of the indenter, growing into the solid",
-    "depth": "position relative to first touch",
-    "height": "height of the cantilever's base, falling on approach",
-    "extension": "extension of the piezo, growing on approach",
-}
-_SIGNALS = {"force", "deflection"}
-NAMES = (*_POSITIONS, *sorted(_SIGNALS, reverse=True))
-"""Names of the columns that are read."""
-_OF_BASE = ("height", "extension")
-_VOLTS = ("V", "mV", "volt", "volts")
+from .roles import EXAMPLE, OF_BASE, POSITIONS, SIGNALS, TIME, ColumnMap, factor, is_voltage
 
 SpringConstant = Annotated[float, Quantity("N/m", above=0)]
 """Spring constant of a cantilever [N/m]."""
@@ -54,6 +43,7 @@ class Calibration(Model):
     speed: Speed | None = Field(
         None, description="constant speed of the base, where a file holds no time"
     )
+    columns: ColumnMap = None
 
     def required_spring_constant(self, purpose: str = "") -> float:
         """Return the spring constant [N/m]; an error tells the purpose if there is one."""
@@ -68,7 +58,7 @@ class Calibration(Model):
 
 def is_curve(columns: Mapping[str, Channel]) -> bool:
     """Return whether the columns hold a force or deflection, and a position of some kind."""
-    return bool(_SIGNALS & columns.keys()) and bool(_POSITIONS.keys() & columns.keys())
+    return bool(SIGNALS & columns.keys()) and bool(POSITIONS.keys() & columns.keys())
 
 
 def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Curve:
@@ -83,28 +73,28 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
     ConfigError
         A column, a unit or a calibration is missing, or a unit measures something else.
     """
-    if not _SIGNALS & columns.keys():
+    if not SIGNALS & columns.keys():
         raise ConfigError(
             f"has no column force (columns: {', '.join(columns) or 'none that is known'}); give a "
-            f"header such as {EXAMPLE!r}"
+            f"header such as {EXAMPLE!r}, or name its columns (--columns on the command line)"
         )
     names = [name for name in ("position", "depth") if name in columns] or [
-        name for name in _OF_BASE if name in columns
+        name for name in OF_BASE if name in columns
     ]
     if len(names) != 1:
         problem = f"both {' and '.join(names)}" if names else "no column position or depth"
         raise ConfigError(f"has {problem}; give one of them, e.g. {EXAMPLE!r}")
     (name,) = names
-    position = _factor(name, columns[name].unit) * columns[name].values
+    position = factor(name, columns[name].unit) * columns[name].values
     force = (
-        _factor("force", columns["force"].unit) * columns["force"].values
+        factor("force", columns["force"].unit) * columns["force"].values
         if "force" in columns
         else calibration.required_spring_constant()
         * _deflection(columns["deflection"], calibration)
     )
-    if name in _OF_BASE:
+    if name in OF_BASE:
         purpose = (
-            f", and column {name} is the {_POSITIONS[name]}, from which the deflection must be "
+            f", and column {name} is the {POSITIONS[name]}, from which the deflection must be "
             "subtracted"
         )
         deflection = (
@@ -118,37 +108,31 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
         force,
         name == "depth",
         stiffness=calibration.spring_constant,
+        time=_time(columns, np.isfinite(position) & np.isfinite(force)),
         speed=calibration.speed,
     )
 
 
+def _time(columns: Mapping[str, Channel], rows: Mask) -> Array | None:
+    """Return the time [s]; None where the file holds none that grows in the rows of the curve."""
+    if TIME not in columns or not columns[TIME].unit:
+        return None
+    time = columns[TIME].values
+    if time.shape != rows.shape or not rows.any():
+        return None
+    steps = np.diff(time[rows])
+    if not np.isfinite(steps).all() or (steps < 0).any() or not steps.any():
+        return None
+    return factor(TIME, columns[TIME].unit) * time
+
+
 def _deflection(column: Channel, calibration: Calibration) -> Array:
-    if column.unit not in _VOLTS:
-        return _factor("deflection", column.unit) * column.values
+    if not is_voltage(column.unit):
+        return factor("deflection", column.unit) * column.values
     if calibration.sensitivity is None:
         raise ConfigError(
             f"is missing, and column deflection is in {shown(column.unit)}; give it with its unit, "
             "such as '50 nm/V' (--sensitivity on the command line)",
             "sensitivity",
         )
-    return calibration.sensitivity * Quantity("V")(f"1 {column.unit}") * column.values
-
-
-def _factor(name: str, unit: str) -> float:
-    """Return the factor from the unit of a column to SI."""
-    si = "N" if name == "force" else "m"
-    if not unit:
-        raise ConfigError(f"column {name} has no unit; write it in the header, e.g. {EXAMPLE!r}")
-    try:
-        return Quantity(si)(f"1 {unit}")
-    except ValueError:
-        hint = (
-            "; a signal in volts is a column deflection, which becomes a force by sensitivity "
-            "[m/V] and spring constant [N/m]"
-            if unit in _VOLTS
-            else ""
-        )
-        raise ConfigError(
-            f"column {name} is in {shown(unit)}, which is not a unit of {name}; give it in "
-            f"{si} or a multiple, e.g. {EXAMPLE!r}{hint}"
-        ) from None
+    return calibration.sensitivity * factor("deflection", column.unit) * column.values

@@ -2,36 +2,36 @@
 
 from __future__ import annotations
 
-import csv
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError, StorageError, shown
-from pellicle.files import read_text
+from pellicle.units import Quantity
 
 from . import afm
-from .columns import EXAMPLE, NAMES, Calibration, Channel, from_columns, is_curve
-from .curve import Curve
+from .columns import Calibration, from_columns, is_curve
+from .curve import Curve, Site
+from .roles import EXAMPLE
+from .text_table import FILE, curves_of, read_cells
+from .tree import read_hdf5, read_matlab
 
-if TYPE_CHECKING:
-    import h5py
-
-_HEADER = re.compile(r"([^\[(]*)(?:[\[(]([^\])]*)[\])])?")
 _TEXT = (".csv", ".tsv", ".txt")
 _HDF5 = (".h5", ".hdf5", ".nc")
-SUFFIXES = (*_TEXT, *_HDF5, *afm.SUFFIXES)
+_MATLAB = (".mat",)
+SUFFIXES = (*_TEXT, *_HDF5, *_MATLAB, *afm.SUFFIXES)
 """Suffixes of the files of a folder that are read."""
 _PATTERN = re.compile(r"[*?[]")
-_LABEL = "curve"
-_FILE = "file"
 _MANY = 8
+_TABLES_TOO = (".tab",)
+"""Suffixes of instrument files that are tables."""
+_SPREADSHEETS = (".xlsx", ".xlsm", ".xls", ".ods", ".numbers")
 
 Curves = str | Path | Sequence[str | Path] | Mapping[str, tuple[ArrayLike, ArrayLike]]
 """A folder, a file, a table that lists files, several of these; or position and force by name."""
@@ -45,6 +45,12 @@ class Source(NamedTuple):
     curve: Curve | PellicleError
     fields: Mapping[str, Any]
     """Fields of the indenter that this curve alone has."""
+    file: str = ""
+    """The file, or the name of a curve that was given by its numbers."""
+    group: str = ""
+    """Text of the column of a table of files by which curves are grouped."""
+    map: str = ""
+    """File of the force map that the curve belongs to: its own, or the table of files."""
 
     def reason(self, error: Exception) -> str:
         """Return the message of an error without the name of the source in front."""
@@ -55,14 +61,107 @@ class Source(NamedTuple):
         return ConfigError(f"{self.name}: {self.reason(error)}{hint}")
 
 
+@dataclass(frozen=True)
+class CurveFile:
+    """A file of curves, or one curve given by its numbers; it is read only when it is opened."""
+
+    path: Any
+    """The file, or the name of the curve."""
+    numbers: tuple[ArrayLike, ArrayLike] | None
+    """Position [m] and force [N] of a curve that is given by its numbers."""
+    fields: Mapping[str, Any]
+    """Calibration, fields of the indenter, x and y that belong to this file alone."""
+    group: str
+    """Text of the column of a table of files by which curves are grouped."""
+    table: Path | None
+    """The table of files that lists it."""
+    segment: str
+    calibration: Calibration
+
+    def open(self) -> Sources:
+        """Return its curves; those of a force map are read only as they are iterated over."""
+        own, fields = Calibration.model_fields, dict(self.fields)
+        settings = {name: getattr(self.calibration, name) for name in own}
+        settings |= {name: fields.pop(name) for name in own if name in fields}
+        contents: Mapping[str, Curve | PellicleError]
+        try:
+            site = _site(fields)
+            calibration = Calibration(**settings)
+            if self.numbers is not None:
+                # `clean` checks the arrays.
+                position, force = (cast("Array", values) for values in self.numbers)
+                stiffness, speed = calibration.spring_constant, calibration.speed
+                contents = {"": Curve(position, force, stiffness=stiffness, speed=speed)}
+            else:
+                contents = read(self.path, calibration, self.segment)
+        except PellicleError as error:
+            contents, site = {"": error}, None
+        return Sources(self, fields, contents, site)
+
+
+@dataclass(frozen=True)
+class Sources:
+    """The curves of one file."""
+
+    file: CurveFile
+    fields: Mapping[str, Any]
+    contents: Mapping[str, Curve | PellicleError]
+    site: Site | None
+    """Where on the sample the file was recorded, if a table of files says so."""
+
+    @property
+    def is_single(self) -> bool:
+        """Whether the file holds one curve without a label."""
+        return list(self.contents) == [""]
+
+    def __len__(self) -> int:
+        return len(self.contents)
+
+    def __iter__(self) -> Iterator[Source]:
+        path = self.file.path
+        for label, curve in self.contents.items():
+            name = f"{path}:{label}" if label else str(path)
+            whole = str(path)
+            if self.site is not None and isinstance(curve, Curve):
+                curve, whole = replace(curve, site=self.site), str(self.file.table or path)
+            yield Source(name, curve, self.fields, str(path), self.file.group, whole)
+
+
+class SourceStream:
+    """The curves of many files, which are opened one after the other.
+
+    ``operator.length_hint`` counts a file that has not been opened yet as one curve.
+    """
+
+    def __init__(self, files: Sequence[CurveFile]) -> None:
+        self._files = files
+        self._count = len(files)
+
+    def __length_hint__(self) -> int:
+        return self._count
+
+    def __iter__(self) -> Iterator[Source]:
+        self._count = len(self._files)
+        for file in self._files:
+            sources = file.open()
+            self._count += len(sources) - 1
+            yield from sources
+
+
 def gather(
-    curves: Curves, segment: str, calibration: Calibration, per_file: Mapping[str, Sequence[Any]]
-) -> list[Source]:
-    """Return all curves, in order.
+    curves: Curves,
+    segment: str,
+    calibration: Calibration,
+    per_file: Mapping[str, Sequence[Any]],
+    label: str = "",
+    is_field: bool = False,
+) -> list[CurveFile]:
+    """Return all files, in order.
 
     Each list in ``per_file`` has one value for each file (or for each curve that is given by its
     numbers); spring_constant and sensitivity among them, and in a table that lists files, replace
-    those of the calibration.
+    those of the calibration.  In such a table, the columns x and y are the place on the sample, and
+    the column ``label`` holds the group of each curve, and may be a field of the indenter as well.
 
     Raises
     ------
@@ -73,7 +172,7 @@ def gather(
     """
     arrays = curves if isinstance(curves, Mapping) else {}
     if isinstance(curves, Mapping):
-        files: list[tuple[Any, dict[str, str]]] = [(name, {}) for name in curves]
+        files: list[tuple[Any, dict[str, str], Path | None]] = [(n, {}, None) for n in curves]
     else:
         paths = [curves] if isinstance(curves, (str, Path)) else curves
         files = [file for text in paths for path in expanded(text) for file in _files(path)]
@@ -86,27 +185,26 @@ def gather(
                 "order",
                 name,
             )
-    sources = []
-    for number, (file, listed) in enumerate(files):
+    gathered = []
+    for number, (file, listed, table) in enumerate(files):
+        group = listed.get(label.lower(), "")
+        if not is_field:
+            listed.pop(label.lower(), None)
         fields = {name: values[number] for name, values in per_file.items()} | listed
-        names = Calibration.model_fields
-        settings = {name: getattr(calibration, name) for name in names}
-        settings |= {name: fields.pop(name) for name in names if name in fields}
-        contents: Mapping[str, Curve | PellicleError]
-        try:
-            own = Calibration(**settings)
-            if file in arrays:
-                # `clean` checks the arrays.
-                position, force = (cast("Array", values) for values in arrays[file])
-                given = Curve(position, force, stiffness=own.spring_constant, speed=own.speed)
-                contents = {"": given}
-            else:
-                contents = read(file, own, segment)
-        except PellicleError as error:
-            contents = {"": error}
-        for label, curve in contents.items():
-            sources.append(Source(f"{file}:{label}" if label else str(file), curve, fields))
-    return sources
+        numbers = arrays.get(file)
+        gathered.append(CurveFile(file, numbers, fields, group, table, segment, calibration))
+    return gathered
+
+
+def _site(fields: dict[str, Any]) -> Site | None:
+    """Return where a curve was measured, and remove x and y from the fields of its file."""
+    if not {"x", "y"} <= fields.keys():
+        return None
+    try:
+        x, y = (Quantity("m")(fields.pop(name)) for name in ("x", "y"))
+    except ValueError as error:
+        raise ConfigError(f"x and y: {error}") from None
+    return Site(x, y)
 
 
 def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
@@ -123,8 +221,8 @@ def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     return files
 
 
-def _files(path: Path) -> list[tuple[Path, dict[str, str]]]:
-    """Return the files that a path stands for, each with its fields in a list of files.
+def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
+    """Return the files that a path stands for, each with its fields in a list of files, and that.
 
     A list of files is a table with a header such as ``file,radius [um]``; its values get their
     units, and empty cells are left out.
@@ -137,34 +235,35 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str]]]:
         )
         if not files:
             raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
-        return [(file, {}) for file in files]
-    cells = _cells(path) if path.suffix.lower() in _TEXT and path.is_file() else None
-    if cells is None or _FILE not in [name for name, _ in cells.heads]:
-        return [(path, {})]
-    listed = []
+        return [(file, {}, None) for file in files]
+    cells = read_cells(path) if path.suffix.lower() in _TEXT and path.is_file() else None
+    if cells is None or FILE not in cells.names:
+        return [(path, {}, None)]
+    listed: list[tuple[Path, dict[str, str], Path | None]] = []
     for row in cells.rows:
         fields = {
-            name: f"{cell.strip()} {unit}".strip()
-            for (name, unit), cell in zip(cells.heads, row, strict=False)
+            head.name.lower(): f"{cell.strip()} {head.unit}".strip()
+            for head, cell in zip(cells.heads, row, strict=False)
             if cell.strip()
         }
-        if _FILE not in fields:
+        if FILE not in fields:
             raise ConfigError(f"{path}: has a row without a file; name one in each row")
-        listed.append((path.parent / fields.pop(_FILE), fields))
+        listed.append((path.parent / fields.pop(FILE), fields, path))
     return listed
 
 
 def read(
     path: Path, calibration: Calibration | None = None, segment: str = "approach"
-) -> dict[str, Curve | PellicleError]:
+) -> Mapping[str, Curve | PellicleError]:
     """Return the curves of a file, or the errors of reading them, by their labels.
 
-    The label of a single curve is empty.  A table (CSV, TSV, semicolons) has a header such as
-    ``position [um],force [nN]``; cells that hold no number are NaN, columns of other names are
+    The label of a single curve is empty.  A table (CSV, TSV, semicolons, spaces) has a header such
+    as ``position [um],force [nN]``; cells that hold no number are NaN, columns of other names are
     ignored, and rows that differ in a column ``curve`` are different curves.  An HDF5 file has
     datasets of the same names with an attribute ``units``, or groups of them, one for each curve; a
-    pellicle result is such a file.  Any other file is read by afmformats, which then selects the
-    ``segment``.
+    pellicle result is such a file.  The columns of the calibration name other columns of a table,
+    and the arrays of any HDF5 or MATLAB file.  Any other file is read by afmformats, which then
+    selects the ``segment``.
 
     Raises
     ------
@@ -174,20 +273,37 @@ def read(
         The file cannot be read.
     """
     calibration, suffix = calibration or Calibration(), path.suffix.lower()
-    if suffix in afm.SUFFIXES:
+    mapped = calibration.columns or {}
+    if suffix in _SPREADSHEETS:
+        raise StorageError(
+            f"{path}: is a spreadsheet; save the sheet of each curve as CSV (in Excel and "
+            f"LibreOffice: Save as), with a header such as {EXAMPLE!r}"
+        )
+    if suffix in afm.SUFFIXES and not (mapped and suffix in _TABLES_TOO):
+        if mapped:
+            raise ConfigError(
+                f"{path} is the file of an instrument, which states what its columns are; leave "
+                "columns out",
+                "columns",
+            )
         return afm.read(path, calibration, segment)
-    cells = None if suffix in _HDF5 else _cells(path)
-    tables = _hdf5(path) if suffix in _HDF5 else _table(path, cells) if cells else {}
-    hint = ""
-    if not any(map(is_curve, tables.values())):
+    cells, hint = None, ""
+    if suffix in _HDF5:
+        tables = read_hdf5(path, mapped)
+    elif suffix in _MATLAB:
+        tables = read_matlab(path, mapped)
+    else:
+        cells = read_cells(path, mapped)
+        tables = curves_of(path, cells, mapped) if cells else {}
+    if not mapped and not any(map(is_curve, tables.values())):
         try:
             return afm.read(path, calibration, segment)
         except StorageError:
             # Only afmformats can recognise the file of an instrument.
             hint = "" if afm.installed() else f"; if it is an instrument's: {afm.INSTALL}"
             if cells is not None:
-                first = ", ".join(shown(name) for name, _ in cells.heads[:_MANY])
-                hint = f"; its first line is {first}{hint}"
+                first = ", ".join(shown(text) for text in cells.first[:_MANY])
+                hint = f"; its first line is {first}, and --columns says what such names are{hint}"
     if not tables:
         raise StorageError(
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
@@ -201,105 +317,3 @@ def read(
             where = f"{path}: curve {label}" if label else str(path)
             curves[label] = ConfigError(f"{where}: {error}{hint}")
     return curves
-
-
-class _Cells(NamedTuple):
-    """The cells of a table as texts."""
-
-    heads: list[tuple[str, str]]
-    """Name and unit of each column."""
-    rows: list[list[str]]
-    comma: bool
-    """Whether the decimal separator is a comma."""
-
-    def numbers(self, rows: list[list[str]], index: int) -> Array:
-        """Return a column of some rows; NaN where a cell is missing or holds no number."""
-        values = np.full(len(rows), np.nan)
-        for number, row in enumerate(rows):
-            with suppress(ValueError, IndexError):
-                values[number] = float(row[index].replace(",", ".") if self.comma else row[index])
-        return values
-
-
-def _cells(path: Path) -> _Cells | None:
-    """Return the cells of a table; None if the file is not text."""
-    try:
-        text = read_text(path)
-    except OSError as error:
-        raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except ValueError:
-        return None
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    if not lines:
-        raise ConfigError(f"{path}: is empty; give a table with the header {EXAMPLE!r}")
-    separator = max("\t;,", key=lines[0].count)
-    try:
-        first, *rows = csv.reader(lines, delimiter=separator)
-    except csv.Error:
-        # A cell is longer than any number.
-        return None
-    heads = []
-    for head in first:
-        match = _HEADER.fullmatch(head.strip())
-        name, unit = match.groups(default="") if match else (head, "")
-        heads.append((name.rstrip().lower() if match else head.lower(), unit.strip()))
-    # Tables separated by semicolons come from systems whose decimal separator is the comma.
-    return _Cells(heads, rows, separator == ";")
-
-
-def _table(path: Path, cells: _Cells) -> dict[str, Mapping[str, Channel]]:
-    """Return the known columns of each curve of a table."""
-    names = [name for name, _ in cells.heads]
-    indices = {name: index for index, name in enumerate(names) if name in NAMES}
-    for name in indices:
-        if names.count(name) > 1:
-            raise ConfigError(
-                f"{path}: has several columns {name}: give one curve to a file, tell curves apart "
-                f"by a column {_LABEL}, or name the others differently"
-            )
-    curves: dict[str, list[list[str]]] = {"": cells.rows}
-    if _LABEL in names and indices:
-        curves = {}
-        label = names.index(_LABEL)
-        for row in cells.rows:
-            curves.setdefault(row[label].strip() if label < len(row) else "", []).append(row)
-    return {
-        label: {
-            name: Channel(cells.heads[index][1], cells.numbers(rows, index))
-            for name, index in indices.items()
-        }
-        for label, rows in curves.items()
-    }
-
-
-def _hdf5(path: Path) -> dict[str, Mapping[str, Channel]]:
-    import h5py
-
-    try:
-        with h5py.File(path) as file:
-            if columns := _datasets(file):
-                return {"": columns}
-            groups = {
-                str(name): _datasets(group)
-                for name, group in file.items()
-                if isinstance(group, h5py.Group)
-            }
-    except OSError as error:
-        raise StorageError(
-            f"{path}: cannot be read as an HDF5 file ({error.strerror or error})"
-        ) from None
-    return {name: columns for name, columns in groups.items() if columns} or {"": {}}
-
-
-def _datasets(group: h5py.Group) -> dict[str, Channel]:
-    """Return the known columns that are datasets of a group."""
-    import h5py
-
-    columns = {}
-    for name in NAMES:
-        dataset = group.get(name)
-        if isinstance(dataset, h5py.Dataset) and dataset.ndim == 1:
-            unit = dataset.attrs.get("units", "")
-            unit = unit.decode() if isinstance(unit, bytes) else str(unit)
-            columns[name] = Channel(unit, np.asarray(dataset, dtype=float))
-    return columns

@@ -1,0 +1,69 @@
+"""Read the variables of MATLAB files, old (version 5) and new (7.3, which is HDF5)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_USER_BLOCK = 512
+"""Size of the text that precedes the HDF5 content of version 7.3 [bytes]."""
+
+
+def read_mat(path: Path) -> dict[str, Any]:
+    """Return the variables of a file by name.
+
+    Structures are dictionaries; cell arrays and arrays of structures are dictionaries whose keys
+    count from 1.  Arrays have the axes that they have in MATLAB.
+
+    Raises
+    ------
+    OSError
+        The file cannot be read.
+    ValueError
+        The file is not a MATLAB file.
+    """
+    with path.open("rb") as file:
+        head = file.read(_USER_BLOCK + len(_HDF5))
+    if _HDF5 in (head[: len(_HDF5)], head[_USER_BLOCK:]):
+        return _read_hdf5(path)
+    from scipy.io import loadmat
+
+    try:
+        content = loadmat(path, simplify_cells=True)
+    except OSError:
+        raise
+    except Exception as error:
+        # scipy raises errors of zlib, of struct and of its own for damaged files.
+        raise ValueError(str(error) or type(error).__name__) from None
+    return {name: _plain(value) for name, value in content.items() if not name.startswith("__")}
+
+
+def _plain(value: Any) -> Any:
+    """Return a structure, a cell array or an array of structures as a dictionary."""
+    if isinstance(value, Mapping):
+        return {str(name): _plain(entry) for name, entry in value.items()}
+    if isinstance(value, np.ndarray) and value.dtype == object:
+        value = value.ravel(order="F").tolist()
+    if isinstance(value, list):
+        return {str(number): _plain(entry) for number, entry in enumerate(value, 1)}
+    return value
+
+
+def _read_hdf5(path: Path) -> dict[str, Any]:
+    import h5py
+
+    def content(item: Any) -> Any:
+        if isinstance(item, h5py.Group):
+            return {str(name): content(entry) for name, entry in item.items()}
+        if item.dtype == h5py.ref_dtype:
+            references = np.atleast_1d(item[()]).ravel()
+            return {str(n): content(file[ref]) for n, ref in enumerate(references, 1) if ref}
+        return np.asarray(item).T
+
+    with h5py.File(path) as file:
+        # "#refs#" and "#subsystem#" hold what variables refer to.
+        return {name: content(item) for name, item in file.items() if not name.startswith("#")}
