@@ -52,4 +52,4 @@ def test_derived_columns(tmp_path: Path) -> None:
     shown = CliRunner().invoke(app, ["show", str(folder)])
     head, *lines = [line.split() for line in shown.output.splitlines()[3:]]
     assert head[-5:] == ["s", "pull", "missed", "status", "file"]
-    assert [line[-4] for line in lines] == [f"{last:.4g}" for last in wanted[:, -1]]
+    assert [line[-4] for line in lines] == [f"{last:.0f}" for last in wanted[:, -1]]
