@@ -19,8 +19,9 @@ _WORDS = {
     "slope": "slope of the baseline",
     "chi_squared": "χ²",
 }
-_PARAMETERS = (("reduced_modulus", "Pa"), ("tension", "N/m"), ("contact_point", "m"))
 
+_UNITS = {"reduced_modulus": "Pa", "tension": "N/m", "thickness": "m", "contact_point": "m"}
+"""Parameters that a line has, if a fit has them."""
 _LINES = 50
 """Largest number of curves that are listed although a table is written."""
 
@@ -72,8 +73,10 @@ def _curves(rows: list[dict[str, Any]]) -> list[tuple[str, list[str]]]:
     from pellicle.units import axis_unit
 
     columns = [("curve", [str(row["curve"]) for row in rows])]
-    for name, unit in _PARAMETERS:
+    for name, unit in _UNITS.items():
         estimates = [row.get(name) for row in rows]
+        if not any(name in row for row in rows):
+            continue
         scale = axis_unit([e["value"] for e in estimates if e], unit)
         values = [scale.number(e["value"]) if e else "" for e in estimates]
         columns.append((f"{_words(name)} [{scale.unit}]", values))

@@ -38,6 +38,7 @@ def show(
     """Print the steps of a result, or the runs of a study, and its origin."""
     from pellicle.results.result import load
     from pellicle.studies.runner import is_table, read
+    from pellicle.studies.summary import caveats
 
     if is_table(results):
         table, _ = read(results)
@@ -46,6 +47,8 @@ def show(
         else:
             print_origin(table)
             print_runs(table, si=si)
+        for message in caveats(table):
+            echo(message, err=True)
         exit_by_status(table)
         return
     result = load(results)

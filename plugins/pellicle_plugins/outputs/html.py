@@ -61,7 +61,6 @@ from pellicle.results.variables import (
 )
 from pellicle.studies.summary import (
     caveats,
-    coarse,
     failures,
     progress_of,
     reasons,
@@ -273,7 +272,7 @@ def _status(result: Result) -> Notice:
 
 
 def _status_of_study(table: xr.Dataset, count: int) -> Notice:
-    failed, warnings = failures(table), [*coarse(table), *caveats(table)]
+    failed, warnings = failures(table), [*caveats(table)]
     if not failed:
         return Notice(f"Every step of all {count} runs converged.", not warnings, warnings)
     return Notice(f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings])
