@@ -16,7 +16,7 @@ from typer.core import TyperCommand, TyperGroup
 from pellicle.errors import PellicleError
 from pellicle.version import CITATION, __version__
 
-from . import explain, explore, fit, new, plot, plugins, run, schema, show, validate
+from . import check, explain, explore, fit, new, plot, plugins, run, schema, show, validate
 from .encoding import encode_readably
 from .exits import BAD_INPUT, CRASHED, INTERRUPTED
 from .printing import echo, print_warning
@@ -111,6 +111,7 @@ def _options(
 # In the order of the help.
 for command in (
     run.run,
+    check.check,
     explore.explore,
     fit.fit,
     explain.explain,
