@@ -27,6 +27,7 @@ from .config import FitConfig
 from .curves.readers import Curves, Source
 from .fit import fit_problem
 from .problem import FitProblem, problems
+from .record import Record, Stopwatch, data_of
 from .result import write_json
 
 if TYPE_CHECKING:
@@ -37,6 +38,8 @@ FAILED = "failed: "
 _NOT_RUN = "not run"
 _WITHOUT_EFFECT = {"curves", "per_file", "pool", "contact_points", "executor", "cache"}
 """Fields of a configuration that do not change the fit of a curve."""
+_MEASURED = {"spring_constant": "N/m", "sensitivity": "m/V", "poissons_ratio": "1"}
+"""Numbers in the data of a row, and their units."""
 _BYTES_PER_POINT = 2000
 """Memory of a fit, approximately."""
 
@@ -139,10 +142,12 @@ def fit_sources(
         check_writable(directory / "fits.h5")
     rows: list[Row] = [{"curve": source.name, "status": _NOT_RUN} for source in sources]
     tasks: list[FitTask] = []
-    for number, problem in enumerate(problems(config, sources)):
+    watch, posed = Stopwatch(), problems(config, sources)
+    for number, problem in enumerate(posed):
         try:
             if isinstance(problem, PellicleError):
                 raise problem
+            rows[number]["data"] = data_of(problem.curve, config)
             path = None
             if directory is not None:
                 name = f"{_identity(config, sources[number], problem)[:16]}.json"
@@ -171,7 +176,7 @@ def fit_sources(
                 bar.finished(task, status, status != FITTED)
     finally:
         if directory is not None:
-            files = _write(rows, config, directory)
+            files = _write(rows, config, watch.record(config, posed), directory)
     return ManyFits(rows, files, resumed)
 
 
@@ -240,19 +245,33 @@ def table(rows: list[Row]) -> xr.Dataset:
         columns[name] = texts(row.get(name, "") for row in rows)
     checks = [[check["code"] for check in row.get("failed_checks", ())] for row in rows]
     columns["failed_checks"] = texts(map("; ".join, checks))
+    data = [row.get("data", {}) for row in rows]
+    for name, unit in _MEASURED.items():
+        columns[name] = numbers((entry.get(name) for entry in data), unit)
+    for name in ("segment", "baseline", "file", "sha256"):
+        columns[name] = texts(entry.get(name) or "" for entry in data)
+    roles = [entry.get("columns", {}).items() for entry in data]
+    columns["columns"] = texts("; ".join(f"{r} = {c}" for r, c in items) for items in roles)
     columns["messages"] = texts("; ".join(row.get("messages", ())) for row in rows)
     return xr.Dataset(columns, {"curve": texts(row["curve"] for row in rows)})
 
 
-def _write(rows: list[Row], config: FitConfig, directory: Path) -> tuple[Path, ...]:
+def _write(rows: list[Row], config: FitConfig, record: Record, directory: Path) -> tuple[Path, ...]:
     """Write ``fits.h5``, ``fits.csv`` and ``fits.json`` and return their paths."""
-    dataset = table(rows)
+    attributes = {
+        "configuration": config.to_json(),
+        "versions": ", ".join(f"{name} {number}" for name, number in record.versions.items()),
+        "date": record.date,
+    }
+    dataset = table(rows).assign_attrs(attributes)
     hdf5, text = directory / "fits.h5", directory / "fits.csv"
     storage.write(dataset, hdf5)
     with atomic_write(text) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         columns = ["curve", *dataset.data_vars]
-        writer.writerow(header(str(name), dataset[name]) for name in columns)
-        writer.writerows(zip(*(dataset[name].values.tolist() for name in columns), strict=True))
-    content = {"curves": rows, "configuration": config.to_dict()}
+        heads = [header(str(name), dataset[name]) for name in columns]
+        writer.writerow([*heads, *attributes])
+        for row in zip(*(dataset[name].values.tolist() for name in columns), strict=True):
+            writer.writerow([*row, *attributes.values()])
+    content = {"curves": rows, "configuration": config.to_dict(), **record.to_dict()}
     return hdf5, text, write_json(content, directory / "fits.json")

@@ -16,6 +16,7 @@ from pellicle.errors import ConfigError, PellicleError, StorageError, shown
 from . import afm
 from .columns import Calibration, from_columns, is_curve
 from .curve import Curve
+from .origin import Stamped, state
 from .roles import EXAMPLE
 from .text_table import FILE, curves_of, read_cells
 from .tree import read_hdf5, read_matlab
@@ -154,7 +155,7 @@ def _files(path: Path) -> list[tuple[Path, dict[str, str]]]:
 
 def read(
     path: Path, calibration: Calibration | None = None, segment: str = "approach"
-) -> dict[str, Curve | PellicleError]:
+) -> Mapping[str, Curve | PellicleError]:
     """Return the curves of a file, or the errors of reading them, by their labels.
 
     The label of a single curve is empty.  A table (CSV, TSV, semicolons, spaces) has a header such
@@ -172,7 +173,14 @@ def read(
     StorageError
         The file cannot be read.
     """
-    calibration, suffix = calibration or Calibration(), path.suffix.lower()
+    before = state(path)
+    return Stamped(_read(path, calibration or Calibration(), segment), path, before)
+
+
+def _read(
+    path: Path, calibration: Calibration, segment: str
+) -> Mapping[str, Curve | PellicleError]:
+    suffix = path.suffix.lower()
     mapped = calibration.columns or {}
     if suffix in _SPREADSHEETS:
         raise StorageError(
