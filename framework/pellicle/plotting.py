@@ -3,8 +3,10 @@
 from pellicle.report.plotting import FIGURES as FIGURES
 from pellicle.report.plotting import STUDY_FIGURES as STUDY_FIGURES
 from pellicle.report.plotting import area_force as area_force
+from pellicle.report.plotting import drawings as drawings
 from pellicle.report.plotting import extent as extent
 from pellicle.report.plotting import force_depth as force_depth
+from pellicle.report.plotting import over_time as over_time
 from pellicle.report.plotting import pressure_map as pressure_map
 from pellicle.report.plotting import profile as profile
 from pellicle.report.plotting import save_figure as save_figure

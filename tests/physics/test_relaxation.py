@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -176,6 +176,7 @@ def test_power_law_pressed_in_and_drawn_back(exponent: float) -> None:
         ([{"fraction": 0.8, "time": 1e-12}], 0.2),
     ],
 )
+@pytest.mark.filterwarnings("ignore:loading. the shortest step:UserWarning")
 def test_limits_are_elastic(relaxation: list[dict[str, Any]], share: float) -> None:
     """No fraction or endless times give the instantaneous solid, times of nought the relaxed one.
 
@@ -197,6 +198,7 @@ def test_limits_are_elastic(relaxation: list[dict[str, Any]], share: float) -> N
 
 
 @pytest.mark.parametrize(("time", "share"), [(1e12, 1.0), (1e-12, 0.2)])
+@pytest.mark.filterwarnings("ignore:loading. the shortest step:UserWarning")
 def test_limits_under_a_skin_are_elastic(time: float, share: float) -> None:
     """Under a force, in contacts that grow and shrink on a periodic tensed skin, too."""
     forces = [2e-6, 8e-6, 5e-6, 3e-6]
@@ -250,10 +252,11 @@ def test_every_wave_obeys_the_convolution(tension: float) -> None:
 def test_liquid_flows_out_of_the_way() -> None:
     """Fractions that sum to 1 carry nothing in the end, and the solver copes with the decay."""
     times = [0.0, 1.0, 5.0, 20.0]
-    data = solved(
-        kernel=solid([{"fraction": 0.7, "time": 1.0}, {"fraction": 0.3, "time": 0.5}]),
-        loading={"depth": [1e-5] * 4, "time": times},
-    )
+    with pytest.warns(UserWarning, match="sum to 1, which makes the solid a liquid"):
+        data = solved(
+            kernel=solid([{"fraction": 0.7, "time": 1.0}, {"fraction": 0.3, "time": 0.5}]),
+            loading={"depth": [1e-5] * 4, "time": times},
+        )
     t = np.array(times)
     expected = 0.7 * np.exp(-t) + 0.3 * np.exp(-2 * t)
     np.testing.assert_allclose(data["force"] / data["force"][0], expected, rtol=1e-8, atol=1e-11)
@@ -270,25 +273,44 @@ def path() -> dict[str, Any]:
     )
 
 
-@pytest.mark.parametrize("tension", [0.0, 0.05])
-def test_resumed_run_has_the_same_numbers(
-    tension: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A run that is killed after six steps goes on bit by bit as one that is not."""
-    run = path() | {"outputs": []}
-    if tension:
-        run["kernel"] = {"type": "coated", "tension": tension, "substrate": solid()}
-        run["grid"] = run["grid"] | {"boundary": "periodic"}
-        run["loading"] = {
+def long_path() -> dict[str, Any]:
+    """Return a run of forty steps, in and out, with a skin on a free boundary."""
+    depths = np.concatenate([np.linspace(6e-6, 1e-5, 16), np.linspace(1e-5, 9e-6, 24)])
+    times = np.concatenate([np.linspace(0.0, 3.0, 16), np.linspace(3.5, 15.0, 24)])
+    return configuration(
+        kernel={"type": "coated", "tension": 0.02, "substrate": solid()},
+        grid={"points": 36, "size": "0.9 mm", "boundary": "free"},
+        indenter=PARABOLOID,
+        loading={"depth": depths.tolist(), "time": times.tolist()},
+    )
+
+
+def periodic_path() -> dict[str, Any]:
+    """Return the path of `path` under a force, with a skin on a periodic boundary."""
+    run = path()
+    return run | {
+        "kernel": {"type": "coated", "tension": 0.05, "substrate": solid()},
+        "grid": run["grid"] | {"boundary": "periodic"},
+        "loading": {
             "force": [2e-6 * (1 + n % 4) for n in range(10)],
             "time": run["loading"]["time"],
-        }
+        },
+    }
+
+
+@pytest.mark.parametrize("path", [path, periodic_path, long_path])
+def test_resumed_run_has_the_same_numbers(
+    path: Callable[[], dict[str, Any]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run that is killed on its way goes on bit by bit as one that is not."""
+    run = path() | {"outputs": []}
+    finished = 3 * len(run["loading"]["time"]) // 5
     whole = pl.run(run | {"outputs": None}, progress=False).dataset
     solve_step, solved_steps = steps.solve_step, 0
 
     def killed(*arguments: Any) -> Any:
         nonlocal solved_steps
-        if solved_steps == 6:
+        if solved_steps == finished:
             raise KeyboardInterrupt
         solved_steps += 1
         return solve_step(*arguments)
@@ -298,7 +320,8 @@ def test_resumed_run_has_the_same_numbers(
         with pytest.raises(KeyboardInterrupt):
             pl.run(run, directory=tmp_path, progress=False)
     resumed = pl.run(run, directory=tmp_path, progress=False).dataset
-    for name in ("pressure", "displacement", "force", "depth", "time"):
+    names = ("pressure", "displacement", "force", "depth", "time", "operator_applications")
+    for name in names:
         np.testing.assert_array_equal(resumed[name], whole[name])
 
 
@@ -326,10 +349,14 @@ def test_resumed_run_has_the_same_numbers(
         ({"loading": {"depth": 1e-6, "time": float("nan")}}, "loading.time"),
         (
             {
-                "loading": {"depth": 1e-6, "time": 0.0},
-                "kernel": {"type": "coated", "tension": 0.05, "substrate": solid()},
+                "loading": {"depth": [1e-6] * 2, "time": [0.0, 1001.0]},
+                "kernel": {
+                    "type": "coated",
+                    "tension": 0.05,
+                    "substrate": solid(power_law={"exponent": 0.2, "time": 1.0}),
+                },
             },
-            "skin",
+            "lasts 1001 s",
         ),
         (
             {
@@ -345,6 +372,19 @@ def test_refuses(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(pl.ConfigError) as caught:
         pl.Run(**configuration(**changes))
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("tension", [0.0, 0.05])
+def test_relaxation_far_faster_than_the_steps_is_said(tension: float) -> None:
+    """A run would not show how the fast share relaxes; jumps and slow steps alone are no matter."""
+    kernel = solid([{"fraction": 0.5, "time": 1e-3}, {"fraction": 0.3, "time": 1.0}])
+    if tension:
+        kernel = {"type": "coated", "tension": tension, "substrate": kernel}
+    grid = {"points": 16, "size": "1 mm", "boundary": "periodic"}
+    loading = {"force": [1e-6] * 3, "time": [0.0, 0.0, 0.2]}
+    with pytest.warns(UserWarning, match="takes 0.2 s, in which .* relaxation time 0.001 s"):
+        solved(grid=grid, kernel=kernel, loading=loading)
+    solved(grid=grid, kernel=kernel, loading=loading | {"time": [0.0, 0.0, 0.05]})
 
 
 def test_elastic_solid_takes_no_notice_of_time() -> None:

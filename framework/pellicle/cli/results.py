@@ -43,7 +43,7 @@ def print_steps(result: Result) -> None:
         for n in numbers
     ]
     _print_steps(data, names, {"status": verdicts})
-    several = {**coarse, **dict(result.steep())}
+    several = {**coarse, **dict(result.steep()), **dict(result.cramped())}
     for number, status in zip(numbers, data["status"].values.tolist(), strict=True):
         if converged[number] and status != "converged" and number not in several:
             typer.echo(f"step {number}: {for_document(status)}", err=True)
@@ -112,7 +112,7 @@ def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
 
 def print_runs(table: xr.Dataset) -> None:
     """Print parameters, last step and verdict of each run of a study, and its path."""
-    from pellicle.studies.summary import paths, rows, steep
+    from pellicle.studies.summary import caveats, paths, rows
 
     for caption, lines in (("", rows(table)), ("path:", paths(table))):
         if lines:
@@ -120,7 +120,7 @@ def print_runs(table: xr.Dataset) -> None:
                 typer.echo(caption)
             names = list(lines[0])
             print_table(names, lines, _heads(table, [name for name in names if name in table]))
-    for message in steep(table):
+    for message in caveats(table):
         typer.echo(message, err=True)
 
 
@@ -130,7 +130,7 @@ def exit_by_convergence(result: Result) -> None:
 
     for step, message in result.failures():
         typer.echo(f"step {step} did not converge: {for_document(message)}", err=True)
-    for steps in (result.coarse(), result.steep()):
+    for steps in (result.coarse(), result.steep(), result.cramped()):
         if steps:
             print_warning(first_message(steps))
     if not result.converged:

@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from numbers import Integral
 from pathlib import Path
 from typing import Any, cast, get_args
@@ -27,7 +27,6 @@ from pellicle.checks import (
 )
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import LARGEST, Grid
-from pellicle.numerics.gap_law import GapLaw, Law
 from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
 from pellicle.numerics.relaxation import Branch
 from pellicle.numerics.solution import Solution, State, Stop
@@ -35,7 +34,6 @@ from pellicle.numerics.solution import Solution, State, Stop
 from .correction import AreaCorrection
 from .executor import AnyTask, Executor, Outcome, Report, Say
 from .indenter import Footprint, ForceCurve, HasForceCurve, Indenter
-from .interaction import Interaction
 from .kernel import HasRelaxation, Kernel
 from .output import Output, Runs, stem_of
 from .prescription import Prescription, Search, Setting
@@ -45,10 +43,6 @@ from .solver import Monitor, Solver
 # How Python refuses a State used as an array, which it was in earlier versions.
 _OUTDATED = "'State'|State is not an array|can't multiply sequence|argument 'pressure'"
 _ROUNDING = 1e-12
-# Gaps at which a law is checked, and the error of the energy by the trapezoidal rule, over w. A
-# law that drops within one of these gaps still passes.
-_GAPS = 2001
-_ENERGY_ERROR = 1e-2
 
 
 def profile_of(indenter: Indenter, grid: Grid) -> Array:
@@ -274,80 +268,6 @@ def check_solver(solver: Solver, problem: Problem) -> None:
         reason = solver.refuses(problem)
     if reason:
         raise ConfigError(f"{component_name(solver)} {reason}", "solver.type")
-
-
-def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
-    """Return the law of an interaction, resolved on a grid, with checked values.
-
-    Raises
-    ------
-    PluginError
-        The traction is not the derivative of the energy, or a value is not a finite number.
-    """
-
-    def resolve(grid: Grid) -> GapLaw:
-        with errors_attributed_to(interaction):
-            law = interaction.resolved(kernel, grid)
-        return _CheckedLaw(interaction, law)
-
-    law = resolve(grid)
-    cutoff = law.cutoff()
-    if not 0 < cutoff < LARGEST:
-        raise PluginError(
-            f"{component_name(interaction)}: cutoff() is {cutoff:g} m; it has to be > 0 and "
-            f"< {LARGEST:g} m"
-        )
-    gaps = np.linspace(0.0, cutoff, _GAPS)
-    energy, traction = law.energy(gaps), law.traction(gaps)
-    depth = -float(energy[0])
-    if not depth > 0:
-        raise PluginError(
-            f"{component_name(interaction)}: energy(0) is {energy[0]:g} J/m²; it has to be "
-            "negative: minus the work of adhesion"
-        )
-    work = np.concatenate([[0.0], np.cumsum(0.5 * (traction[1:] + traction[:-1])) * gaps[1]])
-    missed = float(np.abs(energy - energy[0] + work).max()) / depth
-    if missed > _ENERGY_ERROR:
-        raise PluginError(
-            f"{component_name(interaction)}: traction(gap) is not −dγ/dg of energy(gap): their "
-            f"difference over the range is {missed:.1e} of the work of adhesion"
-        )
-    return Law(law, resolve)
-
-
-@dataclass(frozen=True)
-class _CheckedLaw:
-    interaction: Interaction
-    law: GapLaw
-
-    @property
-    def needs_contact(self) -> bool:
-        return self.law.needs_contact
-
-    def energy(self, gap: Array) -> Array:
-        return self._values("energy", gap)
-
-    def traction(self, gap: Array) -> Array:
-        return self._values("traction", gap)
-
-    def slope(self, gap: Array) -> Array:
-        return self._values("slope", gap)
-
-    def cutoff(self) -> float:
-        with errors_attributed_to(self.interaction):
-            value = self.law.cutoff()
-        return real_number(self.interaction, "cutoff()", value)
-
-    def _values(self, name: str, gap: Array) -> Array:
-        with errors_attributed_to(self.interaction):
-            values = getattr(self.law, name)(read_only(gap))
-        values = real_array(self.interaction, f"{name}(gap)", values, gap.shape)
-        if not np.isfinite(values).all():
-            raise PluginError(
-                f"{component_name(self.interaction)}: {name}(gap) has values that are NaN or "
-                "infinite; it has to be finite for every gap up to the cutoff"
-            )
-        return values
 
 
 def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor) -> Array:

@@ -119,15 +119,6 @@ class Run(FromFile):
                 f"legs of {self.loading.prescribed}",
                 "loading.time",
             )
-        is_free = self.grid.boundary == "free"
-        relaxing = isinstance(self.kernel, HasRelaxation) and self.kernel
-        if is_free and relaxing and relaxing.without_skin() != relaxing:
-            raise ConfigError(
-                f"{name!r} has a skin on a solid that relaxes, which cannot be solved on a free "
-                "boundary yet; use the solid without the skin, an elastic solid under it, or "
-                'boundary = "periodic"',
-                "kernel",
-            )
         _refuse_times(self.kernel, self.loading)
         return self
 

@@ -28,6 +28,11 @@ class Branch(NamedTuple):
     """Relaxation time τ [s]."""
 
 
+def stiffness_after(branches: Sequence[Branch], duration: float) -> float:
+    """Return the stiffness of a solid ``duration`` [s] after a jump over the instantaneous one."""
+    return 1.0 + math.fsum(b.share * math.expm1(-duration / b.time) for b in branches)
+
+
 @dataclass(frozen=True)
 class TimeStep:
     """What one step in time makes of the branches of a solid, in their order."""
@@ -38,6 +43,11 @@ class TimeStep:
     """g (τ/Δ)(1 − e^(−Δ/τ)) of each branch; its share g in a jump, where Δ = 0."""
     stiffness: float
     """γ: the stiffness of the solid in this step over its instantaneous stiffness."""
+
+    @property
+    def is_jump(self) -> bool:
+        """Whether nothing relaxes in the step: it takes no time."""
+        return all(decay == 1.0 for decay in self.decays)
 
     @classmethod
     def of(cls, branches: Sequence[Branch], duration: float) -> Self:
@@ -94,9 +104,9 @@ class Memory:
     def after(self, step: TimeStep, strain: Array) -> Memory:
         """Return the memory at the end of ``step``, where the strain is ``strain``."""
         growth = strain - self.strain
-        shape = (-1,) + (1,) * strain.ndim
-        branches = np.reshape(step.decays, shape) * self.branches
-        branches += np.reshape(step.weights, shape) * growth
+        branches = np.empty_like(self.branches)
+        for index, (decay, weight) in enumerate(zip(step.decays, step.weights, strict=True)):
+            branches[index] = decay * self.branches[index] + weight * growth
         return Memory(strain, branches)
 
 

@@ -48,7 +48,8 @@ function ticks(low, high, most) {
 
 function makeMaps(figure, data) {
   const select = figure.querySelector("select");
-  const alone = figure.querySelector("input");
+  const line = figure.querySelector("input[type=range]");
+  const alone = figure.querySelector("input[type=checkbox]");
   const readout = figure.querySelector("output");
   const canvases = [...figure.querySelectorAll("canvas")];
   const colours = data.fields.map((field) => bytesOf(field.colours));
@@ -83,6 +84,7 @@ function makeMaps(figure, data) {
     values = unpacked;
     if (moved) view = whole();
     select.value = index;
+    if (line) line.value = index;
     paint();
   }
 
@@ -297,6 +299,7 @@ function makeMaps(figure, data) {
   }
   for (const button of figure.querySelectorAll("button")) button.addEventListener("click", keys[button.dataset.key]);
   select.addEventListener("change", () => show(Number(select.value)));
+  line?.addEventListener("input", () => show(Number(line.value)));
   alone.addEventListener("change", paint);
   addEventListener("resize", draw);
   for (const query of ["print", "(prefers-color-scheme: dark)"]) matchMedia(query).addEventListener("change", draw);

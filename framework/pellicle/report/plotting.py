@@ -17,9 +17,9 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import Solver
 from pellicle.files import for_document, storage_errors
 from pellicle.numerics.problem import height_scale
-from pellicle.results.path import has_interaction
+from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
-from pellicle.units import axis_unit
+from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MOST_NAMED = 10
+_MOST_MARKED = 80
+_MOST_LEGS = 4
 DIVERGING = "RdBu_r"
 """The colours of fields that are negative where an interaction pulls."""
 RETRACTION = (0, (2.5, 1.2))
@@ -49,12 +51,17 @@ def without_round_off(step: xr.Dataset) -> xr.Dataset:
     return step.assign(gap=(step["gap"].dims, np.where(closed, 0.0, gap), step["gap"].attrs))
 
 
+def draws_contact(data: xr.Dataset) -> bool:
+    """Whether the last step in contact is drawn: with an interaction or times paths end off it."""
+    return has_interaction(data) or has_times(data)
+
+
 def default_step(steps: xr.Dataset) -> int:
     """Return the index of the load step of a run that is drawn: -1, which is the last.
 
-    With an interaction a path often ends out of contact; it is then the last step in contact.
+    It is the last step in contact where `draws_contact`.
     """
-    if not has_interaction(steps):
+    if not draws_contact(steps):
         return -1
     in_contact = np.flatnonzero(steps["contact_area"].values > 0)
     return int(in_contact[-1]) if in_contact.size else -1
@@ -196,13 +203,42 @@ def area_force(result: Result, axes: Axes) -> None:
         axes.legend()
 
 
+def over_time(result: Result, figure: Figure) -> None:
+    """Draw force, depth and contact area against time, one above the other."""
+    data = result.dataset
+    panels = figure.subplots(len(_OVER_TIME), sharex=True)
+    factor, unit = axis_unit(data["time"].values, "s")
+    good = data["converged"].values.astype(bool)
+    t = data["time"].values * factor
+    for axes, (name, colour) in zip(panels, _OVER_TIME.items(), strict=True):
+        scale, scale_unit = _unit_near_one(data[name])
+        y = data[name].values * scale
+        axes.plot(t, y, color=colour, mfc="white", **_marked(t.size))
+        axes.plot(t[~good], y[~good], "x", color="red", markersize=9)
+        axes.set_ylabel(f"{name.replace('_', ' ')} [{scale_unit}]")
+        axes.axhline(0.0, color="0.4", linewidth=0.6)
+        axes.grid(alpha=0.3)
+    panels[0].set_title(data.attrs.get("title", ""))
+    panels[-1].set_xlabel(f"time [{unit}]")
+    figure.align_ylabels(panels)
+
+
+def _marked(count: int) -> dict[str, Any]:
+    """Return keywords of ``Axes.plot`` for a curve over ``count`` steps: markers on few of them."""
+    few = count <= _MOST_MARKED
+    return {"linestyle": "-", "marker": "o" if few else "", "markersize": 4}
+
+
+_OVER_TIME = {"force": "C0", "depth": "C1", "contact_area": "C2"}
+TIME = "time"
+"""Suffix of the figure over time, which runs with times have."""
 FIGURES: dict[str, Callable[[Result, Axes], None]] = {
     "pressure": pressure_map,
     "profile": profile,
     "force_depth": force_depth,
     "area_force": area_force,
 }
-"""Figures of a run, by the suffix of the file name."""
+"""Figures of a run on one pair of axes, by the suffix of the file name."""
 STUDY_FIGURES = "force", "contact_fraction"
 """Variables drawn for a study, which are the suffixes of the file names too."""
 
@@ -217,8 +253,21 @@ def save_figures(
     StorageError
         A file cannot be written.
     """
-    drawings = {suffix: partial(draw, result) for suffix, draw in FIGURES.items()}
-    return _save(drawings, directory, name, formats)
+    return _save(drawings(result), directory, name, formats)
+
+
+def drawings(result: Result) -> dict[str, Callable[[Figure], None]]:
+    """Return what fills each figure of a run, by the suffix of the file name."""
+
+    def fill(draw: Callable[[Result, Axes], None], figure: Figure) -> None:
+        draw(result, figure.add_subplot())
+
+    figures: dict[str, Callable[[Figure], None]] = {
+        suffix: partial(fill, draw) for suffix, draw in FIGURES.items()
+    }
+    if has_times(result.dataset) and result.dataset.sizes["step"] > 1:
+        figures[TIME] = partial(over_time, result)
+    return figures
 
 
 def save_study_figures(
@@ -235,21 +284,26 @@ def save_study_figures(
     """
     if "force" not in table:
         return ()
-    drawings = {
-        variable: partial(study_curves, table, variable=variable) for variable in STUDY_FIGURES
-    }
-    return _save(drawings, directory, name, formats)
+
+    def fill(variable: str, figure: Figure) -> None:
+        study_curves(table, figure.add_subplot(), variable)
+
+    figures = {variable: partial(fill, variable) for variable in STUDY_FIGURES}
+    return _save(figures, directory, name, formats)
 
 
 def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     """Draw a variable of a study against the depth, one colour for each value of its first axis.
 
-    Where each run has one step only, it is drawn against the first axis of numbers instead.
+    Where steps have times, it is drawn against the time; where each run has one step only, against
+    the first axis of numbers instead.
     """
     dimensions = [str(d) for d in table["status"].dims if d != "step"]
     numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
-    against = "depth" if table.sizes["step"] > 1 or not numbers else numbers[0]
-    along = "step" if against == "depth" else against
+    over_steps = table.sizes["step"] > 1 or not numbers
+    of_steps = "time" if has_times(table) else "depth"
+    against = of_steps if over_steps else numbers[0]
+    along = "step" if over_steps else against
     # Seeds are repetitions, not values to compare.
     rest = [d for d in dimensions if d != along]
     compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
@@ -280,7 +334,7 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
                     markersize=4,
                 )
             else:
-                axes.plot(x, y, "o-", color=colour, label=label, markersize=4, mfc="white")
+                axes.plot(x, y, color=colour, label=label, mfc="white", **_marked(x.size))
             good = line["converged"].values
             axes.plot(x[~good], y[~good], "x", color="red", markersize=9)
             label = ""
@@ -291,7 +345,8 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     )
     if pulls:
         axes.axhline(0.0, color="0.4", linewidth=0.6)
-        name_legs(axes, paths)
+        if paths:
+            name_legs(axes, paths)
     else:
         axes.set_ylim(bottom=0.0)
     axes.grid(alpha=0.3)
@@ -301,17 +356,13 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
 
 
 def _save(
-    drawings: Mapping[str, Callable[[Axes], None]],
+    figures: Mapping[str, Callable[[Figure], None]],
     directory: Path,
     name: str,
     formats: Iterable[str],
 ) -> tuple[Path, ...]:
     files: list[Path] = []
-    for suffix, draw in drawings.items():
-
-        def fill(figure: Figure, draw: Callable[[Axes], None] = draw) -> None:
-            draw(figure.add_subplot())
-
+    for suffix, fill in figures.items():
         files += save_figure(fill, directory / f"{name}-{suffix}", formats)
     return tuple(files)
 
@@ -405,13 +456,15 @@ def _curve(
     scale, name = axis_unit(data[series[0][0]].values, unit)
     x_scale, x_name = axis_unit(data[against].values, against_unit)
     good = data["converged"].values.astype(bool)
-    pulls = has_interaction(data)
+    pulls, path = has_interaction(data), legs(data["depth"].values)
+    # More legs, those of an oscillation, are not told apart by their style.
+    hysteretic = pulls or (has_times(data) and len(path) <= _MOST_LEGS)
     for number, (variable, label, style) in enumerate(series):
         x, y = data[against].values * x_scale, data[variable].values * scale
-        if pulls:
+        if hysteretic:
             draw_legs(
                 axes,
-                legs(data["depth"].values),
+                path,
                 x,
                 y,
                 color=f"C{number}",
@@ -421,15 +474,16 @@ def _curve(
                 markersize=4,
             )
         else:
-            (line,) = axes.plot(x, y, style, label=label, markersize=4)
-            line.set_markerfacecolor("white")
+            marked = _marked(x.size) | {"linestyle": style[1:]}
+            axes.plot(x, y, color=f"C{number}", label=label, mfc="white", **marked)
         axes.plot(x[~good], y[~good], "x", color="red", markersize=9, label="_not converged")
     axes.set(xlabel=f"{against} [{x_name}]", ylabel=f"{what} [{name}]")
-    if pulls:
-        axes.axhline(0.0, color="0.4", linewidth=0.6)
-        name_legs(axes, [legs(data["depth"].values)])
+    if hysteretic:
+        name_legs(axes, [path])
         if axes.get_legend_handles_labels()[1]:
             axes.legend(fontsize="small")
+    if pulls:
+        axes.axhline(0.0, color="0.4", linewidth=0.6)
     else:
         axes.set_xlim(left=0.0)
         axes.set_ylim(bottom=0.0)
@@ -495,6 +549,8 @@ def _caption(result: Result, step: int) -> str:
     data = result.dataset.isel(step=step)
     scale, name = axis_unit(data["depth"].values, "m")
     caption = f"depth {data['depth'].item() * scale:.4g} {name}"
+    if has_times(data):
+        caption = f"{readable(data['time'].item(), 's', digits=4)}, {caption}"
     title = result.dataset.attrs.get("title", "")
     if not bool(data["converged"]):
         caption += ", NOT CONVERGED"

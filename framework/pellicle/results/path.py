@@ -20,6 +20,11 @@ def has_interaction(data: xr.Dataset) -> bool:
     return "zone_area" in data
 
 
+def has_times(data: xr.Dataset) -> bool:
+    """Whether the steps of a result, or of any run in the table of a study, have times."""
+    return "time" in data
+
+
 def has_path(data: xr.Dataset) -> bool:
     """Whether a result, or any run in the table of a study, has variables of its whole path."""
     return has_interaction(data) or has_oscillation(data)

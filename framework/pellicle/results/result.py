@@ -81,6 +81,10 @@ class Result:
         """Return number and status of each step with slopes beyond those of the theory."""
         return self._of([Status.STEEP])
 
+    def cramped(self) -> list[tuple[int, str]]:
+        """Return number and status of each step whose domain is small for the solid's memory."""
+        return self._of([Status.SMALL_DOMAIN])
+
     def _of(self, statuses: list[Status]) -> list[tuple[int, str]]:
         codes = self.dataset["status_code"].values
         among = np.isin(codes.astype(str), [status.name for status in statuses])

@@ -33,6 +33,12 @@ class Status(Enum):
         "converged, but slopes in contact reach {slope:.2f}, and the theory is for slopes up to "
         "{most:g}: force and area are those of the model, not of the experiment"
     )
+    SMALL_DOMAIN = (
+        "converged, but the domain of {size} is small for a skin on a solid that relaxes: what the "
+        "solid carries beyond it is known in sum only, and force and depth may be off by per cent; "
+        "use grid.size ≥ {least:.2g} m: 8 contact radii, and 3 times the length 2τ₀/E* below which "
+        "the skin is stiffer than the relaxed solid"
+    )
     NOT_FINITE = (
         "the pressure became NaN or infinite; check the kernel's compliance and the profile for "
         "extreme values"
@@ -91,6 +97,7 @@ class Status(Enum):
             Status.COARSE,
             Status.COARSE_ZONE,
             Status.STEEP,
+            Status.SMALL_DOMAIN,
         )
 
     @property

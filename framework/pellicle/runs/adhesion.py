@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import Final
 
 from pellicle.components import Force, Monitor, Setting, Solver
-from pellicle.components.calls import law_of, solution_of
+from pellicle.components.calls import solution_of
+from pellicle.components.checked_law import law_of
 from pellicle.config.run import Run
 from pellicle.numerics.problem import Depth, Equilibrium, equilibrium_of
 from pellicle.numerics.solution import Stop

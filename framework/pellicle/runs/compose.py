@@ -8,14 +8,16 @@ from pellicle.components.calls import (
     check_solver,
     check_value,
     instantaneous,
-    law_of,
     profile_of,
     target_of,
 )
+from pellicle.components.checked_law import law_of
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
 from pellicle.numerics.grid_checks import warn_of_cells, warn_of_period
 from pellicle.numerics.operators import make_operator
+
+from .relaxation import warn_of_relaxation
 
 
 def compose(run: Run) -> Setting:
@@ -33,6 +35,7 @@ def compose(run: Run) -> Setting:
     profile = profile_of(run.indenter, run.grid)
     if run.indenter.footprint == "domain":
         warn_of_period(profile, run.grid)
+    warn_of_relaxation(run)
     law = law_of(run.interaction, run.kernel, run.grid) if run.interaction else None
     setting = Setting(run.grid, operator, profile, run.indenter.footprint, law=law)
     if law:

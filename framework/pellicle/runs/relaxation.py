@@ -3,28 +3,45 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import warnings
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Final, Self
 
-from pellicle.arrays import Array
-from pellicle.components import Branch, HasRelaxation, Kernel, Setting
+import numpy as np
+
+from pellicle.arrays import Array, Mask
+from pellicle.checks import errors_attributed_to
+from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel, Setting
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
 from pellicle.grid import Grid
-from pellicle.numerics.operators import Operator, make_operator, mean_compliance
+from pellicle.numerics.operators import HasCompliance, mean_compliance
+from pellicle.numerics.outside import PlaneOperator
 from pellicle.numerics.relaxation import (
     Memory,
     TimeStep,
     left_behind,
     left_behind_under_skin,
+    stiffness_after,
     strain_under_skin,
 )
 
 # Equal steps whose times differ by rounding share their operators.
 _DIGITS: Final = 12
-_OPERATORS: Final = 4
+# Softest solid, over its instantaneous stiffness, and longest wave, over a third of the domain,
+# that are told from a liquid.
+_SOFTEST: Final = 1e-9
+_LONGEST: Final = 1e9
+# Largest stiffness in the end, over the instantaneous one, of a liquid; it is rounding.
+_LIQUID: Final = 1e-12
+# Relaxation times below this share of the shortest step are far below it.
+_FAST: Final = 0.01
+# Cells may add a hundredth to a radius.
+_RADII: Final = 7.9
+OPERATORS: Final = 4
+"""Number of stiffnesses γ whose operators are kept under a skin."""
 
 
 @dataclass(frozen=True)
@@ -48,21 +65,92 @@ class CarriedShare:
 
 
 class Skin:
-    """The operators of a skin on a solid that relaxes, one pair for each stiffness γ."""
+    """The operators of a skin on a solid that relaxes, for each stiffness γ."""
 
     def __init__(self, kernel: HasRelaxation, grid: Grid) -> None:
         solid = kernel.without_skin()
 
-        @lru_cache(maxsize=_OPERATORS)
-        def operators(share: float) -> tuple[Operator, Operator]:
-            whole = kernel.scaled(share)
-            return make_operator(whole, grid), make_operator(CarriedShare(whole, solid), grid)
+        def made(kernel_of: Callable[[Kernel], HasCompliance]) -> Callable[[float], PlaneOperator]:
+            @lru_cache(maxsize=OPERATORS)
+            def operator(share: float) -> PlaneOperator:
+                with errors_attributed_to(kernel):
+                    return PlaneOperator(kernel_of(kernel.scaled(share)), grid)
 
-        self._operators = operators
+            return operator
 
-    def operators(self, step: TimeStep) -> tuple[Operator, Operator]:
-        """Return those from pressure to displacement [m/Pa] and to what the solid carries."""
-        return self._operators(float(f"{step.stiffness:.{_DIGITS}g}"))
+        self._whole = made(lambda whole: whole)
+        self._carried = made(lambda whole: CarriedShare(whole, solid))
+
+    def whole(self, step: TimeStep) -> PlaneOperator:
+        """Return the operator from pressure to displacement [m/Pa]."""
+        return self._whole(_share(step))
+
+    def carried(self, step: TimeStep) -> PlaneOperator:
+        """Return the operator from pressure to what the solid carries, without unit."""
+        return self._carried(_share(step))
+
+
+def _share(step: TimeStep) -> float:
+    return float(f"{step.stiffness:.{_DIGITS}g}")
+
+
+def warn_of_relaxation(run: Run) -> None:
+    """Warn if a solid relaxes to a liquid, or far faster than the steps of its run.
+
+    A kernel that states its time span has a share of its own for all times beyond.
+
+    Warns
+    -----
+    UserWarning
+        The message names the relaxation time, or what carries the load in the end.
+    """
+    kernel, branches = run.kernel, branches_of(run.kernel)
+    if not branches:
+        return
+    shortest, longest = kernel.time_span() if isinstance(kernel, HasTimeSpan) else (0.0, math.inf)
+    if longest == math.inf and stiffness_after(branches, math.inf) < _LIQUID:
+        warnings.warn(
+            f"kernel: the shares of {kernel.type_name!r} that relax sum to 1, which makes the "
+            "solid a liquid: in the end only a skin carries; let them sum to less for a solid",
+            stacklevel=3,
+        )
+    least = min((duration for duration in run.loading.durations if duration > 0), default=0.0)
+    fastest = min(branch.time for branch in branches)
+    if shortest == 0.0 and fastest < _FAST * least:
+        warnings.warn(
+            f"loading: the shortest step takes {least:g} s, in which a share of the solid with "
+            f"the relaxation time {fastest:g} s relaxes from the start to the end: what it does "
+            "in between is not seen; use shorter steps where it matters, or a softer solid without "
+            "this share",
+            stacklevel=3,
+        )
+
+
+def least_domain(run: Run, index: int, contact: Mask) -> float:
+    """Return the edge [m] that a domain needs at a step, for what its solid carries outside.
+
+    It is 8 contact radii, and 3 times the length 1/q of the wave for which the skin is as stiff as
+    the solid is after the duration of the run so far: 2τ₀/E* under a tension. It is 0 where there
+    is nothing outside: at the first step, without a skin, and on a periodic boundary.
+    """
+    kernel, branches = run.kernel, branches_of(run.kernel)
+    if not index or not branches or run.grid.boundary == "periodic":
+        return 0.0
+    assert isinstance(kernel, HasRelaxation)
+    solid = kernel.without_skin()
+    if solid == kernel:
+        return 0.0
+    elapsed = math.fsum(run.loading.durations[: index + 1])
+    share = max(_SOFTEST, stiffness_after(branches, elapsed))
+    carried = CarriedShare(kernel.scaled(share), solid)
+    shortest = 3 / min(run.grid.size)
+    radius = math.sqrt(np.count_nonzero(contact) * run.grid.cell_area / math.pi)
+    length = 0.0
+    if share * carried.compliance(np.array([shortest])).item() < 0.5:
+        waves = shortest * np.geomspace(1 / _LONGEST, 1.0, 1 + 20 * round(math.log10(_LONGEST)))
+        stiff = np.flatnonzero(share * carried.compliance(waves) >= 0.5)
+        length = 1 / float(waves[stiff[-1]]) if stiff.size else math.inf
+    return max(_RADII * radius, 3 * length)
 
 
 class Relaxation:
@@ -76,12 +164,15 @@ class Relaxation:
         self,
         branches: Sequence[Branch],
         durations: Sequence[float],
-        shape: tuple[int, ...],
+        grid: Grid,
         skin: Skin | None = None,
     ) -> None:
         # The solid is undeformed before the first step.
         self._steps = [TimeStep.of(branches, duration) for duration in durations]
-        self._memory = Memory.at_rest(branches, shape)
+        self._memory = Memory.at_rest(branches, grid.shape)
+        # Integrals over the plane [N]: long waves do not bend the skin, so the solid carries all.
+        self._integral = Memory.at_rest(branches, ())
+        self._cell_area = grid.cell_area
         self._skin = skin
         self._done = 0
 
@@ -93,7 +184,12 @@ class Relaxation:
             return None
         assert isinstance(kernel, HasRelaxation)
         skin = Skin(kernel, run.grid) if kernel.without_skin() != kernel else None
-        return cls(branches, run.loading.durations, run.grid.shape, skin)
+        return cls(branches, run.loading.durations, run.grid, skin)
+
+    @property
+    def applications(self) -> int:
+        """Operator applications of the last `setting` to bring the memory forward by one step."""
+        return 2 if self._skin and self._done else 0
 
     def setting(self, setting: Setting, pressures: Array, displacements: Array) -> Setting:
         """Return the setting of the step after those with these pressures and displacements.
@@ -106,18 +202,26 @@ class Relaxation:
         step = self._steps[self._done]
         if not self._skin:
             operator = setting.operator.scaled(1 / step.stiffness)
-            left = left_behind(self._memory, step)
-        else:
-            operator, _ = self._skin.operators(step)
-            left = left_behind_under_skin(self._memory, step, operator)
-        return replace(setting, operator=operator, left=left if self._done else None)
+            left = left_behind(self._memory, step) if self._done else None
+            return replace(setting, operator=operator, left=left)
+        if not self._done and step.is_jump:
+            return setting
+        whole, left = self._skin.whole(step), None
+        if self._done:
+            displacement = partial(whole, integral=float(self._integral.history(step)))
+            left = left_behind_under_skin(self._memory, step, displacement)
+        return replace(setting, operator=whole.operator, left=left)
 
     def _advance(self, pressure: Array, displacement: Array) -> None:
         """Bring the memory forward to the end of the next step."""
         step = self._steps[self._done]
         strain = displacement
         if self._skin:
-            _, carried = self._skin.operators(step)
-            strain = strain_under_skin(self._memory, step, pressure, carried)
+            force = np.asarray(pressure.sum() * self._cell_area)
+            remaining = float(force - self._integral.history(step))
+            strain = strain_under_skin(
+                self._memory, step, pressure, partial(self._skin.carried(step), integral=remaining)
+            )
+            self._integral = self._integral.after(step, np.asarray(remaining / step.stiffness))
         self._memory = self._memory.after(step, strain)
         self._done += 1

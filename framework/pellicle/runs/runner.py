@@ -85,7 +85,7 @@ def run(
     result = execute(run, journal, outputs, bar, threads=threads).result
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
-    for steps in (result.coarse(), result.steep()):
+    for steps in (result.coarse(), result.steep(), result.cramped()):
         if steps:
             warnings.warn(first_message(steps), ConvergenceWarning, stacklevel=2)
     return result

@@ -42,22 +42,29 @@ def solve_steps(
     solid = Relaxation.of(run)
     for index in range(len(steps), len(run.loading.values)):
         # Only the copy in ``steps`` outlives a solve; the next one starts from its state.
-        here = replace(setting, state=steps.state)
+        here, others = replace(setting, state=steps.state), 0
         if solid:
             here = solid.setting(here, steps.field("pressure"), steps.field("displacement"))
-        yield steps.append(_solved_step(run, here, index, bar.step(index)).assign_attrs(origin))
+            others = solid.applications
+        step = _solved_step(run, here, index, bar.step(index), others)
+        yield steps.append(step.assign_attrs(origin))
 
 
-def _solved_step(run: Run, setting: Setting, index: int, monitor: Monitor) -> xr.Dataset:
-    """Return load step ``index``, counted from 0, solved and judged."""
+def _solved_step(
+    run: Run, setting: Setting, index: int, monitor: Monitor, applications: int
+) -> xr.Dataset:
+    """Return load step ``index``, counted from 0, solved and judged.
+
+    ``applications`` is the number of operator applications that ``setting`` took.
+    """
     started = time.perf_counter()
     applied = setting.operator.applications
     value, prescription = run.loading.values[index], run.loading.prescription
     step = solve_step(run, setting, value, monitor)
-    used = setting.operator.applications - applied
+    used = setting.operator.applications - applied + applications
     error = force_error(run, step.equilibrium, monitor)
     stiffness = _stiffness(run, step.equilibrium, monitor) if run.loading.stiffness else None
-    status, message = judge(run, value, step, stiffness)
+    status, message = judge(run, index, step, stiffness)
     report = report_of(prescription, setting, step.equilibrium)
     report |= {v.name: step.missed for v in prescription.variables if v.name not in report}
     areas = {

@@ -13,6 +13,7 @@ from pellicle.numerics.problem import Equilibrium, Stiffness
 from pellicle.numerics.solution import Stop
 from pellicle.results.status import Status
 
+from .relaxation import least_domain
 from .target_search import Reached
 
 # Relative distance from its goal above which a search has not converged.
@@ -24,8 +25,11 @@ _RESOLVED_ACROSS = 4
 _STEEPEST = 0.3
 
 
-def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) -> tuple[Status, str]:
-    """Return the status of a step, from its measured residuals, and the message to the user."""
+def judge(run: Run, index: int, step: Reached, stiffness: Stiffness | None) -> tuple[Status, str]:
+    """Return the status of a step, from its measured residuals, and the message to the user.
+
+    ``index`` counts the steps from 0.
+    """
     equilibrium = step.equilibrium
     tolerance = run.solver.tolerance
     if not np.isfinite(equilibrium.force):
@@ -58,7 +62,7 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
         return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
             size=f"{nx:g} × {ny:g} m",
             prescribed=f"loading.{loading.prescribed} = "
-            f"{in_unit(value, loading.prescription.unit)}",
+            f"{in_unit(loading.values[index], loading.prescription.unit)}",
         )
     if step.search and (step.how != "met" or step.missed > _NEAR):
         return _not_met(step, step.search)
@@ -74,6 +78,11 @@ def judge(run: Run, value: float, step: Reached, stiffness: Stiffness | None) ->
     sticks = run.interaction is not None and bool(contact.any())
     if (problem.control.value > least or sticks) and cells < min(enough, contact.size):
         return Status.COARSE, Status.COARSE.value.format(cells=cells or "none")
+    least = least_domain(run, index, equilibrium.contact)
+    if least > min(run.grid.size):
+        return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
+            size="{:g} × {:g} m".format(*run.grid.size), least=least
+        )
     if run.interaction:
         return _doubt(run, run.interaction, equilibrium)
     return Status.CONVERGED, Status.CONVERGED.value

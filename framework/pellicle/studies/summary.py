@@ -112,11 +112,15 @@ def coarse(table: xr.Dataset) -> Iterator[str]:
         yield f"of {len(statuses)} runs, in {count} the cells are too coarse for this contact"
 
 
-def steep(table: xr.Dataset) -> Iterator[str]:
-    """Yield a message with the number of runs with slopes beyond those of the theory, if any."""
+def caveats(table: xr.Dataset) -> Iterator[str]:
+    """Yield a message for each caveat but coarse cells, with the number of runs that have it."""
     statuses = _statuses(table)
-    if count := sum(Status.STEEP in run for run in statuses):
-        yield f"of {len(statuses)} runs, in {count} slopes in contact are beyond the theory"
+    for caveat, reason in (
+        (Status.STEEP, "slopes in contact are beyond the theory"),
+        (Status.SMALL_DOMAIN, "the domain is small for a skin on a solid that relaxes"),
+    ):
+        if count := sum(caveat in run for run in statuses):
+            yield f"of {len(statuses)} runs, in {count} {reason}"
 
 
 def _statuses(table: xr.Dataset) -> list[list[Status]]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import Interaction, Kernel
-from pellicle.components.calls import law_of
+from pellicle.components.checked_law import law_of
 from pellicle.grid import Grid
 from pellicle.numerics.gap_law import GapLaw
 from pellicle.plugins import registry

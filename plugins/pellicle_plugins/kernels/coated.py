@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Annotated, Literal
 
@@ -9,7 +10,7 @@ from pydantic import Field
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Branch, HasRelaxation, Kernel
+from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel
 from pellicle.config.component_field import FromRegistry
 from pellicle.numerics.operators import mean_compliance
 
@@ -41,6 +42,11 @@ class Coated(Skin):
     def branches(self) -> tuple[Branch, ...]:
         """Return the branches of the substrate: the skin is elastic."""
         return self.substrate.branches() if isinstance(self.substrate, HasRelaxation) else ()
+
+    def time_span(self) -> tuple[float, float]:
+        """Return the span of the substrate [s]; all times if it states none."""
+        substrate = self.substrate
+        return substrate.time_span() if isinstance(substrate, HasTimeSpan) else (0.0, math.inf)
 
     def scaled(self, share: float) -> Kernel:
         """Return the skin on an elastic substrate ``share`` times as stiff."""

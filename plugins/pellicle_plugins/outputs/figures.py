@@ -8,14 +8,20 @@ from typing import ClassVar, Literal
 
 from pellicle import hookimpl
 from pellicle.components import Output, Runs
-from pellicle.report.plotting import FIGURES, STUDY_FIGURES, save_figures, save_study_figures
+from pellicle.report.plotting import (
+    FIGURES,
+    STUDY_FIGURES,
+    TIME,
+    save_figures,
+    save_study_figures,
+)
 from pellicle.results.result import Result
 
 from .base import Formats
 
 
 class Figures(Output):
-    """Pressure map, profiles through the centre, force and area curves."""
+    """Pressure map, profiles through the centre, force and area curves, also over time."""
 
     type: Literal["figures"] = "figures"
     shares_stem: ClassVar[bool] = True
@@ -24,7 +30,7 @@ class Figures(Output):
     @property
     def suffixes(self) -> tuple[str, ...]:
         """Suffixes of the figures of a run and of a study."""
-        names = dict.fromkeys((*FIGURES, *STUDY_FIGURES))
+        names = dict.fromkeys((*FIGURES, TIME, *STUDY_FIGURES))
         return tuple(f"-{name}.{format_}" for name in names for format_ in self.formats)
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:

@@ -35,26 +35,28 @@ from pellicle.report.page import (
 from pellicle.report.page import Field as MapField
 from pellicle.report.plotting import (
     DIVERGING,
-    FIGURES,
     STUDY_FIGURES,
+    TIME,
     default_step,
+    drawings,
+    draws_contact,
     study_curves,
     svg,
     without_round_off,
 )
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
-from pellicle.results.path import has_interaction
+from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result, first_message
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import VARIABLES, WALL_PRESSURE, names_of
-from pellicle.studies.summary import coarse, failures, progress_of, reasons, runs_of, steep
+from pellicle.studies.summary import caveats, coarse, failures, progress_of, reasons, runs_of
 from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 FIELDS = {
     "pressure": MapField("contact pressure", "Pa", blank=True),
@@ -68,9 +70,10 @@ _STICKING = {
 }
 """The variables that are mapped where there is an interaction."""
 _CURVES = {
-    "profile": "Pressure and gap of the last step along x through the centre.",
+    "profile": "Pressure and gap along x through the centre, in the step that is mapped first.",
     "force_depth": "Force against depth over the load steps.",
     "area_force": "Contact area, of the cells and corrected, against force over the load steps.",
+    TIME: "Force, depth and contact area over time.",
 }
 
 
@@ -152,7 +155,10 @@ class Html(Output):
         frames = []
         for index in chosen:
             step = without_round_off(data.isel(step=index))
-            label = f"{index + 1}: depth {step['depth'].item() * factor:.4g} {unit}"
+            label = f"depth {step['depth'].item() * factor:.4g} {unit}"
+            if has_times(step):
+                label = f"{readable(step['time'].item(), 's', digits=4)}, {label}"
+            label = f"{index + 1}: {label}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
             frames.append(_frame(label, grid, step, mapped, points))
         shown = default_step(data) % steps
@@ -214,7 +220,7 @@ def _frame(
 
 def _maps_of_runs(table: xr.Dataset, frames: list[Frame], count: int) -> list[Maps]:
     mapped = _mapped(table)
-    which = "The last step in contact" if has_interaction(table) else "The last step"
+    which = "The last step in contact" if draws_contact(table) else "The last step"
     caption = f"{which} of {_some(len(frames), count, 'run')}, each in colours over its own range."
     maps = Maps(caption, "run", tuple(mapped.values()), frames, shared=False)
     return [maps] if frames else []
@@ -243,11 +249,14 @@ def _status(result: Result) -> Notice:
     if steep := result.steep():
         sentences.append(f"In {len(steep)} of {done} slopes in contact are beyond the theory.")
         details.append(f"S{first_message(steep)[1:]}")
+    if cramped := result.cramped():
+        sentences.append(f"In {len(cramped)} of {done} the domain is small for this solid.")
+        details.append(f"S{first_message(cramped)[1:]}")
     return Notice(" ".join(sentences), not details and done == total, details)
 
 
 def _status_of_study(table: xr.Dataset, count: int) -> Notice:
-    failed, warnings = failures(table), [*coarse(table), *steep(table)]
+    failed, warnings = failures(table), [*coarse(table), *caveats(table)]
     if not failed:
         return Notice(f"Every step of all {count} runs converged.", not warnings, warnings)
     return Notice(f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings])
@@ -408,29 +417,34 @@ def _named(row: xr.Dataset) -> str:
 
 
 def _pictures_of(result: Result) -> list[Picture]:
-    names = [name for name in _CURVES if name == "profile" or result.dataset.sizes["step"] > 1]
-    return [_picture(partial(FIGURES[name], result), _CURVES[name]) for name in names]
+    fills = {name: fill for name, fill in drawings(result).items() if name in _CURVES}
+    several = result.dataset.sizes["step"] > 1
+    return [
+        _picture(fill, _CURVES[name])
+        for name, fill in fills.items()
+        if several or name == "profile"
+    ]
 
 
 def _pictures_of_study(table: xr.Dataset) -> list[Picture]:
+    def fill(variable: str, figure: Figure) -> None:
+        study_curves(table, figure.add_subplot(), variable)
+
     names = STUDY_FIGURES if "force" in table else ()
     return [
-        _picture(
-            partial(study_curves, table, variable=name),
-            f"{name.replace('_', ' ').capitalize()} over the study.",
-        )
+        _picture(partial(fill, name), f"{name.replace('_', ' ').capitalize()} over the study.")
         for name in names
     ]
 
 
-def _picture(draw: Callable[[Axes], None], caption: str) -> Picture:
-    def fill(figure: Any) -> None:
-        axes = figure.add_subplot()
-        draw(axes)
+def _picture(fill: Callable[[Figure], None], caption: str) -> Picture:
+    def untitled(figure: Figure) -> None:
+        fill(figure)
         # The page has a title, and a title may be longer than a figure is wide.
-        axes.set_title("")
+        for axes in figure.axes:
+            axes.set_title("")
 
-    return Picture(svg(fill), caption, caption)
+    return Picture(svg(untitled), caption, caption)
 
 
 def _inputs(fields: list[Input]) -> Table:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import base64
+import math
 import struct
 import sys
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -19,6 +20,7 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.files import atomic_write
+from pellicle.results.path import has_times
 from pellicle.results.variables import FIELDS, WALL_PRESSURE
 
 if TYPE_CHECKING:
@@ -33,7 +35,8 @@ class Vtk(Output):
     The .vts files are structured grids of the cell centres. The surface lies at z = −displacement,
     so the solid is below it, and all fields are point data, with the wall pressure where there is
     an interaction; the numbers of the step are field data.
-    The .pvd file, which lists the steps in order, opens them all.
+    The .pvd file, which lists the steps in order, opens them all; where steps have times, these are
+    the time of ParaView.
     """
 
     type: Literal["vtk"] = "vtk"
@@ -52,10 +55,11 @@ class Vtk(Output):
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the list of the steps; return all files."""
-        files = {number: _file(stem, number) for number in runs.table["step"].values.tolist()}
-        path = Path(f"{stem}.pvd")
-        _write_list({number: file.name for number, file in files.items()}, path)
-        return (*files.values(), path)
+        table, path = runs.table, Path(f"{stem}.pvd")
+        files = [_file(stem, number) for number in table["step"].values.tolist()]
+        times = table["time"].values if has_times(table) else table["step"].values
+        _write_list(zip(_growing(times.tolist()), files, strict=True), path)
+        return (*files, path)
 
 
 def _file(stem: Path, number: int) -> Path:
@@ -94,11 +98,22 @@ def _write_step(step: xr.Dataset, path: Path) -> None:
                 _array(xml, "Points", np.dtype(float), _base64(blocks), NumberOfComponents="3")
 
 
-def _write_list(steps: Mapping[int, str], path: Path) -> None:
-    """Write the list of the files of the steps."""
+def _growing(times: Iterable[float]) -> Iterator[float]:
+    """Yield the times, those that do not grow raised to the next number.
+
+    ParaView shows the files of one time together, so of a jump it would show both ends at once.
+    """
+    last = -math.inf
+    for time in times:
+        last = time if time > last else math.nextafter(last, math.inf)
+        yield last
+
+
+def _write_list(steps: Iterable[tuple[float, Path]], path: Path) -> None:
+    """Write the list of the files of the steps, each with its time."""
     with _writer(path) as xml, _file_of(xml, "Collection"):
-        for index, name in steps.items():
-            with _element(xml, "DataSet", timestep=str(index), file=name):
+        for time, file in steps:
+            with _element(xml, "DataSet", timestep=repr(time), file=file.name):
                 pass
 
 

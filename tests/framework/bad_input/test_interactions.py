@@ -64,6 +64,10 @@ VALUES = {
         "{type='linear', work_of_adhesion='50 mJ/m^2', strength=1e-300}",
         ["interaction 'linear': cutoff() is 1e+299 m; it has to be > 0 and <"],
     ),
+    "strength beyond all": (
+        "{type='linear', work_of_adhesion='50 mJ/m^2', strength=1e60}",
+        ["interaction: has a strength of 1e+60 Pa", "less than the rounding error", "or", "jkr"],
+    ),
     "no such law": (
         "{type='jrk', work_of_adhesion='50 mJ/m^2'}",
         ["interaction.type: 'jrk'", "did you mean 'jkr'"],
@@ -170,6 +174,26 @@ def test_traction_is_not_the_derivative() -> None:
 
     result = pl.run(pl.Run(**STICKY | {"interaction": Honest()}), progress=False)
     assert result.dataset["force"][0] < 0.33e-3
+
+
+@pytest.mark.parametrize(
+    ("added", "message"),
+    [(0.3, r"which repels; it has to be ≤ 0"), (-0.3, r"the attraction has to be strongest")],
+)
+def test_law_that_does_more_than_attract_less_and_less(added: float, message: str) -> None:
+    """A bump in its traction is refused: solvers take the attraction to fall with the gap."""
+
+    class Bumped(Lying):
+        factor = 1.0
+
+        def bump(self, gap: Any) -> Any:
+            return np.exp(-(((gap - 8e-6) / 5e-7) ** 2))
+
+        def traction(self, gap: Any) -> Any:
+            return super().traction(gap) + added * 1e4 * self.bump(gap)
+
+    with pytest.raises(pl.PluginError, match=message):
+        pl.run(pl.Run(**STICKY | {"interaction": Bumped()}), progress=False)
 
 
 def test_pull_that_no_contact_carries() -> None:

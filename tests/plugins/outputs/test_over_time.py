@@ -1,0 +1,128 @@
+"""Outputs of runs whose steps have times: curves over time, loops, the page, ParaView's time."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as Xml
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import pellicle as pl
+from pellicle.plotting import drawings, study_curves
+
+RUN: dict[str, Any] = {
+    "title": "bead",
+    "grid": {"points": 16, "size": "0.45 mm", "boundary": "free"},
+    "kernel": {
+        "type": "viscoelastic",
+        "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
+        "relaxation": [{"fraction": 0.8, "time": "0.5 s"}],
+    },
+    "indenter": {"type": "paraboloid", "radius": "1 mm"},
+    "loading": {
+        "depth": [
+            {"to": "20 um", "time": "1 s", "num": 4},
+            {"to": "18 um", "time": "0 s", "num": 1},
+            {"to": "0 um", "time": "1 s", "num": 4},
+        ]
+    },
+    "outputs": [{"type": "html"}, {"type": "vtk"}],
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a bead pressed in, drawn back at once by a bit and then slowly."""
+    folder = tmp_path_factory.mktemp("bead")
+    result = pl.run(RUN, directory=folder, progress=False, threads=1)
+    assert result.converged
+    return folder
+
+
+@pytest.fixture(scope="module")
+def result(folder: Path) -> pl.Result:
+    """Return the result of that run."""
+    return pl.load(folder / "bead.h5")
+
+
+def test_figure_over_time_has_what_the_result_has(result: pl.Result) -> None:
+    """Force, depth and area have a curve each over the time; without times there is no figure."""
+    figure = Figure()
+    drawings(result)["time"](figure)
+    assert "time" not in drawings(pl.Result(result.dataset.drop_vars("time")))
+    names = ["force", "depth", "contact_area"]
+    assert [axes.get_ylabel().split(" [")[0] for axes in figure.axes] == [
+        name.replace("_", " ") for name in names
+    ]
+    for name, axes in zip(names, figure.axes, strict=True):
+        x, y = (np.asarray(data, dtype=float) for data in axes.lines[0].get_data())
+        np.testing.assert_allclose(x, result.dataset["time"])
+        values = result.dataset[name].values
+        np.testing.assert_allclose(y / y.max(), values / values.max())
+
+
+def test_loop_tells_approach_from_retraction(result: pl.Result) -> None:
+    """The curve of force against depth is two, named in the legend, which enclose an area."""
+    figure = Figure()
+    drawings(result)["force_depth"](figure)
+    (axes,) = figure.axes
+    legend = axes.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == ["approach", "retraction"]
+    depth, force = result.dataset["depth"].values, result.dataset["force"].values
+    area = float(np.trapezoid(force, depth))
+    assert area > 0.2 * force.max() * depth.max()
+
+
+def test_last_step_in_contact_is_drawn(folder: Path, result: pl.Result) -> None:
+    """A path that ends out of contact shows the last step in contact, and says when it was."""
+    last = int(np.flatnonzero(result.dataset["contact_area"].values)[-1])
+    assert 4 < last < 8
+    figure = Figure()
+    drawings(result)["profile"](figure)
+    time = result.dataset["time"].values[last]
+    assert f"{time:g} s, depth " in figure.axes[0].get_title()
+    text = (folder / "bead.html").read_text(encoding="utf-8")
+    (chosen,) = re.findall(r"<option value=\"(\d+)\" selected>", text)
+    assert int(chosen) == last
+
+
+def test_page_has_a_line_of_time(folder: Path) -> None:
+    """The choice of steps says time and depth, and a slider goes through the steps."""
+    text = (folder / "bead.html").read_text(encoding="utf-8")
+    labels = re.findall(r"<option value=\"\d+\"[^>]*>([^<]*)</option>", text)
+    assert labels[:2] == ["1: 250 ms, depth 5 µm", "2: 500 ms, depth 10 µm"]
+    assert '<input type="range" min="0" max="8"' in text
+    assert "Force, depth and contact area over time." in text
+
+
+def test_paraview_has_the_time(folder: Path, result: pl.Result) -> None:
+    """Timesteps are times; that after a jump is the next number, not the same."""
+    listed = Xml.parse(folder / "bead.pvd").iter("DataSet")
+    times = [float(entry.attrib["timestep"]) for entry in listed]
+    np.testing.assert_allclose(times, result.dataset["time"], rtol=1e-15)
+    assert (np.diff(times) > 0).all()
+    assert times[3] == 1.0 == result.dataset["time"].values[4]
+
+
+def test_study_is_drawn_over_time(tmp_path: Path) -> None:
+    """Curves of a study of runs with times are over the time."""
+    loading = {"depth": [{"to": "20 um", "time": 0, "num": 1}, {"hold": "2 s", "num": 3}]}
+    study = pl.Study(
+        run={**RUN, "loading": loading, "outputs": []},
+        vary={"kernel.relaxation.0.time": ["0.5 s", "5 s"]},
+    )
+    table = pl.run_study(study, directory=tmp_path, progress=False)
+    axes = Figure().add_subplot()
+    study_curves(table, axes, "force")
+    assert axes.get_xlabel() == "time [s]"
+    ends = {
+        str(line.get_label()): np.asarray(line.get_ydata(), dtype=float)[-1]
+        for line in axes.lines
+        if "time" in str(line.get_label())
+    }
+    assert ends["kernel.relaxation.0.time = 500 ms"] < ends["kernel.relaxation.0.time = 5 s"]
