@@ -38,6 +38,7 @@ from .fitting.curves.reading import read_curves as read_curves
 from .fitting.fit import Fit as Fit
 from .fitting.fit import fit as fit
 from .fitting.many import fit_many as fit_many
+from .fitting.maps import fit_map as fit_map
 from .fitting.pooled import PooledCurve as PooledCurve
 from .fitting.pooled import PooledFit as PooledFit
 from .fitting.pooled import fit_pooled as fit_pooled

@@ -96,6 +96,23 @@ def _is_unit(text: str) -> bool:
     return len(text) <= _LONGEST_UNIT and _UNIT.fullmatch(text) is not None
 
 
+def one(unit: str) -> Any:
+    """Return 1 of a unit as a pint quantity in SI, whose arithmetic keeps dimensions.
+
+    Raises
+    ------
+    ValueError
+        The unit is unknown.
+    """
+    if _is_unit(unit):
+        try:
+            return _registry().Quantity(1.0, unit).to_base_units()
+        except Exception:
+            # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
+            pass
+    raise ValueError(f"has an unknown unit ({shown(unit)})")
+
+
 # pint takes half a millisecond for a conversion, and a study has thousands of values.
 @lru_cache(maxsize=1000)
 def _factor(unit: str, si: str) -> float:

@@ -12,7 +12,10 @@ from pathlib import Path
 import pytest
 
 HERE = Path(__file__).parent
-PACKAGES = "third_party", "symbol_only", "one_output", "mean_gap", "quadratic_softening"
+PACKAGES = (
+    *("third_party", "symbol_only", "one_output", "mean_gap", "quadratic_softening"),
+    "relaxing",
+)
 Command = Callable[..., subprocess.CompletedProcess[str]]
 
 

@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import pellicle as pl
@@ -10,6 +11,7 @@ from tests.packaging.conftest import Command
 
 SOURCE = Path(__file__).with_name("third_party")
 SYMBOL_ONLY = Path(__file__).with_name("symbol_only")
+RELAXING = Path(__file__).with_name("relaxing")
 ONE_OUTPUT = Path(__file__).with_name("one_output")
 CELLS = Path(__file__).parents[1] / "data" / "kernel_cells.csv"
 
@@ -62,6 +64,22 @@ def test_a_membrane_known_by_its_symbol_has_the_reference_coefficients(python: C
     for of_length in errors.values():
         assert len(of_length) == 9
         assert max(map(abs, of_length)) < 1e-7
+
+
+def test_a_kernel_that_relaxes_keeps_its_contract(python: Command) -> None:
+    """Installed, a gel with branches of its own passes the kit, alone and under a skin."""
+    done = python(str(RELAXING / "check.py"))
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_kernel_that_relaxes_runs_in_time(pellicle: Command, tmp_path: Path) -> None:
+    """The force at a depth is its modulus at each time."""
+    done = pellicle("run", str(RELAXING / "dwell.toml"), "-o", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    data = pl.load(tmp_path / "dwell.h5").dataset
+    t, force = data["time"].values, data["force"].values
+    modulus = 0.2 + 0.4 * np.exp(-t / 0.5) + 0.4 * np.exp(-t / 5)
+    np.testing.assert_allclose(force / force[0], modulus, rtol=1e-7)
 
 
 def test_an_output_is_one_method(python: Command) -> None:

@@ -89,6 +89,20 @@ def fit(
         bool,
         typer.Option("--contact-points", help="With --pool: intervals of contact points, too."),
     ] = False,
+    accept: Annotated[
+        list[str] | None,
+        typer.Option(help='Rule for the curves of a population: --accept "r_squared > 0.95".'),
+    ] = None,
+    accepted: Annotated[
+        Path | None, typer.Option(help="File that names the only curves that can be accepted.")
+    ] = None,
+    rejected: Annotated[
+        Path | None, typer.Option(help="File that names curves that are rejected.")
+    ] = None,
+    group_by: Annotated[
+        str | None,
+        typer.Option(help='Column of a table of files, or a pattern of names: "{group}_*.csv".'),
+    ] = None,
     executor: Annotated[
         str | None,
         typer.Option(help="Executor of many fits and of runs: serial, processes, dask."),
@@ -127,12 +141,16 @@ def fit(
         ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")
+    ] = False,
 ) -> None:
     """Fit reduced modulus, tension and contact point to measured curves, with intervals.
 
     Exit code 0 only if every curve was fitted.
     """
     from pellicle.fitting.config import FitConfig
+    from pellicle.fitting.curves.readers import SourceStream
     from pellicle.fitting.fit import fit_source
     from pellicle.fitting.many import ManyFits, fit_sources
     from pellicle.fitting.pooled import pool_sources
@@ -166,50 +184,62 @@ def fit(
         columns=columns,
         pool=pool or None,
         contact_points=contact_points or None,
+        accept=tuple(accept) if accept else None,
+        accepted=accepted and accepted.absolute(),
+        rejected=rejected and rejected.absolute(),
+        group_by=group_by,
         executor=executor,
         kernel=kernel,
         grid_points=grid_points,
         cache=cache,
     )
-    progress, sources = sys.stderr.isatty(), config.sources()
+    progress, curves = not quiet and sys.stderr.isatty(), config.files()
     result: Fit | PooledFit | ManyFits
     if config.pool:
+        sources = [source for file in curves for source in file.open()]
         result = pool_sources(config, sources, progress=progress)
         name, title = "pool", "Pooled fit"
-    elif [source.name for source in sources] == [str(config.curves[0])]:
-        result = fit_source(config, sources[0], progress=progress)
+    elif [file.path for file in curves] == [config.curves[0]] and (
+        (opened := curves[0].open()).is_single
+    ):
+        (source,) = opened
+        result = fit_source(config, source, progress=progress)
         name, title = f"{config.curves[0].stem}-fit", config.curves[0].stem
     else:
-        name, title = "fits", f"Fits of {len(sources)} curves"
         try:
-            result = fit_sources(config, sources, directory, progress=True)
+            result = fit_sources(config, SourceStream(curves), directory, progress=not quiet)
         except KeyboardInterrupt:
             hint = f"; finished fits are in {directory}, and the same command continues"
             typer.echo(f"interrupted{hint if directory else ''}", err=True)
             raise typer.Exit(INTERRUPTED) from None
+        name, title = "fits", f"Fits of {len(result.rows)} curves"
     if json:
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
-        print_fits(result.rows)
-    else:
+        print_fits(result, quiet=quiet, directory=directory)
+    elif not quiet:
         print_fit(result)
-    for difference in repeated.differences(sources, result) if repeated else ():
-        typer.echo(f"warning: {difference}", err=True)
+    if repeated is not None:
+        record = None if isinstance(result, ManyFits) else result.record
+        rows = result.rows if isinstance(result, ManyFits) else []
+        data = record.data if record else [row["data"] for row in rows if "data" in row]
+        for difference in repeated.differences(data, record):
+            typer.echo(f"warning: {difference}", err=True)
     written: list[Path] = []
     if isinstance(result, ManyFits):
         written += result.files
-        if result.resumed:
-            typer.echo(f"{result.resumed} of {len(sources)} fits were done before", err=json)
+        if result.resumed and not quiet:
+            typer.echo(f"{result.resumed} of {len(result.rows)} fits were done before", err=json)
     elif directory is not None:
         written.append(result.save(directory / f"{name}.json"))
         written.append(save_figure(result, directory / f"{name}.png"))
     if report:
         page = (directory or Path()) / f"{name}.html"
         written.append(save_report(result, page, title))
-    for path in written:
+    for path in [] if quiet else written:
         typer.echo(f"wrote {path}", err=json)
     if isinstance(result, ManyFits) and result.failed:
-        typer.echo(f"{result.failed} of {len(sources)} curves could not be fitted", err=True)
+        typer.echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
 

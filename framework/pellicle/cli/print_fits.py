@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -9,7 +11,11 @@ import typer
 from .printing import print_table
 
 if TYPE_CHECKING:
+    from pellicle.fitting.many import ManyFits
     from pellicle.fitting.result import FitResult
+
+_LINES = 50
+"""Largest number of curves that are listed although a table is written."""
 
 
 def print_fit(fit: FitResult) -> None:
@@ -32,24 +38,59 @@ def print_fit(fit: FitResult) -> None:
         typer.echo(f"note: {note}", err=True)
 
 
-def print_fits(rows: list[dict[str, Any]]) -> None:
-    """Print a line for each curve; the table in the folder has their sentences."""
-    from pellicle.fitting.result import interval_text
+def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None) -> None:
+    """Print a line for each curve and for each group, and what to know of them.
 
-    lines = []
-    for row in rows:
-        line = {"curve": row["curve"]}
-        for name, unit in (("reduced_modulus", "Pa"), ("tension", "N/m"), ("contact_point", "m")):
-            estimate = row.get(name)
-            line[f"{name} [{unit}]"] = f"{estimate['value']:.4g}" if estimate else ""
-            if name != "contact_point":
-                interval = interval_text(estimate["low"], estimate["high"]) if estimate else ""
-                fixed = estimate and estimate["held"]
-                line[f"95 % of {name}"] = "" if fixed else interval
-        verdict, _, reason = row["status"].partition(": ")
-        codes = ", ".join(check["code"] for check in row.get("failed_checks", ()))
-        notes = str(len(row.get("messages", ())))
-        lines.append(line | {"failed checks": codes, "notes": notes, "status": verdict})
+    Of many curves, lines are left out if the table is in the folder.
+    """
+    from pellicle.units import readable
+
+    for row in fits.rows:
+        _, _, reason = row["status"].partition(": ")
         if reason:
             typer.echo(f"{row['curve']}: {reason}", err=True)
-    print_table(list(lines[0]), lines)
+    for note in fits.notes:
+        typer.echo(f"note: {note}", err=True)
+    if quiet:
+        return
+    if directory is None or len(fits.rows) <= _LINES:
+        lines = [_line(row) for row in fits.rows]
+        print_table(list(lines[0]), lines)
+    else:
+        typer.echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
+    groups = []
+    for part in fits.summary():
+        numbers = part.lower_quartile, part.median, part.upper_quartile
+        low, middle, high = (readable(value, part.unit, 4) for value in numbers)
+        groups.append(
+            {
+                "group": part.group,
+                "parameter": part.parameter,
+                "accepted": f"{part.n} of {part.curves}",
+                "outliers": str(part.outliers),
+                "median": middle,
+                "quartiles": f"{low} to {high}",
+            }
+        )
+    if groups and len(fits.rows) > 1:
+        print_table(list(groups[0]), groups)
+
+
+def _line(row: Mapping[str, Any]) -> dict[str, str]:
+    """Return the line of one curve; the table in the folder has its sentences."""
+    from pellicle.fitting.result import interval_text
+
+    line = {"curve": row["curve"]}
+    for name, unit in (("reduced_modulus", "Pa"), ("tension", "N/m"), ("contact_point", "m")):
+        estimate = row.get(name)
+        line[f"{name} [{unit}]"] = f"{estimate['value']:.4g}" if estimate else ""
+        if name != "contact_point":
+            interval = interval_text(estimate["low"], estimate["high"]) if estimate else ""
+            fixed = estimate and estimate["held"]
+            line[f"95 % of {name}"] = "" if fixed else interval
+    codes = ", ".join(check["code"] for check in row.get("failed_checks", ()))
+    notes = str(len(row.get("messages", ())))
+    verdict = row["status"].partition(": ")[0]
+    if verdict == "fitted" and not row["accepted"]:
+        verdict = "rejected"
+    return line | {"failed checks": codes, "notes": notes, "status": verdict}

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
+    AfterValidator,
     BeforeValidator,
     Field,
     PlainSerializer,
@@ -22,7 +23,7 @@ from pellicle.config.component_field import FromRegistry
 from pellicle.config.study import DEFAULT_EXECUTOR
 from pellicle.errors import ConfigError, shown
 from pellicle.model.from_file import FromFile, overridden
-from pellicle.model.input_path import paths_relative_to
+from pellicle.model.input_path import InputPath, paths_relative_to
 from pellicle.model.messages import nearest
 from pellicle.model.paths import replaced
 from pellicle.model.toml import read_toml
@@ -31,11 +32,13 @@ from pellicle.units import PoissonsRatio, Quantity
 
 from .curves.columns import Calibration
 from .curves.curve import LARGEST, Segment
-from .curves.readers import Curves, Source, expanded, gather
+from .curves.readers import CurveFile, Curves, Source, expanded, gather
 from .models.force_model import ForceModel, described, tension_model
 from .models.simulation import GRID_POINTS, Simulation
 from .models.solid import DEFAULT_KERNEL, Solid, solid
 from .parameters import CONTACT_POINT, MODULUS, TENSION
+from .population.judgement import group_pattern
+from .population.rules import rules
 
 Baseline = Literal["none", "offset", "slope"]
 
@@ -137,6 +140,22 @@ class FitConfig(FromFile, Calibration):
     contact_points: bool = Field(
         False, description="whether a pool gives the interval of each contact point too"
     )
+    accept: Annotated[
+        tuple[str, ...],
+        BeforeValidator(lambda value: [value] if isinstance(value, str) else value),
+        AfterValidator(rules),
+        Field(description="rules for the curves of a population, such as r_squared > 0.95"),
+    ] = ()
+    accepted: InputPath | None = Field(
+        None, description="file that names the only curves that can be accepted, one on each line"
+    )
+    rejected: InputPath | None = Field(
+        None, description="file that names curves that are rejected, one on each line, and why"
+    )
+    group_by: str = Field(
+        "",
+        description="column of a table of files, or a pattern of file names such as {group}_*.csv",
+    )
     executor: Annotated[
         Executor,
         FromRegistry(),
@@ -151,6 +170,7 @@ class FitConfig(FromFile, Calibration):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
+        group_pattern(self.group_by)
         if self.contact_points and not self.pool:
             raise ConfigError(
                 "needs pool = true; fits of single curves always have these intervals",
@@ -239,10 +259,21 @@ class FitConfig(FromFile, Calibration):
         """Return the whole configuration as JSON data, defaults included, in SI."""
         return self.model_dump(mode="json", exclude_none=True, fallback=str)
 
+    def files(self, curves: Curves | None = None) -> list[CurveFile]:
+        """Return the files of ``curves``, or of those of the configuration if None."""
+        chosen, indenter = self.curves if curves is None else curves, self.indenter
+        kind = (
+            registry().find(Indenter.family, indenter["type"])
+            if isinstance(indenter, Mapping)
+            else type(indenter)
+        )
+        fields = {*getattr(kind, "model_fields", ()), *Calibration.model_fields}
+        column = self.group_by
+        return gather(chosen, self.segment, self, self.per_file, column, column in fields)
+
     def sources(self, curves: Curves | None = None) -> list[Source]:
         """Return ``curves``, or those of the configuration if None, as read from their files."""
-        chosen = self.curves if curves is None else curves
-        return gather(chosen, self.segment, self, self.per_file)
+        return [source for file in self.files(curves) for source in file.open()]
 
     def force_model(self, fields: Mapping[str, Any]) -> ForceModel | Simulation:
         """Return the model of the force on the indenter, or what has to be simulated to get one.

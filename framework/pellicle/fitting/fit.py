@@ -18,7 +18,7 @@ from .curves.curve import Curve
 from .curves.readers import Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
-from .record import Stopwatch
+from .record import Stopwatch, data_of
 from .result import FitResult, doubt_of_tension, status_line
 from .statistics.checks import check_plausible, fit_single
 from .statistics.design import advice
@@ -156,7 +156,8 @@ def fit_source(config: FitConfig, source: Source, *, progress: bool) -> Fit:
     simulated = problem.simulated(config, progress=progress)
     with status_line(progress) as report:
         result = fit_problem(simulated, report)
-    return replace(result, config=config, record=watch.record(config, [problem]))
+    record = watch.record(config, [data_of(problem.curve, config)])
+    return replace(result, config=config, record=record)
 
 
 def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stage: None) -> Fit:

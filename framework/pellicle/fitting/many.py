@@ -6,12 +6,13 @@ import csv
 import hashlib
 import json
 import pickle
-from collections.abc import Iterable, Mapping
-from contextlib import closing
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import closing, nullcontext
+from dataclasses import dataclass, field
 from importlib.metadata import version
+from operator import length_hint
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,13 +22,19 @@ from pellicle.errors import PellicleError
 from pellicle.files import atomic_write, check_writable
 from pellicle.results import storage
 from pellicle.results.variables import header
+from pellicle.runs.lock import locked
 from pellicle.runs.progress import StudyProgress
 
 from .config import FitConfig
-from .curves.readers import Curves, Source
+from .curves.readers import Curves, Source, SourceStream
 from .fit import fit_problem
+from .population.images import force_maps
+from .population.judgement import Row, group_of, group_pattern, judge, read_names
+from .population.rules import NUMBERS
+from .population.sketch import Sketch, from_json, of_curve, to_json
+from .population.summary import Quartiles, summary
 from .problem import FitProblem, problems
-from .record import Record, Stopwatch, data_of
+from .record import Stopwatch, data_of
 from .result import write_json
 
 if TYPE_CHECKING:
@@ -36,15 +43,26 @@ if TYPE_CHECKING:
 FITTED = "fitted"
 FAILED = "failed: "
 _NOT_RUN = "not run"
-_WITHOUT_EFFECT = {"curves", "per_file", "pool", "contact_points", "executor", "cache"}
+_JOURNAL = "curves"
+_WITHOUT_EFFECT = {
+    "curves",
+    "per_file",
+    "pool",
+    "contact_points",
+    "executor",
+    "cache",
+    "accept",
+    "accepted",
+    "rejected",
+    "group_by",
+}
 """Fields of a configuration that do not change the fit of a curve."""
 _MEASURED = {"spring_constant": "N/m", "sensitivity": "m/V", "poissons_ratio": "1"}
 """Numbers in the data of a row, and their units."""
 _BYTES_PER_POINT = 2000
 """Memory of a fit, approximately."""
-
-Row = dict[str, Any]
-"""JSON data of one curve: its name, ``status``, and what `Fit.to_dict` returns."""
+_BATCH = 4_000_000
+"""Points of the curves that are in memory at once."""
 
 
 @dataclass(frozen=True)
@@ -67,22 +85,34 @@ class FitTask:
         return _BYTES_PER_POINT * self.problem.curve.force.size
 
 
-class ManyFits(NamedTuple):
+@dataclass
+class ManyFits:
     """The fits of many curves."""
 
     rows: list[Row]
-    files: tuple[Path, ...]
-    resumed: int
+    files: tuple[Path, ...] = ()
+    resumed: int = 0
     """Number of fits that an earlier call had finished."""
+    notes: list[str] = field(default_factory=list)
+    """What to know of the population: rejected curves, outliers, lists with wrong names."""
+    sketches: dict[int, Sketch] = field(default_factory=dict)
+    """Some points of each curve, by its row."""
+    maps: dict[str, xr.Dataset] = field(default_factory=dict)
+    """Images of each force map, by its file."""
 
     @property
     def failed(self) -> int:
         """Number of curves that could not be fitted."""
         return sum(row["status"].startswith(FAILED) for row in self.rows)
 
+    def summary(self) -> list[Quartiles]:
+        """Return median and quartiles of each parameter in each group."""
+        return summary(self.rows)
+
     def to_dict(self) -> dict[str, Any]:
         """Return the fits as JSON data."""
-        return {"curves": self.rows}
+        groups = [part._asdict() for part in self.summary()]
+        return {"curves": self.rows, "groups": groups, "notes": self.notes}
 
 
 def fit_many(
@@ -128,61 +158,137 @@ def fit_many(
     """
     config = FitConfig.merged(config, **options)
     folder = None if directory is None else Path(directory)
-    return table(fit_sources(config, config.sources(curves), folder, progress=progress).rows)
+    sources = SourceStream(config.files(curves))
+    return table(fit_sources(config, sources, folder, progress=progress).rows)
 
 
 def fit_sources(
-    config: FitConfig, sources: list[Source], directory: Path | None, *, progress: bool
+    config: FitConfig, sources: Iterable[Source], directory: Path | None, *, progress: bool
 ) -> ManyFits:
     """Fit each curve that is not fitted yet, and write the files.
 
-    If interrupted, the table has all fits that were finished.
+    Curves are read in batches, so that a population does not have to fit in memory.  If
+    interrupted, the table has all fits that were finished.
+
+    Raises
+    ------
+    StorageError
+        The folder cannot be written, or another process uses it.
     """
-    if directory is not None:
-        check_writable(directory / "fits.h5")
-    rows: list[Row] = [{"curve": source.name, "status": _NOT_RUN} for source in sources]
+    from .report.population import save_population
+
+    lists = read_names(config.accepted), read_names(config.rejected)
+    fits, watch = ManyFits([]), Stopwatch()
+    with nullcontext() if directory is None else locked(directory, "fits"):
+        if directory is not None:
+            check_writable(directory / "fits.h5")
+            check_writable(directory / _JOURNAL / "fit.json")
+        try:
+            with StudyProgress(length_hint(sources), 0, progress) as bar:
+                for batch in _batches(sources):
+                    _fit_batch(config, batch, directory, fits, bar, length_hint(sources), progress)
+        except BaseException:
+            # A table without any fit would replace an earlier one.
+            if directory is not None and any(row["status"] == FITTED for row in fits.rows):
+                judge(fits.rows, config.accept, *lists)
+                _write(fits, config, watch, directory)
+            raise
+        notes = judge(fits.rows, config.accept, *lists)
+        fits.maps, of_maps = force_maps(fits.rows)
+        fits.notes = [*notes, *of_maps]
+        if directory is not None:
+            tables = _write(fits, config, watch, directory)
+            fits.files = (*tables, *save_population(fits, directory))
+    return fits
+
+
+def _batches(sources: Iterable[Source]) -> Iterator[list[Source]]:
+    """Yield the curves in batches that fit in memory."""
+    batch: list[Source] = []
+    points = 0
+    for source in sources:
+        batch.append(source)
+        if not isinstance(source.curve, PellicleError):
+            points += int(np.size(source.curve.force))
+        if points > _BATCH:
+            yield batch
+            batch, points = [], 0
+    if batch:
+        yield batch
+
+
+def _fit_batch(
+    config: FitConfig,
+    sources: list[Source],
+    directory: Path | None,
+    fits: ManyFits,
+    bar: StudyProgress,
+    total: int,
+    progress: bool,
+) -> None:
+    """Fit each curve of a batch that is not fitted yet, and add a row for each."""
+    rows, first, pattern = fits.rows, len(fits.rows), group_pattern(config.group_by)
+    for source in sources:
+        group = group_of(pattern, source.file, source.group)
+        row: Row = {"curve": source.name, "status": _NOT_RUN, "group": group}
+        if not isinstance(source.curve, PellicleError) and source.curve.site is not None:
+            x, y, grid = source.curve.site
+            row["site"] = {"map": source.map, "x": x, "y": y, "grid": grid}
+        rows.append(row)
     tasks: list[FitTask] = []
-    watch, posed = Stopwatch(), problems(config, sources)
-    for number, problem in enumerate(posed):
+    for number, problem in enumerate(problems(config, sources), first):
+        source = sources[number - first]
+        if (sketch := of_curve(source.curve)) is not None:
+            fits.sketches[number] = sketch
         try:
             if isinstance(problem, PellicleError):
                 raise problem
             rows[number]["data"] = data_of(problem.curve, config)
             path = None
             if directory is not None:
-                name = f"{_identity(config, sources[number], problem)[:16]}.json"
-                path = directory / "curves" / name
+                name = f"{_identity(config, source, problem)[:16]}.json"
+                path = directory / _JOURNAL / name
                 if (earlier := _read(path)) is not None:
-                    rows[number] |= earlier | {"status": FITTED}
+                    _keep(fits, number, earlier)
+                    fits.resumed += 1
                     continue
             tasks.append(FitTask(number, problem.simulated(config, progress=progress), path))
         except PellicleError as error:
-            rows[number]["status"] = _failure(error, sources[number])
-    resumed = sum(row["status"] == FITTED for row in rows)
-    files: tuple[Path, ...] = ()
-    try:
-        with (
-            StudyProgress(len(sources), len(sources) - len(tasks), progress) as bar,
-            closing(outcomes_of(config.executor, work, tasks, bar.report, dict)) as outcomes,
-        ):
-            for task, outcome in outcomes:
-                if isinstance(outcome, Exception):
-                    rows[task.row]["status"] = _failure(outcome, sources[task.row])
-                else:
-                    rows[task.row] |= outcome | {"status": FITTED}
-                    if task.path is not None:
-                        write_json(outcome, task.path)
-                status = str(rows[task.row]["status"])
-                bar.finished(task, status, status != FITTED)
-    finally:
-        if directory is not None:
-            files = _write(rows, config, watch.record(config, posed), directory)
-    return ManyFits(rows, files, resumed)
+            rows[number]["status"] = _failure(error, source)
+    bar.expect(total, len(sources) - len(tasks))
+    with closing(outcomes_of(config.executor, work, tasks, bar.report, dict)) as outcomes:
+        for task, outcome in outcomes:
+            if isinstance(outcome, Exception):
+                rows[task.row]["status"] = _failure(outcome, sources[task.row - first])
+            else:
+                if task.path is not None:
+                    write_json(outcome, task.path)
+                _keep(fits, task.row, outcome)
+            status = str(rows[task.row]["status"])
+            bar.finished(task, status, status != FITTED)
+
+
+def _keep(fits: ManyFits, number: int, outcome: dict[str, Any]) -> None:
+    """Put the fit of a curve into its row, and its points beside the rows."""
+    sketch = from_json(outcome.get("sketch", {}))
+    if sketch is not None:
+        fits.sketches[number] = sketch
+    fits.rows[number] |= {k: v for k, v in outcome.items() if k != "sketch"} | {"status": FITTED}
 
 
 def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker."""
-    return fit_problem(task.problem).to_dict()
+    fit = fit_problem(task.problem)
+    likelihood, best = fit.likelihood, fit.parameters
+    residuals = likelihood.residuals(best) * likelihood.noise
+    scatter = likelihood.force - np.mean(likelihood.force)
+    _, force = likelihood.fitted(best)
+    return fit.to_dict() | {
+        "r_squared": 1 - float(residuals @ residuals) / float(scatter @ scatter),
+        "indentation": float(np.max(likelihood.depth(best))),
+        "largest_force": float(np.max(force)),
+        "sketch": to_json(likelihood.position, likelihood.force, force),
+    }
 
 
 def _identity(config: FitConfig, source: Source, problem: FitProblem) -> str:
@@ -237,10 +343,20 @@ def table(rows: list[Row]) -> xr.Dataset:
             column = numbers((row.get(name, {}).get(end) for row in rows), unit)
             if np.isfinite(column[1]).any():
                 columns[f"{name}_{end}"] = column
-    for name in ("points", "chi_squared", "tension_needed"):
-        columns[name] = numbers(row.get(name) for row in rows)
+    for name in ("points", "noise", "chi_squared", "r_squared", "indentation", "largest_force"):
+        if name not in columns:
+            columns[name] = numbers((row.get(name) for row in rows), NUMBERS[name])
+    columns["tension_needed"] = numbers(row.get("tension_needed") for row in rows)
     for name in ("delta_chi_squared", "delta_aic"):
         columns[name] = numbers(row.get("without_tension", {}).get(name) for row in rows)
+    columns["group"] = texts(row["group"] for row in rows)
+    for name in ("accepted", "outlier"):
+        columns[name] = "curve", np.array([row[name] for row in rows], dtype=bool)
+    columns["reason"] = texts(row["reason"] for row in rows)
+    if any("site" in row for row in rows):
+        columns["map"] = texts(row.get("site", {}).get("map", "") for row in rows)
+        for name in ("x", "y"):
+            columns[name] = numbers((row.get("site", {}).get(name) for row in rows), "m")
     for name in ("comparison", "advice"):
         columns[name] = texts(row.get(name, "") for row in rows)
     checks = [[check["code"] for check in row.get("failed_checks", ())] for row in rows]
@@ -256,22 +372,30 @@ def table(rows: list[Row]) -> xr.Dataset:
     return xr.Dataset(columns, {"curve": texts(row["curve"] for row in rows)})
 
 
-def _write(rows: list[Row], config: FitConfig, record: Record, directory: Path) -> tuple[Path, ...]:
-    """Write ``fits.h5``, ``fits.csv`` and ``fits.json`` and return their paths."""
+def _write(
+    fits: ManyFits, config: FitConfig, watch: Stopwatch, directory: Path
+) -> tuple[Path, ...]:
+    """Write the tables of the curves and of the groups, and return their paths."""
+    record = watch.record(config, [row["data"] for row in fits.rows if "data" in row])
     attributes = {
         "configuration": config.to_json(),
         "versions": ", ".join(f"{name} {number}" for name, number in record.versions.items()),
         "date": record.date,
     }
-    dataset = table(rows).assign_attrs(attributes)
-    hdf5, text = directory / "fits.h5", directory / "fits.csv"
+    dataset = table(fits.rows).assign_attrs(attributes)
+    hdf5, text, groups = (directory / f"fits{end}" for end in (".h5", ".csv", "-groups.csv"))
     storage.write(dataset, hdf5)
-    with atomic_write(text) as part, part.open("w", newline="", encoding="utf-8") as file:
+    columns = ["curve", *dataset.data_vars]
+    heads = [*(header(str(name), dataset[name]) for name in columns), *attributes]
+    cells = zip(*(dataset[name].values.tolist() for name in columns), strict=True)
+    _write_csv(text, heads, ((*row, *attributes.values()) for row in cells))
+    _write_csv(groups, Quartiles._fields, fits.summary())
+    content = fits.to_dict() | {"configuration": config.to_dict()} | record.to_dict()
+    return hdf5, text, groups, write_json(content, directory / "fits.json")
+
+
+def _write_csv(path: Path, heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
+    with atomic_write(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        columns = ["curve", *dataset.data_vars]
-        heads = [header(str(name), dataset[name]) for name in columns]
-        writer.writerow([*heads, *attributes])
-        for row in zip(*(dataset[name].values.tolist() for name in columns), strict=True):
-            writer.writerow([*row, *attributes.values()])
-    content = {"curves": rows, "configuration": config.to_dict(), **record.to_dict()}
-    return hdf5, text, write_json(content, directory / "fits.json")
+        writer.writerow(heads)
+        writer.writerows(rows)

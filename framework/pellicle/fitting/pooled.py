@@ -18,7 +18,7 @@ from .curves.curve import Note
 from .curves.readers import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
-from .record import Stopwatch
+from .record import Stopwatch, data_of
 from .result import FitResult, doubt_of_tension, interval_text, status_line
 from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
 from .statistics.design import pooled_advice
@@ -192,7 +192,8 @@ def pool_sources(config: FitConfig, sources: Sequence[Source], *, progress: bool
             raise source.named(error, "; leave it out") from None
     with status_line(progress) as report:
         fit = _fit_pool(singles, config.contact_points, report)
-    return replace(fit, config=config, record=watch.record(config, [p for p, _ in singles]))
+    data = [data_of(problem.curve, config) for problem, _ in singles]
+    return replace(fit, config=config, record=watch.record(config, data))
 
 
 def _fit_pool(

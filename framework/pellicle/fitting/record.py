@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -12,14 +12,12 @@ from typing import Any, NamedTuple
 
 from pellicle.components import Component
 from pellicle.config.provenance import versions
-from pellicle.errors import ConfigError, PellicleError, StorageError
+from pellicle.errors import ConfigError, StorageError
+from pellicle.plugins import registry
 
 from .config import FitConfig
 from .curves.curve import Curve
 from .curves.origin import sha256
-from .curves.readers import Source
-from .models.simulation import Simulation
-from .problem import FitProblem
 
 _ABOVE = 2
 """Folders above that of a record in which its curves are sought."""
@@ -52,12 +50,13 @@ class Stopwatch:
     def __init__(self) -> None:
         self._began = perf_counter()
 
-    def record(self, config: FitConfig, problems: Iterable[FitProblem | PellicleError]) -> Record:
-        """Return the record of a fit that ends now."""
-        fitted = [problem for problem in problems if isinstance(problem, FitProblem)]
+    def record(self, config: FitConfig, data: Iterable[dict[str, Any]]) -> Record:
+        """Return the record of a fit of curves with these `data_of`, which ends now."""
+        entries = tuple(data)
+        libraries = {entry["library"] for entry in entries if entry["library"]}
         return Record(
-            tuple(data_of(problem.curve, config) for problem in fitted),
-            _versions(config, fitted),
+            entries,
+            versions(_components(config), libraries),
             datetime.now(UTC).isoformat(timespec="seconds"),
             round(perf_counter() - self._began, 3),
         )
@@ -74,15 +73,18 @@ def data_of(curve: Curve, config: FitConfig) -> dict[str, Any]:
     }
 
 
-def _versions(config: FitConfig, problems: Sequence[FitProblem]) -> dict[str, str]:
-    components: list[object] = [config.executor, config.indenter]
-    for problem in problems:
-        components.append(getattr(problem.model, "indenter", None))
-        if isinstance(problem.model, Simulation):
-            components.append(problem.model.solid.kernel)
-    libraries = {problem.curve.origin.library for problem in problems}
-    used = {type(component) for component in components if isinstance(component, Component)}
-    return versions(used, filter(None, sorted(map(str, libraries - {None}))))
+def _components(config: FitConfig) -> set[type[Component]]:
+    """Return the components that a fit uses; of some only the tables are known."""
+    tables = [entry for entry in (config.indenter, config.kernel) if isinstance(entry, Mapping)]
+    types = {table["type"] for table in tables}
+    named = {
+        registered.component
+        for family in registry().components.values()
+        for name, registered in family.items()
+        if name in types
+    }
+    objects = (config.indenter, config.executor)
+    return named | {type(entry) for entry in objects if isinstance(entry, Component)}
 
 
 class Repetition(NamedTuple):
@@ -93,27 +95,29 @@ class Repetition(NamedTuple):
     """Hash of each file that was fitted, by its path as it was given."""
     versions: Mapping[str, str]
 
-    def differences(self, sources: Iterable[Source], result: object) -> Iterator[str]:
-        """Yield in words which files and versions differ from those of the first fit."""
-        seen = set()
-        for source in sources:
-            if not isinstance(source.curve, Curve) or source.curve.origin.file is None:
-                continue
-            file = source.curve.origin.file
-            before = self.sha256.get(file)
-            if file in seen:
-                continue
-            seen.add(file)
-            if before is None:
+    def differences(
+        self, data: Iterable[Mapping[str, Any]], record: Record | None
+    ) -> Iterator[str]:
+        """Yield in words which files and versions differ from those of the first fit.
+
+        Parameters
+        ----------
+        data
+            `data_of` each curve that is fitted now.
+        record
+            Record of the fit, with its versions, if it has one.
+        """
+        hashes = {entry["file"]: entry["sha256"] for entry in data}
+        for file, known in hashes.items():
+            if file not in self.sha256:
                 yield f"{file}: was not among the curves that were fitted then"
-            elif before != source.curve.origin.sha256:
+            elif self.sha256[file] != known:
                 yield (
-                    f"{file}: is not the file that was fitted then: its SHA-256 is "
-                    f"{source.curve.origin.sha256}, and was {before}"
+                    f"{file}: is not the file that was fitted then: its SHA-256 is {known}, and "
+                    f"was {self.sha256[file]}"
                 )
-        for file in self.sha256.keys() - seen:
+        for file in self.sha256.keys() - hashes.keys():
             yield f"{file}: was fitted then, and is not read now"
-        record: Record | None = getattr(result, "record", None)
         for name, version in (record.versions if record else {}).items():
             if self.versions.get(name) not in (None, version):
                 yield f"{name} is version {version}, and was {self.versions[name]}"

@@ -15,7 +15,7 @@ import numpy as np
 from pellicle.analysis import Leg, legs
 from pellicle.arrays import Array, Mask
 from pellicle.components import Solver
-from pellicle.files import for_document, storage_errors
+from pellicle.files import atomic_write, for_document, storage_errors
 from pellicle.numerics.problem import height_scale
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
@@ -389,6 +389,25 @@ def save_figure(
                 figure.savefig(path)
             files.append(path)
     return tuple(files)
+
+
+def save_pages(
+    draws: Iterable[Callable[[Figure], None]], path: Path, size: tuple[float, float]
+) -> Path:
+    """Let each function fill a page of ``size`` [inch] of a PDF file, and return the file.
+
+    Raises
+    ------
+    StorageError
+        The file cannot be written.
+    """
+    from matplotlib.backends.backend_pdf import PdfPages
+
+    with atomic_write(path) as part, PdfPages(part, metadata={"CreationDate": None}) as file:
+        for draw in draws:
+            with _figure(draw, size) as figure:
+                file.savefig(figure)
+    return path
 
 
 def svg(draw: Callable[[Figure], None], size: tuple[float, float] = (5.4, 4.2)) -> bytes:

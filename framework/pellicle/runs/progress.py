@@ -155,6 +155,14 @@ class StudyProgress(_Shown):
             "runs", total=float(self._total), completed=self._done, message=self._count()
         )
 
+    def expect(self, total: int, done: int) -> None:
+        """Set the number of runs, and count ``done`` more that were finished before."""
+        self._total = total
+        self._done += done
+        if self._bar is not None:
+            self._bar.update(self._all, total=float(total))
+            self._advance()
+
     def report(self, task: Task, message: ProgressMessage) -> None:
         """Show the progress of a run."""
         self._interrupt.check()

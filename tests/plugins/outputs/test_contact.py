@@ -141,12 +141,12 @@ def test_vtk_holds_surface_and_fields(left: Left) -> None:
 
 def test_vtk_of_more_than_a_block() -> None:
     """What is larger than a block of the file is cut, whether or not it comes out even."""
-    from pellicle_plugins.outputs import vtk
+    from pellicle.report import vtk
 
-    for cells in (vtk._BLOCK // 8, vtk._BLOCK // 8 + 5, vtk._BLOCK // 4):
+    for cells in (vtk.BLOCK // 8, vtk.BLOCK // 8 + 5, vtk.BLOCK // 4):
         values = np.arange(cells, dtype=float)
         array = Xml.Element("DataArray", type="Float64")
-        array.text = vtk._encoded(values.tobytes())
+        array.text = vtk.encoded(values.tobytes())
         assert np.array_equal(decoded(array), values)
 
 

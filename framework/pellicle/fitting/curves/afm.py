@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from importlib.util import find_spec
@@ -14,9 +14,10 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, PellicleError, StorageError
+from pellicle.units import Quantity
 
 from .columns import Calibration
-from .curve import Curve
+from .curve import Axis, Curve, Site
 from .origin import Origin
 
 SUFFIXES = (
@@ -41,8 +42,11 @@ def installed() -> bool:
     return find_spec("afmformats") is not None
 
 
-def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve | PellicleError]:
+def read(path: Path, calibration: Calibration, segment: str) -> Mapping[str, Curve | PellicleError]:
     """Return the ``segment`` of each curve by its number; the label of a single curve is empty.
+
+    A curve is read from the file whenever its value is taken, so that a force map does not have to
+    fit in memory.
 
     Raises
     ------
@@ -59,7 +63,6 @@ def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve 
     overrides = {name: value for name, value in given.items() if value is not None}
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
-    curves: dict[str, Curve | PellicleError] = {}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         with _pellicle_errors(path):
@@ -69,18 +72,49 @@ def read(path: Path, calibration: Calibration, segment: str) -> dict[str, Curve 
             except NotImplementedError:
                 # Formats that always hold their calibration do not take another.
                 recordings = loader(path)
-        for recording in recordings:
-            label = "" if len(recordings) == 1 else str(recording["metadata"]["enum"])
-            try:
-                with _pellicle_errors(path):
-                    curves[label] = _curve(path, recording, overrides, segment)
-            except PellicleError as error:
-                curves[label] = error
-    messages = tuple(dict.fromkeys(f"afmformats: {warning.message}" for warning in caught))
-    return {
-        label: replace(curve, messages=messages) if isinstance(curve, Curve) else curve
-        for label, curve in curves.items()
-    }
+            # HDF5 lists curve 10 before curve 2.
+            recordings = sorted(recordings, key=lambda recording: recording["metadata"]["enum"])
+    return _Recordings(path, recordings, overrides, segment, _texts(caught))
+
+
+def _texts(caught: Sequence[warnings.WarningMessage]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(f"afmformats: {warning.message}" for warning in caught))
+
+
+class _Recordings(Mapping[str, Curve | PellicleError]):
+    """The curves of a file by their numbers, each read whenever it is taken."""
+
+    def __init__(
+        self,
+        path: Path,
+        recordings: Sequence[Mapping[str, Any]],
+        overrides: Mapping[str, float],
+        segment: str,
+        messages: tuple[str, ...],
+    ) -> None:
+        self._path, self._overrides, self._segment = path, overrides, segment
+        self._messages = messages
+        self._recordings = {
+            "" if len(recordings) == 1 else str(recording["metadata"]["enum"]): recording
+            for recording in recordings
+        }
+
+    def __len__(self) -> int:
+        return len(self._recordings)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._recordings)
+
+    def __getitem__(self, label: str) -> Curve | PellicleError:
+        recording = self._recordings[label]
+        try:
+            with warnings.catch_warnings(record=True) as caught, _pellicle_errors(self._path):
+                warnings.simplefilter("always")
+                curve = _curve(self._path, recording, self._overrides, self._segment)
+        except PellicleError as error:
+            return error
+        messages = tuple(dict.fromkeys((*self._messages, *_texts(caught))))
+        return replace(curve, messages=messages)
 
 
 @contextmanager
@@ -134,7 +168,8 @@ def _curve(
         sensitivity=metadata.get("sensitivity", overrides.get("sensitivity")),
         library="afmformats",
     )
-    return Curve(-tip[rows], force[rows], stiffness=stiffness, time=time, origin=origin)
+    site = _site(metadata)
+    return Curve(-tip[rows], force[rows], stiffness=stiffness, time=time, origin=origin, site=site)
 
 
 def _rows_of(segments: Array, tip: Array, segment: str) -> Mask:
@@ -162,3 +197,31 @@ def _time(data: Mapping[str, Any], rows: Any) -> Array | None:
     time = np.asarray(data["time"], dtype=float)[rows]
     steps = np.diff(time)
     return time if np.isfinite(steps).all() and (steps >= 0).all() and steps.any() else None
+
+
+def _site(metadata: Mapping[str, Any]) -> Site | None:
+    """Return where on the sample a curve was measured; None if the file does not say it."""
+    try:
+        x, y = (_length(metadata.get(f"position {axis}")) for axis in "xy")
+    except ValueError:
+        return None
+    try:
+        along_x, along_y = (_axis(metadata, axis) for axis in "xy")
+    except (TypeError, ValueError):
+        return Site(x, y)
+    return Site(x, y, (along_x, along_y))
+
+
+def _axis(metadata: Mapping[str, Any], axis: str) -> Axis:
+    """Return the positions along one edge of a map, whose size includes half a pixel beyond."""
+    centre, size = (_length(metadata.get(f"grid {name} {axis}")) for name in ("center", "size"))
+    count = int(metadata.get(f"grid shape {axis}", 0))
+    if count < 1 or size <= 0:
+        raise ValueError("the grid has no extent")
+    pitch = size / count
+    return Axis(centre - size / 2 + pitch / 2, pitch, count)
+
+
+def _length(value: object) -> float:
+    """Return a length [m], which files that were converted may hold as text with a unit."""
+    return Quantity("m")(value)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,6 +45,27 @@ class Note(str):
     __slots__ = ()
 
 
+class Axis(NamedTuple):
+    """Evenly spaced positions along an edge of a force map."""
+
+    start: float
+    """First position [m]."""
+    pitch: float
+    """Distance of neighbours [m]."""
+    pixels: int
+
+
+class Site(NamedTuple):
+    """Where on the sample a curve of a force map was measured."""
+
+    x: float
+    """[m]"""
+    y: float
+    """[m]"""
+    grid: tuple[Axis, Axis] | None = None
+    """The grid of the map along x and along y, if the file states it."""
+
+
 @dataclass(frozen=True)
 class Curve:
     """One measured curve: position [m] that grows into the solid and force [N], of shape (n,)."""
@@ -61,6 +82,8 @@ class Curve:
     """Time [s] of each row, of shape (n,), increasing; None if it is not known."""
     speed: float | None = None
     """Constant speed [m/s] of the base, from which the time follows if `time` is None."""
+    site: Site | None = None
+    """Where on the sample it was measured, if it belongs to a force map."""
     origin: Origin = field(default_factory=Origin)
     """Its file, with the hash, the columns and the calibration."""
 

@@ -10,7 +10,7 @@ from pellicle.errors import ConfigError, PellicleError
 
 from .columns import Calibration
 from .curve import Curve, Segment
-from .readers import gather
+from .readers import SourceStream, gather
 
 
 def read_curves(
@@ -44,7 +44,7 @@ def read_curves(
     """
     curves: dict[str, Curve] = {}
     errors: list[PellicleError] = []
-    for source in gather(path, segment, Calibration(**calibration), {}):
+    for source in SourceStream(gather(path, segment, Calibration(**calibration), {})):
         if isinstance(source.curve, Curve):
             curves[source.name] = source.curve
         else:

@@ -14,7 +14,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 from pellicle.fitting.fit import Fit
-from pellicle.fitting.many import ManyFits, Row
+from pellicle.fitting.many import ManyFits
 from pellicle.fitting.parameters import (
     CONTACT_POINT,
     MODULUS,
@@ -25,11 +25,15 @@ from pellicle.fitting.parameters import (
     Parameter,
 )
 from pellicle.fitting.pooled import PooledFit
+from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
 from pellicle.fitting.statistics.profile import Estimate
 from pellicle.report.plotting import save_figure as save_drawing
 from pellicle.units import axis_unit
+
+from . import distributions
+from .map_files import figure_size, map_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,6 +55,8 @@ _OPEN_DEVIATIONS = 3.0
 """Values drawn towards an open end, in standard deviations."""
 _LEGEND_CURVES, _TICK_CURVES = 8, 20
 """Curves whose names have room in the legend of a pool, and below the axis of many fits."""
+_BARS = 200
+"""Curves whose intervals are drawn beside each other."""
 _OPEN_TOP = 1.1
 """Position of an open upper end, as a multiple of the largest value drawn."""
 
@@ -60,6 +66,8 @@ class Panel(NamedTuple):
 
     draw: Callable[[FigureBase], None]
     caption: str
+    size: tuple[float, float] | None = None
+    """Width and height [inch]; None for `SIZE`."""
 
 
 def panels(fit: Fit | PooledFit | ManyFits) -> list[Panel]:
@@ -86,7 +94,20 @@ def panels(fit: Fit | PooledFit | ManyFits) -> list[Panel]:
     if not any("tension" in row for row in fit.rows):
         return []
     caption = "A bar is the interval: down to 0, or up to a triangle, where an end is open."
-    return [Panel(partial(_estimates, fit.rows), caption)]
+    drawings = []
+    if len(fit.rows) <= _BARS:
+        drawings.append(Panel(partial(_estimates, fit.rows), caption))
+    if distributions.drawable(fit.rows):
+        caption = (
+            "Accepted curves, by group; dashed, the median; ringed, a modulus that stands out."
+        )
+        draw = partial(distributions.distributions, fit.rows)
+        drawings.append(Panel(draw, caption, distributions.SIZE))
+    for name, images in fit.maps.items():
+        title = Path(name).name
+        caption = f"{title}: grey where there is no accepted fit, or an interval is open."
+        drawings.append(Panel(map_figure(images, title), caption, figure_size(images)))
+    return drawings
 
 
 def save_figure(fit: Fit | PooledFit, path: Path) -> Path:

@@ -13,19 +13,33 @@ import numpy as np
 from pellicle.config.describe import inputs
 from pellicle.files import atomic_write
 from pellicle.fitting.fit import Fit
-from pellicle.fitting.many import FITTED, ManyFits, Row
+from pellicle.fitting.many import FITTED, ManyFits
 from pellicle.fitting.pooled import PooledFit
+from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.result import as_json
 from pellicle.fitting.statistics.profile import CONFIDENCE
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
 from pellicle.report.plotting import svg
-from pellicle.units import axis_unit
+from pellicle.units import axis_unit, readable
 
+from .contact_sheet import LEGEND, PAGE, sheets
 from .figures import SIZE, panels
 
 _LISTED = 8
 """Values of an input that are listed side by side."""
+_LINES = 200
+"""Lines of a list of warnings or failed curves."""
+_PAGES = 6
+"""Pages of the contact sheet on the page, which a browser has to load at once."""
+_LONGEST = 2_000_000
+"""Letters of JSON that the page repeats."""
+_COLUMNS = (
+    ("reduced_modulus", "Pa"),
+    ("tension", "N/m"),
+    ("work_of_adhesion", "J/m**2"),
+    ("contact_point", "m"),
+)
 _MEANINGS = {
     "low": "lower end of the interval",
     "high": "upper end of the interval",
@@ -43,16 +57,23 @@ def save_report(fit: Fit | PooledFit | ManyFits, path: Path, title: str) -> Path
     StorageError
         The file cannot be written.
     """
-    results, fields = _many(fit.rows) if isinstance(fit, ManyFits) else _fit(fit)
+    results, fields = _many(fit) if isinstance(fit, ManyFits) else _fit(fit)
     advice = "" if isinstance(fit, ManyFits) else fit.advice
-    figures = [Picture(svg(p.draw, SIZE), p.caption, p.caption) for p in panels(fit)]
+    figures: list[Block] = [
+        Picture(svg(p.draw, p.size or SIZE), p.caption, p.caption) for p in panels(fit)
+    ]
+    if isinstance(fit, ManyFits):
+        figures += _sheets(fit)
     content = as_json(fit.to_dict())
+    code: Block = Code(content, "All numbers, in SI.", f"{path.stem}.json")
+    if len(content) > _LONGEST:
+        code = Text("With this number of curves the page does not repeat the tables of --output.")
     sections = [
         Section("Result", results),
         Section("Figures", figures),
         Section("More informative experiments", [Text(_sentence(advice))] if advice else []),
         Section("Inputs", fields),
-        Section("As JSON", [Code(content, "All numbers, in SI.", f"{path.stem}.json")]),
+        Section("As JSON", [code]),
     ]
     now = datetime.now(UTC).isoformat(" ", timespec="seconds").replace("+00:00", " UTC")
     kind = "Fits" if isinstance(fit, ManyFits) else "Fit"
@@ -73,22 +94,72 @@ def _fit(fit: Fit | PooledFit) -> tuple[list[Block], list[Block]]:
     return results, [_inputs([curve.model for curve in fit.curves])]
 
 
-def _many(rows: Sequence[Row]) -> tuple[list[Block], list[Block]]:
+def _many(fits: ManyFits) -> tuple[list[Block], list[Block]]:
     """Return results and inputs of a table of many fits."""
+    rows = fits.rows
     failed = [f"{row['curve']}: {row['status']}" for row in rows if row["status"] != FITTED]
     summary = f"{len(rows) - len(failed)} of {len(rows)} curves were fitted."
     messages = [f"{row['curve']}: {text}" for row in rows for text in row.get("messages", ())]
     models = [row["model"] for row in rows if "model" in row]
+    blocks: list[Block] = [Notice(summary, not failed, _first(failed))]
+    if fits.notes:
+        blocks.append(Notice("Population:", good=False, details=_first(fits.notes)))
+    if any(row["accepted"] for row in rows):
+        blocks.append(_groups(fits))
+    blocks += [_each(rows), *_warnings(_first(messages))]
+    return blocks, [_inputs(models)] if models else []
+
+
+def _first(lines: Sequence[str]) -> list[str]:
+    """Return the first lines, and how many more there are."""
+    more = len(lines) - _LINES
+    return [*lines[:_LINES], *([f"… and {more} more, in the table of --output"] * (more > 0))]
+
+
+def _each(rows: Sequence[Row]) -> Table:
+    """Return the table with a row for each curve."""
     columns: dict[Column, Sequence[str | Cell]] = {}
     columns[Column("curve", words=True)] = [row["curve"] for row in rows]
-    for name, unit in (("reduced_modulus", "Pa"), ("tension", "N/m"), ("contact_point", "m")):
-        if any(name in row for row in rows):
-            columns |= _intervals(name.replace("_", " "), [row.get(name) for row in rows], unit)
+    if any(row["group"] for row in rows):
+        columns[Column("group", words=True)] = [row["group"] for row in rows]
+    for name, unit in _COLUMNS:
+        estimates = [row.get(name) for row in rows]
+        if any(estimates):
+            columns |= _intervals(name.replace("_", " "), estimates, unit)
+    for name, head in (("chi_squared", "χ²"), ("r_squared", "R²")):
+        columns[Column(head)] = [f"{row[name]:.5g}" if name in row else "" for row in rows]
     verdicts = [row["status"].partition(":")[0] for row in rows]
     columns[Column("status", words=True)] = [Cell(v, bad=v != FITTED) for v in verdicts]
-    table = _table("Each curve on its own, with its 95 % intervals.", columns)
-    notice = Notice(summary, not failed, failed)
-    return [notice, table, *_warnings(messages)], [_inputs(models)] if models else []
+    if any(row["status"] == FITTED and not row["accepted"] for row in rows):
+        reasons = [row["reason"] if row["status"] == FITTED else "" for row in rows]
+        columns[Column("rejected", words=True)] = [Cell(text, bad=True) for text in reasons]
+    if any(row["outlier"] for row in rows):
+        marks = ["stands out" if row["outlier"] else "" for row in rows]
+        columns[Column("modulus", words=True)] = [Cell(mark, bad=True) for mark in marks]
+    return _table("Each curve on its own, with its 95 % intervals.", columns)
+
+
+def _groups(fits: ManyFits) -> Table:
+    """Return median and quartiles of each parameter in each group."""
+    heads = ["parameter", "group", "accepted", "stand out", "median", "lower quartile"]
+    columns = [Column(head, words=head in heads[:2]) for head in [*heads, "upper quartile"]]
+    rows = []
+    for part in fits.summary():
+        values = part.median, part.lower_quartile, part.upper_quartile
+        texts = [readable(value, part.unit, 4) for value in values]
+        counts = [f"{part.n} of {part.curves}", str(part.outliers)]
+        rows.append([part.parameter.replace("_", " "), part.group, *counts, *texts])
+    return Table("The accepted curves.", columns, rows)
+
+
+def _sheets(fits: ManyFits) -> list[Block]:
+    """Return the first pages of the contact sheet."""
+    pages = sheets(fits)
+    shown = pages[:_PAGES]
+    caption = f"Each curve with its fit. {LEGEND}"
+    if len(pages) > len(shown):
+        caption += f" The first {len(shown)} of {len(pages)} pages; all are in fits-curves.pdf."
+    return [Picture(svg(draw, PAGE), caption, caption) for draw in shown]
 
 
 def _sentence(text: str) -> str:

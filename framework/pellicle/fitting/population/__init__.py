@@ -1,0 +1,1 @@
+"""Populations of curves: which are accepted, their groups, and their statistics."""

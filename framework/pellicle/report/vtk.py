@@ -1,0 +1,102 @@
+"""Files in the XML formats of VTK, which ParaView opens."""
+
+from __future__ import annotations
+
+import base64
+import struct
+import sys
+import zlib
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+from xml.sax.saxutils import XMLGenerator
+from xml.sax.xmlreader import AttributesImpl
+
+import numpy as np
+
+from pellicle.files import atomic_write
+
+BLOCK = 1 << 22
+"""Size of the blocks that are compressed one by one [bytes]."""
+_TYPES = {"f8": "Float64", "i8": "Int64", "b1": "UInt8"}
+
+
+@contextmanager
+def writer(path: Path) -> Iterator[XMLGenerator]:
+    """Yield a writer of the elements of a file."""
+    with atomic_write(path) as part, part.open("wb") as file:
+        xml = XMLGenerator(file, "utf-8", short_empty_elements=True)
+        xml.startDocument()
+        yield xml
+        xml.endDocument()
+
+
+@contextmanager
+def element(xml: XMLGenerator, name: str, **attributes: str) -> Iterator[None]:
+    """Write an element around what is written inside."""
+    xml.startElement(name, AttributesImpl(attributes))
+    yield
+    xml.endElement(name)
+
+
+@contextmanager
+def file_of(xml: XMLGenerator, kind: str, **attributes: str) -> Iterator[None]:
+    """Write the outer elements of a VTK file around the elements inside."""
+    with (
+        element(
+            xml,
+            "VTKFile",
+            type=kind,
+            version="1.0",
+            byte_order="LittleEndian" if sys.byteorder == "little" else "BigEndian",
+            header_type="UInt64",
+            compressor="vtkZLibDataCompressor",
+        ),
+        element(xml, kind, **attributes),
+    ):
+        yield
+
+
+def array(
+    xml: XMLGenerator, name: str, dtype: np.dtype[Any], text: Iterable[str], **attributes: str
+) -> None:
+    """Write numbers, given as texts that `encoded` or `base64_of` returns."""
+    kind = _TYPES[dtype.str[1:]]
+    with element(xml, "DataArray", **attributes, type=kind, Name=name, format="binary"):
+        for part in text:
+            xml.characters(part)
+
+
+def rows_of(number: int, size: int) -> list[slice]:
+    """Return slices of rows of ``size`` bytes that make blocks of about 4 MB."""
+    many = max(1, BLOCK // size)
+    return [slice(start, start + many) for start in range(0, number, many)]
+
+
+def encoded(data: bytes) -> str:
+    """Return bytes in base64, compressed."""
+    blocks = (data[start : start + BLOCK] for start in range(0, len(data), BLOCK))
+    return "".join(base64_of(blocks))
+
+
+def base64_of(blocks: Iterable[bytes]) -> Iterator[str]:
+    """Yield blocks of bytes, all of one size but the last, in base64, each compressed.
+
+    The header holds the number of blocks, their size, that of the last block if it is smaller, else
+    0, and the compressed size of each block.
+    """
+    packed, sizes = [], []
+    for block in blocks:
+        packed.append(zlib.compress(block, 1))
+        sizes.append(len(block))
+    head = [len(packed), sizes[0], sizes[-1] % sizes[0], *map(len, packed)]
+    yield base64.b64encode(struct.pack(f"={len(head)}Q", *head)).decode("ascii")
+    rest = b""
+    for block in packed:
+        # Three bytes make four letters.
+        data = rest + block
+        whole = len(data) - len(data) % 3
+        yield base64.b64encode(data[:whole]).decode("ascii")
+        rest = data[whole:]
+    yield base64.b64encode(rest).decode("ascii")

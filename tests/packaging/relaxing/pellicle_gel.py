@@ -1,0 +1,39 @@
+"""A kernel for pellicle: a gel whose stiffness relaxes in two equal parts, ten times apart."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+import pellicle as pl
+from pellicle.components import Branch
+from pellicle.units import Modulus, Time
+
+
+class Gel(pl.Kernel):
+    """Half-space of which 80 % relaxes."""
+
+    type: Literal["gel"] = "gel"
+    reduced_modulus: Annotated[Modulus, Field(description="instantaneous modulus E* [Pa]")]
+    time: Annotated[Time, Field(description="shorter relaxation time [s]")]
+
+    def compliance(self, q):
+        """Return the instantaneous G(q) = 2/(E* q) [m/Pa]."""
+        return 2 / (self.reduced_modulus * q)
+
+    def branches(self):
+        """Return shares of the instantaneous stiffness with their times [s]."""
+        return (Branch(0.4, self.time), Branch(0.4, 10 * self.time))
+
+    def scaled(self, share):
+        """Return an elastic half-space, this one times ``share``."""
+        return pl.kernel("half_space", reduced_modulus=share * self.reduced_modulus)
+
+    def without_skin(self):
+        """Return this kernel, which has no skin."""
+        return self
+
+
+@pl.hookimpl
+def register_kernels(register):
+    """Register the kernel."""
+    register(Gel)
