@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from pellicle.files import atomic_write
+from pellicle.units import readable
 
 from .config import FitConfig
 from .curves.curve import Note
@@ -94,13 +95,15 @@ class FitResult:
         if tension.held and not tension.value:
             return "tension is fixed at 0, so whether it is needed was not tested"
         if tension.held:
-            return f"tension is fixed at {tension.value:.4g} N/m ({figures} against none)"
+            return (
+                f"tension is fixed at {readable(tension.value, 'N/m', 4)} ({figures} against none)"
+            )
         if tension.low is not None and self.doubt:
             return f"tension fits better than none ({figures}), but {self.doubt}"
         if tension.low is not None:
             return f"tension is needed ({figures} against none); {self._look_alikes}"
         if tension.high is not None:
-            bound = f"it is below {tension.high:.3g} N/m"
+            bound = f"it is below {readable(tension.high, 'N/m', 3)}"
             return f"{self._subject} not show tension ({figures}); {bound}"
         return f"{self._subject} not show tension ({figures}), nor set a bound on it"
 
