@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import html
 import json
 import os
 import re
@@ -20,6 +21,7 @@ from matplotlib import pyplot
 import pellicle as pl
 from pellicle.fitting.curves.readers import read
 from pellicle.fitting.curves.text_table import read_cells
+from pellicle.fitting.report.page import save_report
 from tests.pictures import drawn_width
 
 Cli = Callable[..., Result]
@@ -235,3 +237,38 @@ def test_read_curves_and_draw_them(tmp_path: Path) -> None:
     pyplot.close("all")
     with pytest.raises(pl.ConfigError, match="has no column"):
         pl.read_curves(tmp_path / "b.csv", **reading)
+
+
+def _visible(page: Path) -> str:
+    """Return the text of a page above its JSON, without markup."""
+    body = page.read_text(encoding="utf-8").partition("As JSON</h2>")[0].partition("<body")[2]
+    return html.unescape(re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", body)))
+
+
+def test_page_answers(tmp_path: Path) -> None:
+    """The page begins with the answer in units of its size; an open interval is a bound."""
+    depth = np.linspace(-0.5e-6, 1.5e-6, 200)
+    both = np.r_[depth, depth[::-1]] + 3e-6
+    sphere = pl.indenter("sphere", radius=5e-6)
+    texts = []
+    for length in (5e-6, 0.0):
+        force = 2e3 * sphere.force_curve(np.r_[depth, depth[::-1]], length).force  # type: ignore[attr-defined]
+        force += 0.005 * force.max() * np.random.default_rng(1).standard_normal(force.size)
+        fit = pl.fit(both, force, indenter=sphere, poissons_ratio=0.5)
+        texts.append(_visible(save_report(fit, tmp_path / "fit.html", "Bead")))
+    number = r"[\d.]+"
+    interval = rf"\({number} to {number}\)"
+    modulus = rf"Young's modulus {number} kPa {interval}, tension"
+    point = rf"contact point {number} µm {interval}, with 95 % intervals\."
+    assert re.search(rf"Result {modulus} {number} mN/m {interval} and {point}", texts[0])
+    assert re.search(rf"Result {modulus} < {number} µN/m and {point}", texts[1])
+    assert re.search(rf"does not show tension .* it is below {number} µN/m", texts[1])
+    assert re.search(rf"tension 0 < {number} µN/m none", texts[1])
+    for text in texts:
+        notes = text.partition("Notes:")[2]
+        assert "rows 1 to 200 are the approach" in notes
+        assert "Warnings:" not in text
+        assert "numbers given in Python" in text
+    warned = pl.fit(both, force + 1e-9, indenter=sphere)
+    text = _visible(save_report(warned, tmp_path / "fit.html", "Bead"))
+    assert "baseline" in text.partition("Warnings:")[2].partition("Notes:")[0]

@@ -209,9 +209,12 @@ def _record(fit: FitResult) -> list[Block]:
 
 def _estimates(fit: Fit | PooledFit) -> Table:
     rows = []
+    # A tension at its limit is left out of the bounds of the others, but not of their intervals.
+    bounded = fit.tension.held or fit.tension.value > 0
     for name, estimate in fit.estimates().items():
         factor, unit = scale(estimate)
-        bound = f"{estimate.bound * factor:.2g}" if np.isfinite(estimate.bound) else "none"
+        is_known = bounded and np.isfinite(estimate.bound)
+        bound = f"{estimate.bound * factor:.2g}" if is_known else "none"
         bound = "" if estimate.held else bound
         value = f"{estimate.value * factor:.4g}"
         rows.append([name.replace("_", " "), value, interval(estimate), unit, bound])

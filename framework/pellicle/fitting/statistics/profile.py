@@ -78,24 +78,16 @@ class ProfileResult:
     messages: tuple[str, ...]
     """By how much intervals were widened, and which could not be determined."""
 
-    @property
-    def _is_at_limit(self) -> bool:
-        """Whether a fitted parameter has its least value, such as a tension of 0."""
-        return any(self.best.parameters[p] <= p.minimum for p in self.likelihood.free)
-
     def estimate(self, parameter: Parameter) -> Estimate:
         """Return value, interval and bound of a parameter; E* itself for the modulus.
 
         Without an interval the ends are None.  Where the interval is narrower than the Cramér–Rao
         bound, that bound is infinite: it is that of a linear model, and this model is not linear.
-        So is every bound where a parameter is at its limit, which the bounds of others leave out.
         """
         best, bound = self.best.parameters[parameter], self.bounds[parameter]
         fixed = parameter not in self.likelihood.free
         low, high = (best, best) if fixed else self.ends.get(parameter, (None, None))
         lowest = parameter.minimum if low is None else low
-        if self._is_at_limit and not fixed:
-            bound = np.inf
         if high is not None and max(high - best, best - lowest) < bound:
             bound = np.inf
         value = parameter.value(best)
