@@ -247,7 +247,7 @@ def _visible(page: Path) -> str:
 
 def test_page_answers(tmp_path: Path) -> None:
     """The page begins with the answer in units of its size; an open interval is a bound."""
-    depth = np.linspace(-0.5e-6, 1.5e-6, 200)
+    depth = np.linspace(-0.5e-6, 1.5e-6, 300)
     both = np.r_[depth, depth[::-1]] + 3e-6
     sphere = pl.indenter("sphere", radius=5e-6)
     texts = []
@@ -266,7 +266,7 @@ def test_page_answers(tmp_path: Path) -> None:
     assert re.search(rf"tension 0 < {number} µN/m none", texts[1])
     for text in texts:
         notes = text.partition("Notes:")[2]
-        assert "rows 1 to 200 are the approach" in notes
+        assert "rows 1 to 300 are the approach" in notes
         assert "Warnings:" not in text
         assert "numbers given in Python" in text
     warned = pl.fit(both, force + 1e-9, indenter=sphere)

@@ -217,7 +217,8 @@ def _estimates(fit: Fit | PooledFit) -> Table:
         bound = f"{estimate.bound * factor:.2g}" if is_known else "none"
         bound = "" if estimate.held else bound
         value = f"{estimate.value * factor:.4g}"
-        rows.append([name.replace("_", " "), value, interval(estimate), unit, bound])
+        name = name.replace("_", " ").replace("youngs", "Young's")
+        rows.append([name, value, interval(estimate), unit, bound])
     heads = ("parameter", "value", "interval", "unit", "bound")
     columns = [
         Column(head, meaning=_MEANINGS.get(head, ""), words=head in ("parameter", "unit"))
