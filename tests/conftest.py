@@ -1,8 +1,11 @@
 """What holds for every test: floating-point errors raise, and the checkout is installed."""
 
+from __future__ import annotations
+
 import json
 import multiprocessing
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -10,10 +13,13 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+
+if TYPE_CHECKING:
+    from selenium.webdriver import Chrome
 
 
 def pytest_configure() -> None:
@@ -108,3 +114,36 @@ def dask_address(start_dask: StartDask) -> Iterator[str]:
     """
     with start_dask(DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as address:
         yield address
+
+
+@pytest.fixture(scope="session")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
+    """Return a Chromium without a window."""
+    from selenium.webdriver import Chrome, ChromeOptions, ChromeService
+
+    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if chromium is None or driver is None:
+        message = "no browser: apt-get install chromium chromium-driver"
+        if os.environ.get("PELLICLE_BROWSER") == "required":
+            pytest.fail(message)
+        pytest.skip(message)
+    options = ChromeOptions()
+    options.binary_location = chromium
+    for switch in (
+        "headless",
+        "no-sandbox",
+        "disable-gpu",
+        "disable-quic",
+        "no-first-run",
+        "disable-background-networking",
+        "disable-component-update",
+        "disable-sync",
+        "window-size=1280,900",
+        f"user-data-dir={tmp_path_factory.mktemp('chromium')}",
+    ):
+        options.add_argument(f"--{switch}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    opened = Chrome(options=options, service=ChromeService(driver))
+    opened.set_script_timeout(20)
+    yield opened
+    opened.quit()

@@ -8,10 +8,12 @@ from .components import Executor as Executor
 from .components import Force as Force
 from .components import ForceCurve as ForceCurve
 from .components import HasForceCurve as HasForceCurve
+from .components import HasLayerForceCurve as HasLayerForceCurve
 from .components import Indenter as Indenter
 from .components import Interaction as Interaction
 from .components import IterativeSolver as IterativeSolver
 from .components import Kernel as Kernel
+from .components import LayerForceCurve as LayerForceCurve
 from .components import Output as Output
 from .components import Prescription as Prescription
 from .components import Runs as Runs

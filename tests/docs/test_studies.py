@@ -264,3 +264,48 @@ def test_sticky_rough_punch_loses_more_energy_the_more_it_sticks(tmp_path: Path)
     with xr.open_dataset(tmp_path / "study.h5", engine="h5netcdf") as table:
         lost = table["dissipated_energy"].values
     assert 0 < 5 * lost[0] < lost[1]
+
+
+def test_loops_lose_most_at_the_time_of_the_relaxation(tmp_path: Path) -> None:
+    """Much faster or slower than the gel relaxes the way back is nearly the way in."""
+    steps = ["loading.depth.0.num=6", "loading.depth.1.num=6"]
+    run("loops.toml", tmp_path, "grid.points=20", *steps)
+    areas = []
+    for name in ("0.01", "1", "100"):
+        rows = drawn(tmp_path / "study-curves.csv", curve=f"{name} s each way")
+        force, depth = column(rows, "y"), column(rows, "x")
+        areas.append(float(np.trapezoid(force, depth)) / force.max())
+    assert areas[1] > 4 * areas[0]
+    assert areas[1] > 2 * areas[2]
+
+
+@pytest.mark.filterwarnings("ignore:kernel. the shares of 'coated' that relax sum to 1")
+def test_plateau_is_that_of_the_tension(tmp_path: Path) -> None:
+    """The force of a bead at a contact radius ends at 2πτ₀a²/R, to 8 % on coarse cells."""
+    run(
+        "plateau.toml",
+        tmp_path,
+        "grid.points=64",
+        'loading.contact_radius=[{to="80 um",time=0,num=1}, {hold="3 s",num=1}]',
+        'kernel.substrate.relaxation=[{fraction=1, time="0.1 s"}]',
+        'study.vary={"kernel.tension"=["20 mN/m"]}',
+    )
+    share = column(drawn(tmp_path / "study-curves.csv"), "y")
+    assert share[0] > 2.5
+    assert share[-1] == pytest.approx(1.0, abs=0.08)
+
+
+@pytest.mark.filterwarnings("ignore:of 2 runs, in . the cells are too coarse")
+def test_oscillation_a_skin_lowers_the_phase(tmp_path: Path) -> None:
+    """A skin adds more to the storage than to the loss."""
+    run(
+        "oscillation.toml",
+        tmp_path,
+        "grid.points=16",
+        "loading.depth.2={amplitude=0.2e-6,frequency=0.1,cycles=2,num=12}",
+        'study.vary={"kernel.tension"=[0.0,0.5]}',
+    )
+    path = tmp_path / "study-curves.csv"
+    storage, loss = (column(drawn(path, series=name), "y") for name in ("K′", "K″"))
+    assert storage[1] > 2 * storage[0]
+    assert loss[0] < loss[1] < 1.5 * loss[0]

@@ -14,6 +14,7 @@ import pytest
 
 import pellicle as pl
 from pellicle import memory
+from pellicle.runs.relaxation import history_arrays
 
 
 def _grid(points: int, boundary: str = "free") -> pl.Grid:
@@ -29,10 +30,19 @@ def test_estimate_grows_with_cells_and_steps(boundary: str) -> None:
 
 
 SIZE = 1e-3
+JKR = {"type": "jkr", "work_of_adhesion": 0.02, "estimate_error": False}
 OUTPUTS = ["hdf5", "csv", "figures", "maps", "html", "vtk", "patches", "spectrum", "distributions"]
 HALF_SPACE = {"type": "half_space", "reduced_modulus": 1e4}
 SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.05}
 LAYER = {"type": "bonded_layer", "youngs_modulus": 1e4, "poissons_ratio": 0.4, "thickness": 1e-4}
+
+
+def _relaxing(branches: int) -> dict[str, Any]:
+    relaxation = [{"fraction": 0.8 / branches, "time": 10.0**n} for n in range(branches)]
+    return {"type": "viscoelastic", "solid": HALF_SPACE, "relaxation": relaxation}
+
+
+SKIN_ON_GEL = {"type": "coated", "tension": 0.01, "substrate": _relaxing(2)}
 
 
 def _kind(points: int, boundary: str = "free", **changes: Any) -> dict[str, Any]:
@@ -64,6 +74,8 @@ KINDS = {
     "free, contact stiffness": _kind(512, loading={"depth": 2e-5, "stiffness": True}),
     "free, prescribed area": _kind(512, loading={"contact_radius": 1e-4}),
     "free, many outputs": _kind(1024, **ALL_OUTPUTS),
+    "free, sticks": _kind(384, interaction=JKR, loading={"depth": [2e-5, 1e-5]}),
+    "periodic, sticks": _kind(384, "periodic", interaction=JKR, loading={"depth": [2e-6, 1e-6]}),
     "periodic, little contact": _kind(1024, "periodic"),
     "periodic, full contact": _kind(1024, "periodic", **FULL),
     "periodic, conjugate_gradient": _kind(512, "periodic", solver={"type": "conjugate_gradient"}),
@@ -75,6 +87,18 @@ KINDS = {
     ),
     "periodic, little contact, many outputs": _kind(1024, "periodic", **ALL_OUTPUTS),
     "periodic, full contact, many outputs": _kind(1024, "periodic", **FULL, **ALL_OUTPUTS),
+    "free, a solid that relaxes": _kind(
+        512, kernel=_relaxing(5), loading={"depth": [2e-5] * 4, "time": [0, 1, 2, 3]}
+    ),
+    "free, a skin on a solid that relaxes": _kind(
+        512, kernel=SKIN_ON_GEL, loading={"depth": [2e-5] * 4, "time": [0, 1, 3, 6]}
+    ),
+    "periodic, a skin on a solid that relaxes": _kind(
+        512,
+        "periodic",
+        kernel=SKIN_ON_GEL,
+        loading={"force": [1e-6] * 4, "time": [0, 1, 3, 6]},
+    ),
     "periodic, a line of cells": _kind(
         512,
         "periodic",
@@ -109,7 +133,9 @@ def growths() -> dict[str, int]:
 def test_estimate_is_the_growth_of_the_peak(kind: str, growths: dict[str, int]) -> None:
     """The estimate is between 0.95 and 1.3 times the measured growth of the peak."""
     run = pl.Run(**KINDS[kind])
-    estimate = memory.estimate(run.grid, len(run.loading.values), run.solver)
+    steps, sticks = len(run.loading.values), run.interaction is not None
+    history = history_arrays(run)
+    estimate = memory.estimate(run.grid, steps, run.solver, history, sticks=sticks)
     assert 0.95 <= estimate / growths[kind] <= 1.3
 
 

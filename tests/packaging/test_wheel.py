@@ -11,7 +11,12 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("framework/pellicle", "plugins/pellicle_plugins")
-DATA = {"pellicle/py.typed", "pellicle/cli/starter.toml", "pellicle_plugins/py.typed"} | {
+DATA = {
+    "pellicle/py.typed",
+    "pellicle/cli/starter.toml",
+    "pellicle/explore/start.toml",
+    "pellicle_plugins/py.typed",
+} | {
     path.relative_to(ROOT / "framework").as_posix()
     for folder in ("cli/templates", "report")
     for path in (ROOT / "framework/pellicle" / folder).rglob("*")
@@ -64,7 +69,7 @@ def test_wheel_holds_every_module(wheel: set[str]) -> None:
 
 def test_wheel_holds_its_data(wheel: set[str]) -> None:
     """What is no module is installed too: starter file, templates, parts of a page, markers."""
-    assert len(DATA) == 3 + 2 + 8 * 3 + 3
+    assert len(DATA) == 4 + 2 + 8 * 3 + 3
     assert wheel >= DATA
 
 

@@ -48,6 +48,13 @@ def fit(
     poissons_ratio: Annotated[
         float | None, typer.Option(help="Poisson's ratio, to get Young's modulus as well.")
     ] = None,
+    thickness: Annotated[
+        str | None,
+        typer.Option(
+            help='Thickness of a layer on a rigid base: "50 um", or free to fit it; with '
+            "--poissons-ratio."
+        ),
+    ] = None,
     fix: Annotated[
         list[str] | None,
         typer.Option(help='Fix a parameter: --fix tension=0, --fix reduced_modulus="10 kPa".'),
@@ -176,6 +183,7 @@ def fit(
         radius=radius[0] if radius and len(radius) == 1 else radius or None,
         half_angle=half_angle,
         poissons_ratio=poissons_ratio,
+        thickness=thickness,
         baseline=baseline,
         segment=segment,
         spring_constant=spring_constant,

@@ -19,7 +19,7 @@ from .curves.readers import Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
-from .result import FitResult, doubt_of_tension, status_line
+from .result import FitResult, doubt_of_tension, status_line, thickness_of
 from .statistics.checks import check_plausible, fit_single
 from .statistics.design import advice
 from .statistics.initial_guess import initial_guesses
@@ -55,7 +55,7 @@ class Fit(FitResult):
     def model(self) -> dict[str, Any]:
         """Return the indenter and the kernel of the fit as JSON data.
 
-        The kernel, without modulus and tension, is included only if the force curve was simulated.
+        The kernel, without modulus and tension, is included unless it is a half-space.
         """
         return self.likelihood.force_model.description()
 
@@ -90,8 +90,9 @@ def fit(
     variance at all points; the intervals have a confidence of 95 %.
 
     An indenter that has a force curve of its own (paraboloid, sphere, cone, flat_punch) is fitted
-    at once.  Any other indenter, or any on another kernel, first needs a study of some 150 runs,
-    which is kept in ``cache`` and serves all curves of the same proportions.
+    at once, on a half-space and on a layer bonded to a rigid base (``thickness``).  Any other
+    indenter, or any on another kernel, first needs a study of some 150 runs, which is kept in
+    ``cache`` and serves all curves of the same proportions.
 
     Parameters
     ----------
@@ -205,6 +206,7 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
         noise_from=single.noise_from,
         points=problem.curve.force.size,
         likelihood=likelihood,
+        thickness=thickness_of(likelihood.force_model, profile),
     )
 
 

@@ -19,7 +19,7 @@ from .curves.readers import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
-from .result import FitResult, doubt_of_tension, interval_text, status_line
+from .result import FitResult, doubt_of_tension, interval_text, status_line, thickness_of
 from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
 from .statistics.design import pooled_advice
 from .statistics.likelihood import best_minimum
@@ -263,6 +263,7 @@ def _fit_pool(
         agree=factor == 1,
         contact_points=contact_points,
         pool=pool,
+        thickness=thickness_of(pool.members[0].force_model, profile),
     )
 
 

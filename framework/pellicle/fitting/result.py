@@ -14,9 +14,11 @@ from pellicle.units import readable
 
 from .config import FitConfig
 from .curves.curve import Note
-from .parameters import Coordinates
+from .models.force_model import ForceModel
+from .models.layer import LayerModel
+from .parameters import THICKNESS, Coordinates
 from .statistics.noise import FailedCheck
-from .statistics.profile import CONFIDENCE, Estimate
+from .statistics.profile import CONFIDENCE, Estimate, ProfileResult
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,6 +35,14 @@ def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:
         return "no tension is needed where the force dips before contact: that is adhesion"
     checks = "a check" if len(codes) == 1 else "checks"
     return f"this is not evidence of one, because the model fails {checks} ({', '.join(codes)})"
+
+
+def thickness_of(model: ForceModel, profile: ProfileResult) -> Estimate | None:
+    """Return the thickness of a layer, fitted or given; None for another solid."""
+    if isinstance(model, LayerModel):
+        h = model.thickness
+        return Estimate(h, h, h, THICKNESS.unit, 0.0, held=True)
+    return profile.estimate(THICKNESS) if THICKNESS in model.parameters else None
 
 
 @dataclass(frozen=True)
@@ -70,6 +80,8 @@ class FitResult:
     """Checks that the residuals fail; their sentences are among the messages."""
     doubt: str
     """Why a better fit with tension is not evidence of a tension; empty if it is."""
+    thickness: Estimate | None = field(default=None, kw_only=True)
+    """h [m], if the solid is a bonded layer with a force curve."""
     config: FitConfig | None = field(default=None, kw_only=True)
     """The configuration of the fit."""
     record: Record | None = field(default=None, kw_only=True)

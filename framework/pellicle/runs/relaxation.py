@@ -38,10 +38,12 @@ _LONGEST: Final = 1e9
 _LIQUID: Final = 1e-12
 # Relaxation times below this share of the shortest step are far below it.
 _FAST: Final = 0.01
+# Size of both operators of a stiffness γ, in arrays of the grid's shape.
+_PAIR: Final = {"free": 13.5, "periodic": 1.3}
 # Cells may add a hundredth to a radius.
 _RADII: Final = 7.9
-OPERATORS: Final = 4
-"""Number of stiffnesses γ whose operators are kept under a skin."""
+# Number of stiffnesses γ whose operators are kept under a skin.
+_OPERATORS: Final = 4
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ class Skin:
         solid = kernel.without_skin()
 
         def made(kernel_of: Callable[[Kernel], HasCompliance]) -> Callable[[float], PlaneOperator]:
-            @lru_cache(maxsize=OPERATORS)
+            @lru_cache(maxsize=_OPERATORS)
             def operator(share: float) -> PlaneOperator:
                 with errors_attributed_to(kernel):
                     return PlaneOperator(kernel_of(kernel.scaled(share)), grid)
@@ -151,6 +153,24 @@ def least_domain(run: Run, index: int, contact: Mask) -> float:
         stiff = np.flatnonzero(share * carried.compliance(waves) >= 0.5)
         length = 1 / float(waves[stiff[-1]]) if stiff.size else math.inf
     return max(_RADII * radius, 3 * length)
+
+
+def history_arrays(run: Run) -> float:
+    """Return the peak memory of the history of a solid, in arrays of the grid's shape.
+
+    These are the branches, twice as they are brought forward, what they leave behind and the
+    profile that it displaces; under a skin also the strain and the operators that are kept.
+    """
+    kernel, branches = run.kernel, branches_of(run.kernel)
+    if not branches:
+        return 0.0
+    arrays = 2 * len(branches) + 3.0
+    assert isinstance(kernel, HasRelaxation)
+    if kernel.without_skin() != kernel:
+        steps = {TimeStep.of(branches, duration) for duration in run.loading.durations}
+        kept = min(_OPERATORS, len({_share(step) for step in steps}))
+        arrays += 1 + kept * _PAIR[run.grid.boundary]
+    return arrays
 
 
 class Relaxation:

@@ -28,6 +28,7 @@ from .compose import compose
 from .journal import Journal
 from .lock import locked
 from .progress import Bar, Progress
+from .relaxation import history_arrays
 from .steps import solve_steps
 
 if TYPE_CHECKING:
@@ -123,7 +124,8 @@ def execute(
     """
     import scipy.fft
 
-    memory.require(run.grid, len(run.loading.values), run.solver)
+    history, sticks = history_arrays(run), run.interaction is not None
+    memory.require(run.grid, len(run.loading.values), run.solver, history, sticks=sticks)
     steps = Steps(len(run.loading.values))
     outputs = [output for output in outputs if journal and output.scope != "study"]
     files: tuple[Path, ...] = ()

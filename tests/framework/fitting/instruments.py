@@ -153,7 +153,7 @@ def jpk(path: Path, *recordings: Recording) -> None:
 
 
 def _jpk_step(values: Array) -> float:
-    return float(np.abs(values).max()) / 2**30
+    return float(np.abs(values).max(initial=1e-30)) / 2**30
 
 
 def _jpk_header(recording: Recording, rows: NDArray[np.bool_], style: str, number: int) -> str:

@@ -22,8 +22,8 @@ CONTACT_HEIGHT = "contact_height"
 _QUALITY = "r_squared", "chi_squared", "indentation", "largest_force"
 _OFF = 0.25
 """Distance of a curve from its pixel, in pixels, beyond which the places are not a grid."""
-_EMPTIEST = 20
-"""Largest number of pixels for each curve."""
+_EMPTIEST = 4
+"""Largest number of pixels for each curve on a grid that the file does not state."""
 
 
 def force_maps(rows: Sequence[Row]) -> tuple[dict[str, xr.Dataset], list[str]]:
@@ -145,10 +145,12 @@ def _axis(values: Array) -> Axis | None:
     # The instrument reports positions with some noise.
     cuts = np.flatnonzero(steps > _OFF * steps.max()) + 1
     centres = np.array([part.mean() for part in np.split(ordered, cuts)])
-    rough = float(np.median(np.diff(centres)))
-    pixels = round(float(np.ptp(centres)) / rough) + 1
-    pitch = float(np.ptp(centres)) / (pixels - 1)
-    index = (values - centres[0]) / pitch
-    if np.abs(index - np.round(index)).max() > _OFF:
-        return None
-    return Axis(float(centres[0]), pitch, pixels)
+    gaps, span = np.diff(centres), float(np.ptp(centres))
+    # Where most neighbours are missing, the least gap is the pitch; else noise makes it too small.
+    for guess in (float(np.median(gaps)), float(gaps.min())):
+        pixels = round(span / guess) + 1
+        axis = Axis(float(centres[0]), span / (pixels - 1), pixels)
+        index = (values - axis.start) / axis.pitch
+        if np.abs(index - np.round(index)).max() <= _OFF:
+            return axis
+    return None

@@ -39,6 +39,7 @@ _COLUMNS = (
     ("reduced_modulus", "Pa"),
     ("tension", "N/m"),
     ("work_of_adhesion", "J/m**2"),
+    ("thickness", "m"),
     ("contact_point", "m"),
 )
 _MEANINGS = {

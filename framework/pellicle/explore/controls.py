@@ -1,0 +1,141 @@
+"""The quantities of a run that the explorer changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pellicle.config.run import Run
+from pellicle.errors import ConfigError
+from pellicle.model.paths import replaced, walk
+from pellicle.units import Quantity, axis_unit, quantity_of
+
+_TABLES = ("kernel", "indenter", "interaction")
+_DIGITS = 4
+"""Significant digits of a value that a slider sets."""
+
+
+@dataclass(frozen=True)
+class Control:
+    """A quantity of a run: a component's field, or the last of the load steps."""
+
+    path: str
+    """Dotted path in the run file, as for ``--set``."""
+    label: str
+    quantity: Quantity
+    value: float
+    """Present value in SI."""
+
+    @property
+    def low(self) -> float:
+        """The lowest value of the slider."""
+        if self.is_logarithmic:
+            return self.value / 10
+        return min(0.0, self.value)
+
+    @property
+    def high(self) -> float:
+        """The highest value of the slider."""
+        if self.is_logarithmic:
+            return self.value * 10
+        return min(b for b in (self.quantity.at_most, self.quantity.below) if b is not None)
+
+    @property
+    def is_logarithmic(self) -> bool:
+        """Whether the slider moves over decades; else from 0 to the highest allowed value."""
+        return self.quantity.unit not in ("1", "rad")
+
+    def text(self, value: float) -> str:
+        """Return a value in the unit of the present one, as a run file has it."""
+        if self.quantity.unit == "1":
+            return f"{round(value, _DIGITS):g}"
+        factor, unit = axis_unit([self.value], self.quantity.unit)
+        return f"{value * factor:.{_DIGITS}g} {unit}"
+
+
+def controls(run: Run) -> list[Control]:
+    """Return a control for each positive quantity of solid, indenter and interaction, and the load.
+
+    Quantities that are 0 have none: nothing says how large they might become.
+    """
+    return [*_fields(run), *_load(run)]
+
+
+def _fields(run: Run) -> Iterator[Control]:
+    for path, value, field in walk(run):
+        quantity = quantity_of(field) if field else None
+        if path.partition(".")[0] not in _TABLES or quantity is None:
+            continue
+        if isinstance(value, float) and value > 0 and _has_range(quantity):
+            yield Control(path, path.rpartition(".")[2].replace("_", " "), quantity, value)
+
+
+def _has_range(quantity: Quantity) -> bool:
+    bounded = quantity.at_most is not None or quantity.below is not None
+    return bounded or quantity.unit not in ("1", "rad")
+
+
+def _load(run: Run) -> Iterator[Control]:
+    loading = run.loading
+    quantity = loading.prescription.quantity()
+    last = max(loading.values, key=abs)
+    if last > 0 and not loading.samples:
+        label = f"largest {loading.prescribed.replace('_', ' ')}"
+        yield Control(f"loading.{loading.prescribed}", label, quantity, last)
+
+
+def changed(document: Mapping[str, Any], control: Control, text: str) -> dict[str, Any]:
+    """Return a run document with a new value of a control, given as text with its unit.
+
+    All load steps change in proportion to their largest.
+
+    Raises
+    ------
+    ConfigError
+        The text is not an allowed value; the error names the path of the control.
+    """
+    try:
+        value: Any = float(text)
+    except ValueError:
+        value = text
+    try:
+        number = control.quantity(value)
+    except ValueError as error:
+        raise ConfigError(str(error), control.path) from None
+    if control.path.startswith("loading."):
+        key = control.path.partition(".")[2]
+        steps = document["loading"][key]
+        factor = number / max(map(abs, steps))
+        return dict(replaced(document, control.path, [step * factor for step in steps]))
+    return dict(replaced(document, control.path, value))
+
+
+def document(run: Run) -> dict[str, Any]:
+    """Return a run as a document in SI that makes an equal one, with its load steps as a list."""
+    given: dict[str, Any] = run.model_dump(mode="json", exclude_unset=True, exclude_none=True)
+    if not run.loading.samples:
+        key = f"loading.{run.loading.prescribed}"
+        given = dict(replaced(given, key, list(run.loading.values)))
+    return given
+
+
+def sticking(given: Mapping[str, Any], work_of_adhesion: str) -> dict[str, Any]:
+    """Return a run document with a contact that sticks, pulled off after it is pressed in.
+
+    The load steps go back to half the largest depth above the surface.
+    """
+    key = Run.from_mapping(given).loading.prescribed
+    steps = given["loading"][key]
+    back = [-steps[-1] * share / 4 for share in (0, 1, 2)]
+    path = [*steps, *reversed(steps[:-1]), *back]
+    loaded = dict(replaced(given, f"loading.{key}", path))
+    return loaded | {"interaction": {"type": "jkr", "work_of_adhesion": work_of_adhesion}}
+
+
+def letting_go(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a run document without an interaction, and with the steps up to the deepest."""
+    key = Run.from_mapping(given).loading.prescribed
+    steps = given["loading"][key]
+    loaded = dict(replaced(given, f"loading.{key}", steps[: steps.index(max(steps)) + 1]))
+    return {name: table for name, table in loaded.items() if name != "interaction"}
