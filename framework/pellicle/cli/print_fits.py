@@ -45,7 +45,9 @@ def print_fit(fit: FitResult) -> None:
 
 
 def print_notes(fit: FitResult) -> None:
-    """Print the warnings of a fit."""
+    """Print the warnings and notes of a fit."""
+    for warning in fit.warnings:
+        echo(f"warning: {warning}", err=True)
     for note in fit.notes:
         echo(f"note: {note}", err=True)
 

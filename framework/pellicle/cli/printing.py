@@ -160,8 +160,7 @@ def print_json(value: object) -> None:
     """Print JSON in ASCII, which every code page contains; numbers that are not finite are null."""
     import json
 
-    json.dump(_plain(value), sys.stdout, indent=2, allow_nan=False)
-    sys.stdout.write("\n")
+    sys.stdout.write(json.dumps(_plain(value), indent=2, allow_nan=False) + "\n")
 
 
 def _plain(value: object) -> object:

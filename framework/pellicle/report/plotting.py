@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 
 _MOST_NAMED = 10
 _MOST_MARKED = 80
-_MOST_LEGS = 4
+MOST_LEGS = 4
+"""Largest number of legs of a path in time that are told apart by their style."""
 DIVERGING = "RdBu_r"
 """The colours of fields that are negative where an interaction pulls."""
 RETRACTION = (0, (2.5, 1.2))
@@ -462,8 +463,7 @@ def _curve(
     shown, shown_x = wording(data[series[0][0]]), wording(data[against])
     good = data["converged"].values.astype(bool)
     pulls, path = has_interaction(data), legs(data["depth"].values)
-    # More legs, those of an oscillation, are not told apart by their style.
-    hysteretic = pulls or (has_times(data) and len(path) <= _MOST_LEGS)
+    hysteretic = pulls or (has_times(data) and len(path) <= MOST_LEGS)
     for number, (variable, label, style) in enumerate(series):
         x = data[against].values * shown_x.scale.factor
         y = data[variable].values * shown.scale.factor
