@@ -27,7 +27,7 @@ from pellicle.results.derived import constants
 from pellicle.results.variables import FIELDS, VARIABLES, corrected_area, names_of
 
 from .component_field import FromRegistry
-from .coordinates import Coordinate, as_json, coordinate
+from .coordinates import Coordinate, as_json, coordinate, tell_apart
 from .points import Point, points_of
 from .run import Run
 
@@ -149,11 +149,13 @@ class Study(FromFile):
 
     def coordinates(self) -> dict[str, tuple[str, Coordinate]]:
         """Return dimension and values, in SI, of each varied parameter."""
-        return {
+        coordinates = {
             key: (dimension, coordinate(key, values, self._runs_along(number)))
             for number, (dimension, axes) in enumerate(self.dimensions.items())
             for key, values in axes.items()
         }
+        tell_apart({key: axis for key, (_, axis) in coordinates.items()})
+        return coordinates
 
     def _runs_along(self, number: int) -> list[Run]:
         """Return a run for each value along a dimension, at the first value of all others."""
