@@ -80,7 +80,7 @@ def test_adds_variables(file: Path) -> None:
     header = next(file.parent.glob("*.csv")).read_text(encoding="utf-8").partition("\n")[0]
     assert {"zone_area [m2]", "zone_width [m]", "energy [J]"} <= {*header.split(",")}
     shown = CliRunner().invoke(app, ["show", str(file.with_suffix(".h5"))]).output
-    assert "zone_area [m2]" in shown
+    assert "area of the zone [" in shown
     hard = pl.run(
         run.model_copy(update={"interaction": None, "loading": pl.Loading(depth="5 um")}),
         progress=False,
@@ -99,7 +99,7 @@ def test_work_of_adhesion_on_the_command_line(file: Path) -> None:
     assert pl.load(result).configuration["interaction"]["work_of_adhesion"] == pytest.approx(0.04)
     done = CliRunner().invoke(app, [*command, f'{WORK}="5 mJ"'])
     assert done.exit_code == 2
-    assert f"{WORK}: '5 mJ' measures" in done.output
+    assert f"{WORK}: '5 mJ' is an energy, not an energy per area" in done.output
 
 
 def test_study_varies_the_work_of_adhesion() -> None:
@@ -112,6 +112,21 @@ def test_study_varies_the_work_of_adhesion() -> None:
     assert table["converged"].all()
     assert np.diff(table["force"].values.ravel()).item() < 0
     np.testing.assert_allclose(table[WORK], [0.04, 0.06])
+
+
+@pytest.mark.parametrize("quiet", [[], ["--quiet"]])
+@pytest.mark.filterwarnings("default:.*beyond the theory")
+def test_study_with_steep_slopes(tmp_path: Path, quiet: list[str]) -> None:
+    """The command says once of how many runs, as `show` does, and counts them as converged."""
+    file, out = tmp_path / "steep.toml", str(tmp_path / "out")
+    steep = FILE.replace("0.6 mm", "80 um").replace("30 kPa", "100 kPa")
+    steep = steep.replace('["5 um", "0 um", "-2 um"]', '"3 um"')
+    vary = '[study.vary]\n"indenter.radius" = ["20 um", "100 um"]\n'
+    file.write_text(steep + vary, encoding="utf-8")
+    for command in (["run", str(file), "-o", out, *quiet], ["show", out]):
+        done = CliRunner().invoke(app, command)
+        assert done.exit_code == 0, done.output
+        assert done.output.count("of 2 runs, in 1 slopes in contact are beyond the theory") == 1
 
 
 def test_two_tables(file: Path) -> None:
