@@ -18,6 +18,9 @@ _OPERATOR = {"free": 9.0, "periodic": 4.75}
 _LINE = 14.0
 # The solver active_set in full contact, and any solver without `HasMemory`.
 _SOLVER = {"free": 17.4, "periodic": 11.5}
+# What a solve takes more where an interaction acts: eight rounds of three fields, from which the
+# next is extrapolated, and the fields of two rounds.
+_STICKS = 41.0
 # A load step in the result: pressure, displacement and gap, and a byte per cell for the contact.
 _STEP = 3 + 1 / 8
 # The same step in the compressed file that is assembled in memory. Blocks that the solver has freed
@@ -31,13 +34,16 @@ _VERSION_2 = "memory.max", "memory.current", "inactive_file"
 _VERSION_1 = "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"
 
 
-def estimate(grid: Grid, steps: int, solver: object = None, history: float = 0.0) -> float:
+def estimate(
+    grid: Grid, steps: int, solver: object = None, history: float = 0.0, *, sticks: bool = False
+) -> float:
     """Return the peak memory [bytes] of a run on ``grid``, without that of the libraries.
 
     The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
     of the contact is unknown, so full contact is assumed, which takes up to a quarter more memory
     than a small contact. A ``solver`` that is not a `HasMemory` counts as active_set.
-    ``history`` is what a solid that relaxes needs for its memory, in arrays of the grid's shape.
+    ``history`` is what a solid that relaxes needs for its memory, in arrays of the grid's shape;
+    ``sticks`` says whether an interaction acts.
     """
     try:
         cells = float(grid.points[0] * grid.points[1])
@@ -45,6 +51,8 @@ def estimate(grid: Grid, steps: int, solver: object = None, history: float = 0.0
         return math.inf
     operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
     iterating = solver.arrays(grid) if isinstance(solver, HasMemory) else _SOLVER[grid.boundary]
+    if sticks:
+        iterating += _STICKS
     arrays = operator + iterating + history + (_STEP + _SERIALISED) * (steps - 1)
     return _FIXED + 8 * cells * arrays
 
@@ -102,7 +110,9 @@ def _lines(path: Path) -> list[str]:
         return []
 
 
-def require(grid: Grid, steps: int, solver: object = None, history: float = 0.0) -> None:
+def require(
+    grid: Grid, steps: int, solver: object = None, history: float = 0.0, *, sticks: bool = False
+) -> None:
     """Refuse a run that needs more memory than is available.
 
     Raises
@@ -110,7 +120,7 @@ def require(grid: Grid, steps: int, solver: object = None, history: float = 0.0)
     ConfigError
         The estimate exceeds the available memory.
     """
-    needed, limit = estimate(grid, steps, solver, history), available()
+    needed, limit = estimate(grid, steps, solver, history, sticks=sticks), available()
     if limit is not None and needed > limit:
         nx, ny = grid.points
         raise ConfigError(

@@ -114,6 +114,21 @@ def test_study_varies_the_work_of_adhesion() -> None:
     np.testing.assert_allclose(table[WORK], [0.04, 0.06])
 
 
+@pytest.mark.parametrize("quiet", [[], ["--quiet"]])
+@pytest.mark.filterwarnings("default:.*beyond the theory")
+def test_study_with_steep_slopes(tmp_path: Path, quiet: list[str]) -> None:
+    """The command says once of how many runs, as `show` does, and counts them as converged."""
+    file, out = tmp_path / "steep.toml", str(tmp_path / "out")
+    steep = FILE.replace("0.6 mm", "80 um").replace("30 kPa", "100 kPa")
+    steep = steep.replace('["5 um", "0 um", "-2 um"]', '"3 um"')
+    vary = '[study.vary]\n"indenter.radius" = ["20 um", "100 um"]\n'
+    file.write_text(steep + vary, encoding="utf-8")
+    for command in (["run", str(file), "-o", out, *quiet], ["show", out]):
+        done = CliRunner().invoke(app, command)
+        assert done.exit_code == 0, done.output
+        assert done.output.count("of 2 runs, in 1 slopes in contact are beyond the theory") == 1
+
+
 def test_two_tables(file: Path) -> None:
     """A second table is refused in words."""
     for extra in ('[interaction]\ntype = "jkr"\n', '[[interaction]]\ntype = "jkr"\n'):

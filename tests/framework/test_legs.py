@@ -131,10 +131,19 @@ def test_legs_at_the_command_line(tmp_path: Path) -> None:
     assert head.split()[:5] == ["step", "time", "[s]", "depth", "[m]"]
 
 
-def test_a_study_varies_legs() -> None:
+def test_a_study_varies_whole_paths() -> None:
+    """Paths in legs may differ in their number of steps."""
+    study = pl.Study(run=RUN, vary={"loading.depth": [LEGS[:1], LEGS[:2]]})
+    assert [len(point.run.loading.values) for point in study.points] == [4, 6]
+    again = pl.Study.from_json(study.to_json())
+    assert [point.run for point in again.points] == [point.run for point in study.points]
+
+
+@pytest.mark.parametrize("run", [RUN, pl.Run(**RUN)], ids=["mapping", "run"])
+def test_a_study_varies_legs(run: Any) -> None:
     """The frequency of an oscillation and the end of a leg are axes, with their units."""
     study = pl.Study(
-        run=RUN,
+        run=run,
         vary={
             "loading.depth.2.frequency": ["1 Hz", "10 Hz"],
             "loading.depth.0.to": ["1 um", "2 um"],

@@ -30,6 +30,7 @@ def test_estimate_grows_with_cells_and_steps(boundary: str) -> None:
 
 
 SIZE = 1e-3
+JKR = {"type": "jkr", "work_of_adhesion": 0.02, "estimate_error": False}
 OUTPUTS = ["hdf5", "csv", "figures", "maps", "html", "vtk", "patches", "spectrum", "distributions"]
 HALF_SPACE = {"type": "half_space", "reduced_modulus": 1e4}
 SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.05}
@@ -73,6 +74,8 @@ KINDS = {
     "free, contact stiffness": _kind(512, loading={"depth": 2e-5, "stiffness": True}),
     "free, prescribed area": _kind(512, loading={"contact_radius": 1e-4}),
     "free, many outputs": _kind(1024, **ALL_OUTPUTS),
+    "free, sticks": _kind(384, interaction=JKR, loading={"depth": [2e-5, 1e-5]}),
+    "periodic, sticks": _kind(384, "periodic", interaction=JKR, loading={"depth": [2e-6, 1e-6]}),
     "periodic, little contact": _kind(1024, "periodic"),
     "periodic, full contact": _kind(1024, "periodic", **FULL),
     "periodic, conjugate_gradient": _kind(512, "periodic", solver={"type": "conjugate_gradient"}),
@@ -130,8 +133,9 @@ def growths() -> dict[str, int]:
 def test_estimate_is_the_growth_of_the_peak(kind: str, growths: dict[str, int]) -> None:
     """The estimate is between 0.95 and 1.3 times the measured growth of the peak."""
     run = pl.Run(**KINDS[kind])
+    steps, sticks = len(run.loading.values), run.interaction is not None
     history = history_arrays(run)
-    estimate = memory.estimate(run.grid, len(run.loading.values), run.solver, history)
+    estimate = memory.estimate(run.grid, steps, run.solver, history, sticks=sticks)
     assert 0.95 <= estimate / growths[kind] <= 1.3
 
 

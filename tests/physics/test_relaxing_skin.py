@@ -83,6 +83,19 @@ def test_force_hardly_depends_on_the_domain() -> None:
     assert (near[-1] / near[0]) < 0.35
 
 
+def test_legs_are_the_same_path() -> None:
+    """A first leg rises from the undeformed surface, as times do from a depth of 0 at 0 s."""
+    times = np.array([0.0, 0.25, 0.5, 0.75, 1.0, 2.0, 3.0])
+    listed = run_of(30, times, np.minimum(times, 1.0))
+    legs = [{"to": 1.0, "time": 1.0, "num": 4}, {"hold": 2.0, "num": 2}]
+    in_legs = listed | {"loading": {"depth": legs}}
+    expected, force = (
+        pl.run(run, progress=False).dataset["force"].values for run in (listed, in_legs)
+    )
+    np.testing.assert_allclose(force, expected[1:], rtol=1e-9)
+    assert force[-1] < 0.6 * force[3]
+
+
 PARABOLOID = {"type": "paraboloid", "radius": 20.0}
 DEPTHS = np.array([0.1, 0.14, 0.18, 0.08])
 

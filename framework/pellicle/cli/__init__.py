@@ -14,7 +14,7 @@ from typer.core import TyperGroup
 
 from pellicle.errors import PellicleError
 
-from . import explore, fit, new, plot, plugins, run, schema, show, validate
+from . import check, explore, fit, new, plot, plugins, run, schema, show, validate
 from .encoding import encode_readably
 from .exits import BAD_INPUT, INTERRUPTED
 from .printing import print_warning
@@ -58,6 +58,7 @@ app = typer.Typer(
 # In the order of the help.
 for command in (
     run.run,
+    check.check,
     explore.explore,
     fit.fit,
     plugins.plugins,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from pellicle.fitting.many import ManyFits
     from pellicle.fitting.result import FitResult
 
+_UNITS = {"reduced_modulus": "Pa", "tension": "N/m", "thickness": "m", "contact_point": "m"}
+"""Parameters that a line has, if a fit has them."""
 _LINES = 50
 """Largest number of curves that are listed although a table is written."""
 
@@ -32,6 +34,8 @@ def print_fit(fit: FitResult) -> None:
         print_table(list(curves[0]), curves)
     for sentence in fit.sentences:
         typer.echo(sentence)
+    for warning in fit.warnings:
+        typer.echo(f"warning: {warning}", err=True)
     for note in fit.notes:
         typer.echo(f"note: {note}", err=True)
 
@@ -52,7 +56,8 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None) -> None:
     if quiet:
         return
     if directory is None or len(fits.rows) <= _LINES:
-        lines = [_line(row) for row in fits.rows]
+        names = [name for name in _UNITS if any(name in row for row in fits.rows)]
+        lines = [_line(row, names) for row in fits.rows]
         print_table(list(lines[0]), lines)
     else:
         typer.echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
@@ -74,14 +79,14 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None) -> None:
         print_table(list(groups[0]), groups)
 
 
-def _line(row: Mapping[str, Any]) -> dict[str, str]:
-    """Return the line of one curve; the table in the folder has its sentences."""
+def _line(row: Mapping[str, Any], names: Sequence[str]) -> dict[str, str]:
+    """Return the line of one curve with some parameters; the table has its sentences."""
     from pellicle.fitting.result import interval_text
 
     line = {"curve": row["curve"]}
-    for name, unit in (("reduced_modulus", "Pa"), ("tension", "N/m"), ("contact_point", "m")):
+    for name in names:
         estimate = row.get(name)
-        line[f"{name} [{unit}]"] = f"{estimate['value']:.4g}" if estimate else ""
+        line[f"{name} [{_UNITS[name]}]"] = f"{estimate['value']:.4g}" if estimate else ""
         if name != "contact_point":
             interval = interval_text(estimate["low"], estimate["high"]) if estimate else ""
             fixed = estimate and estimate["held"]

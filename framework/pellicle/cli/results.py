@@ -112,7 +112,7 @@ def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
 
 def print_runs(table: xr.Dataset) -> None:
     """Print parameters, last step and verdict of each run of a study, and its path."""
-    from pellicle.studies.summary import caveats, paths, rows
+    from pellicle.studies.summary import paths, rows
 
     for caption, lines in (("", rows(table)), ("path:", paths(table))):
         if lines:
@@ -120,8 +120,6 @@ def print_runs(table: xr.Dataset) -> None:
                 typer.echo(caption)
             names = list(lines[0])
             print_table(names, lines, _heads(table, [name for name in names if name in table]))
-    for message in caveats(table):
-        typer.echo(message, err=True)
 
 
 def exit_by_convergence(result: Result) -> None:

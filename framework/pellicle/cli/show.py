@@ -28,11 +28,14 @@ def show(
     """Print the steps of a result, or the runs of a study, and its origin."""
     from pellicle.results.result import load
     from pellicle.studies.runner import is_table, read
+    from pellicle.studies.summary import caveats
 
     if is_table(results):
         table, _ = read(results)
         print_origin(table)
         print_runs(table)
+        for message in caveats(table):
+            typer.echo(message, err=True)
         exit_by_status(table)
         return
     result = load(results)

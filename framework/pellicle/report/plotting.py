@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 
 _MOST_NAMED = 10
 _MOST_MARKED = 80
-_MOST_LEGS = 4
+MOST_LEGS = 4
+"""Largest number of legs of a path in time that are told apart by their style."""
 DIVERGING = "RdBu_r"
 """The colours of fields that are negative where an interaction pulls."""
 RETRACTION = (0, (2.5, 1.2))
@@ -476,8 +477,7 @@ def _curve(
     x_scale, x_name = axis_unit(data[against].values, against_unit)
     good = data["converged"].values.astype(bool)
     pulls, path = has_interaction(data), legs(data["depth"].values)
-    # More legs, those of an oscillation, are not told apart by their style.
-    hysteretic = pulls or (has_times(data) and len(path) <= _MOST_LEGS)
+    hysteretic = pulls or (has_times(data) and len(path) <= MOST_LEGS)
     for number, (variable, label, style) in enumerate(series):
         x, y = data[against].values * x_scale, data[variable].values * scale
         if hysteretic:

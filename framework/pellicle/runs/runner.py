@@ -124,7 +124,8 @@ def execute(
     """
     import scipy.fft
 
-    memory.require(run.grid, len(run.loading.values), run.solver, history_arrays(run))
+    history, sticks = history_arrays(run), run.interaction is not None
+    memory.require(run.grid, len(run.loading.values), run.solver, history, sticks=sticks)
     steps = Steps(len(run.loading.values))
     outputs = [output for output in outputs if journal and output.scope != "study"]
     files: tuple[Path, ...] = ()

@@ -78,18 +78,21 @@ def judge(run: Run, index: int, step: Reached, stiffness: Stiffness | None) -> t
     sticks = run.interaction is not None and bool(contact.any())
     if (problem.control.value > least or sticks) and cells < min(enough, contact.size):
         return Status.COARSE, Status.COARSE.value.format(cells=cells or "none")
-    least = least_domain(run, index, equilibrium.contact)
-    if least > min(run.grid.size):
+    doubt = run.interaction and _doubt(run, run.interaction, equilibrium)
+    if doubt:
+        return doubt
+    needed = least_domain(run, index, contact)
+    if needed > min(run.grid.size):
         return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
-            size="{:g} × {:g} m".format(*run.grid.size), least=least
+            size="{:g} × {:g} m".format(*run.grid.size), least=needed
         )
-    if run.interaction:
-        return _doubt(run, run.interaction, equilibrium)
     return Status.CONVERGED, Status.CONVERGED.value
 
 
-def _doubt(run: Run, interaction: Interaction, equilibrium: Equilibrium) -> tuple[Status, str]:
-    """Return the status of a step that is solved, where an interaction acts."""
+def _doubt(
+    run: Run, interaction: Interaction, equilibrium: Equilibrium
+) -> tuple[Status, str] | None:
+    """Return the caveat of a step that is solved, where an interaction acts, if there is one."""
     width = equilibrium.zone_width / run.grid.cell_size
     if width < interaction.least_cells:
         return Status.COARSE_ZONE, Status.COARSE_ZONE.value.format(
@@ -101,7 +104,7 @@ def _doubt(run: Run, interaction: Interaction, equilibrium: Equilibrium) -> tupl
     )
     if slope > _STEEPEST:
         return Status.STEEP, Status.STEEP.value.format(slope=slope, most=_STEEPEST)
-    return Status.CONVERGED, Status.CONVERGED.value
+    return None
 
 
 def _not_met(step: Reached, search: Search) -> tuple[Status, str]:

@@ -31,7 +31,7 @@ from pellicle.runs.progress import ProgressReporter, StudyProgress
 from pellicle.runs.relaxation import history_arrays
 
 from . import table
-from .summary import coarse, failures, progress_of
+from .summary import caveats, failures, progress_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -56,8 +56,9 @@ class RunTask:
     @property
     def memory(self) -> int:
         """Estimated peak memory of the run [bytes]."""
-        history = history_arrays(self.run)
-        needed = memory.estimate(self.run.grid, self.steps, self.run.solver, history)
+        run = self.run
+        history, sticks = history_arrays(run), run.interaction is not None
+        needed = memory.estimate(run.grid, self.steps, run.solver, history, sticks=sticks)
         return int(min(needed, sys.maxsize))
 
     @property
@@ -227,7 +228,7 @@ def _execute(
             return Runs.of_study(read_only_dataset(whole), directory, study.to_json(as_given=True))
 
         written = runner.all_done(runner.writers(outputs, runs, directory / "study", first))
-    for message in (*messages, *(f"{message}; see status" for message in coarse(whole))):
+    for message in (*messages, *(f"{message}; see status" for message in caveats(whole))):
         warnings.warn(message, stacklevel=4)
     return StudyResult(whole, (*files.paths, *chain(*written)), resumed)
 

@@ -104,22 +104,18 @@ def failures(table: xr.Dataset) -> str:
     return f"of {len(verdicts)} runs {', '.join(parts)}" if parts else ""
 
 
-def coarse(table: xr.Dataset) -> Iterator[str]:
-    """Yield a message with the number of runs whose cells do not resolve the contact, if any."""
-    statuses = _statuses(table)
-    count = sum(any(status.is_coarse for status in run) for run in statuses)
-    if count:
-        yield f"of {len(statuses)} runs, in {count} the cells are too coarse for this contact"
-
-
 def caveats(table: xr.Dataset) -> Iterator[str]:
-    """Yield a message for each caveat but coarse cells, with the number of runs that have it."""
+    """Yield a message for each caveat, with the number of runs that have it."""
     statuses = _statuses(table)
     for caveat, reason in (
-        (Status.STEEP, "slopes in contact are beyond the theory"),
-        (Status.SMALL_DOMAIN, "the domain is small for a skin on a solid that relaxes"),
+        (
+            {status for status in Status if status.is_coarse},
+            "the cells are too coarse for this contact",
+        ),
+        ({Status.STEEP}, "slopes in contact are beyond the theory"),
+        ({Status.SMALL_DOMAIN}, "the domain is small for a skin on a solid that relaxes"),
     ):
-        if count := sum(caveat in run for run in statuses):
+        if count := sum(not caveat.isdisjoint(run) for run in statuses):
             yield f"of {len(statuses)} runs, in {count} {reason}"
 
 

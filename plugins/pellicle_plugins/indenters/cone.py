@@ -14,6 +14,7 @@ from pellicle.arrays import Array
 from pellicle.components import ForceCurve, Indenter
 from pellicle.units import Quantity
 from pellicle_plugins.analytic import master_curves
+from pellicle_plugins.analytic.layer_curves import Profile, cone_profile
 
 from .axisymmetric import Axisymmetric
 
@@ -41,6 +42,9 @@ class Cone(Axisymmetric):
 
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.cone(self.half_angle, depth, length)
+
+    def _make_layer_curves(self) -> Profile:
+        return cone_profile(self.half_angle)
 
 
 @hookimpl

@@ -17,8 +17,8 @@ from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError
 from pellicle.model.base import Model
 from pellicle.model.expression import names_in
-from pellicle.report.plotting import RETRACTION, draw_legs
-from pellicle.results.path import has_interaction, has_path
+from pellicle.report.plotting import MOST_LEGS, RETRACTION, draw_legs
+from pellicle.results.path import has_interaction, has_path, has_times
 from pellicle.results.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.analytic.reference import exact
 
@@ -75,9 +75,9 @@ class Curves(XYFigure):
     ``contact``) inside ``mean``, ``sum``, ``min`` or ``max`` over the cells. The numbers drawn are
     written as CSV beside the figure.
 
-    Where there is an interaction, a curve over the steps distinguishes approach, open markers, and
-    retraction, filled markers and short dashes; numbers of a whole path, such as ``pull_off``, make
-    a curve over the runs.
+    Where there is an interaction, or steps have times, a curve over the steps distinguishes
+    approach, open markers, and retraction, filled markers and short dashes; numbers of a whole
+    path, such as ``pull_off`` or ``loss_stiffness``, make a curve over the runs.
     """
 
     type: Literal["curves"] = "curves"
@@ -247,8 +247,11 @@ class Curves(XYFigure):
         values = np.array([column.values.ravel().astype(float) for column in columns])
         finite = np.isfinite(values).all(axis=0)
         path: list[Leg] = []
-        if has_interaction(table) and long == ["step"] and self.over is None:
+        loops = has_interaction(table) or (has_times(table) and "time" not in names_in(self.x))
+        if loops and long == ["step"] and self.over is None:
             path = legs(xr.broadcast(table["depth"], x)[0].values.ravel()[finite])
+            # The many legs of an oscillation are not told apart by their style.
+            path = path if has_interaction(table) or len(path) <= MOST_LEGS else []
         return _Points(*values[:, finite]), path
 
 

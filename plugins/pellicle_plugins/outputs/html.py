@@ -51,7 +51,7 @@ from pellicle.results.result import Result, first_message
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import VARIABLES, WALL_PRESSURE, names_of
-from pellicle.studies.summary import caveats, coarse, failures, progress_of, reasons, runs_of
+from pellicle.studies.summary import caveats, failures, progress_of, reasons, runs_of
 from pellicle.units import axis_unit, readable
 
 if TYPE_CHECKING:
@@ -256,7 +256,7 @@ def _status(result: Result) -> Notice:
 
 
 def _status_of_study(table: xr.Dataset, count: int) -> Notice:
-    failed, warnings = failures(table), [*coarse(table), *caveats(table)]
+    failed, warnings = failures(table), [*caveats(table)]
     if not failed:
         return Notice(f"Every step of all {count} runs converged.", not warnings, warnings)
     return Notice(f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings])
