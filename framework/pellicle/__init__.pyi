@@ -8,10 +8,12 @@ from .components import Executor as Executor
 from .components import Force as Force
 from .components import ForceCurve as ForceCurve
 from .components import HasForceCurve as HasForceCurve
+from .components import HasLayerForceCurve as HasLayerForceCurve
 from .components import Indenter as Indenter
 from .components import Interaction as Interaction
 from .components import IterativeSolver as IterativeSolver
 from .components import Kernel as Kernel
+from .components import LayerForceCurve as LayerForceCurve
 from .components import Output as Output
 from .components import Prescription as Prescription
 from .components import Runs as Runs
@@ -33,6 +35,8 @@ from .factories import interaction as interaction
 from .factories import kernel as kernel
 from .factories import solver as solver
 from .fitting.config import FitConfig as FitConfig
+from .fitting.curves.curve import Curve as Curve
+from .fitting.curves.reading import read_curves as read_curves
 from .fitting.fit import Fit as Fit
 from .fitting.fit import fit as fit
 from .fitting.many import fit_many as fit_many

@@ -28,12 +28,15 @@ from .executor import Workers as Workers
 from .indenter import Footprint as Footprint
 from .indenter import ForceCurve as ForceCurve
 from .indenter import HasForceCurve as HasForceCurve
+from .indenter import HasLayerForceCurve as HasLayerForceCurve
 from .indenter import Indenter as Indenter
 from .indenter import IsShallowLimit as IsShallowLimit
+from .indenter import LayerForceCurve as LayerForceCurve
 from .interaction import Interaction as Interaction
 from .kernel import HasRelaxation as HasRelaxation
 from .kernel import HasTimeSpan as HasTimeSpan
 from .kernel import Kernel as Kernel
+from .kernel import MayBeBondedLayer as MayBeBondedLayer
 from .output import Output as Output
 from .output import Runs as Runs
 from .prescription import Prescription as Prescription

@@ -13,7 +13,7 @@ from contextlib import closing
 from dataclasses import replace
 from numbers import Integral
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any, TypeVar, cast, get_args
 
 import numpy as np
 
@@ -30,10 +30,18 @@ from pellicle.grid import LARGEST, Grid
 from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
 from pellicle.numerics.relaxation import Branch
 from pellicle.numerics.solution import Solution, State, Stop
+from pellicle.units import DIGITS, readable
 
 from .correction import AreaCorrection
 from .executor import AnyTask, Executor, Outcome, Report, Say
-from .indenter import Footprint, ForceCurve, HasForceCurve, Indenter
+from .indenter import (
+    Footprint,
+    ForceCurve,
+    HasForceCurve,
+    HasLayerForceCurve,
+    Indenter,
+    LayerForceCurve,
+)
 from .kernel import HasRelaxation, Kernel
 from .output import Output, Runs, stem_of
 from .prescription import Prescription, Search, Setting
@@ -43,6 +51,7 @@ from .solver import Monitor, Solver
 # How Python refuses a State used as an array, which it was in earlier versions.
 _OUTDATED = "'State'|State is not an array|can't multiply sequence|argument 'pressure'"
 _ROUNDING = 1e-12
+_Curve = TypeVar("_Curve", ForceCurve, LayerForceCurve)
 
 
 def profile_of(indenter: Indenter, grid: Grid) -> Array:
@@ -70,10 +79,20 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
         raise PluginError(
             f"{name}: footprint is {shown(footprint)}; it has to be 'unbounded' or 'domain'"
         )
-    if not (profile <= 0).all() or not np.isfinite(profile).any():
+    if np.isneginf(profile).all():
+        cells, domain = (
+            " × ".join(readable(edge, "m", DIGITS) for edge in edges)
+            for edges in (grid.spacing, grid.size)
+        )
         raise ConfigError(
-            f"the profile of {name} has values that are positive or NaN, or none that is finite; "
-            "it must be ≤ 0 everywhere and 0 at the lowest point",
+            f"cells of {cells} are wider than {name}, which lies over no cell centre; use a "
+            f"smaller grid.size, which is {domain}, or more points",
+            "indenter",
+        )
+    if not (profile <= 0).all():
+        raise ConfigError(
+            f"the profile of {name} has values that are positive or NaN; it must be ≤ 0 "
+            "everywhere and 0 at the lowest point",
             "indenter",
         )
     height = -float(profile.min(where=np.isfinite(profile), initial=0.0))
@@ -164,24 +183,50 @@ def force_curve_of(indenter: HasForceCurve, depth: Array, length: float) -> Forc
     """
     with errors_attributed_to(indenter):
         value = indenter.force_curve(read_only(depth), length)
-    if not isinstance(value, ForceCurve):
+    call = "force_curve(depth, length)"
+    return _checked_curve(indenter, call, ForceCurve, value, depth, length)
+
+
+def layer_force_curve_of(
+    indenter: HasLayerForceCurve,
+    depth: Array,
+    length: float,
+    thickness: float,
+    poissons_ratio: float,
+) -> LayerForceCurve:
+    """Return force over reduced modulus on a layer and its derivatives, as `force_curve_of`.
+
+    Raises
+    ------
+    PluginError
+        The curve is not four arrays of the shape of ``depth``, finite at every finite depth.
+    """
+    with errors_attributed_to(indenter):
+        value = indenter.layer_force_curve(read_only(depth), length, thickness, poissons_ratio)
+    call = "layer_force_curve(depth, length, thickness, poissons_ratio)"
+    return _checked_curve(indenter, call, LayerForceCurve, value, depth, length)
+
+
+def _checked_curve(
+    indenter: object, call: str, kind: type[_Curve], value: object, depth: Array, length: float
+) -> _Curve:
+    """Return a force curve of finite arrays of the shape of ``depth``, or raise PluginError."""
+    name = component_name(indenter)
+    if not isinstance(value, kind):
         raise PluginError(
-            f"{component_name(indenter)}: force_curve(depth, length) returned {shown(value)}; "
-            "it has to return a pellicle.ForceCurve"
+            f"{name}: {call} returned {shown(value)}; it has to return a pellicle.{kind.__name__}"
         )
-    curve = ForceCurve(
-        *(
-            real_array(indenter, f"force_curve(depth, length).{name}", values, depth.shape)
-            for name, values in value._asdict().items()
-        )
-    )
-    for name, values in curve._asdict().items():
+    arrays = {
+        part: real_array(indenter, f"{call}.{part}", values, depth.shape)
+        for part, values in value._asdict().items()
+    }
+    for part, values in arrays.items():
         if not np.isfinite(values[np.isfinite(depth)]).all():
             raise PluginError(
-                f"{component_name(indenter)}: force_curve(depth, length).{name} has values that "
-                f"are NaN or infinite, for length = {length:.3g} m; it has to be finite"
+                f"{name}: {call}.{part} has values that are NaN or infinite, "
+                f"for length = {length:.3g} m; it has to be finite"
             )
-    return curve
+    return kind(**arrays)
 
 
 def solution_of(

@@ -73,6 +73,38 @@ class HasForceCurve(Protocol):
         ...
 
 
+class LayerForceCurve(NamedTuple):
+    """Force over reduced modulus at given depths, and its derivatives, each of shape (n,)."""
+
+    force: Array
+    """P/E* [m²]."""
+    by_depth: Array
+    """∂(P/E*)/∂δ [m]."""
+    by_length: Array
+    """∂(P/E*)/∂s [m]."""
+    by_thickness: Array
+    """∂(P/E*)/∂h [m]."""
+
+
+@runtime_checkable
+class HasLayerForceCurve(Protocol):
+    """An indenter with a known force on a layer bonded to a rigid base, for `pellicle.fit`."""
+
+    def layer_depth_limit(self, thickness: float, poissons_ratio: float) -> float:
+        """Return the largest depth [m] at which the curve is valid, whatever the tension."""
+        ...
+
+    def layer_force_curve(
+        self, depth: Array, length: float, thickness: float, poissons_ratio: float
+    ) -> LayerForceCurve:
+        """Return force and partial derivatives, all 0 at ``depth`` ≤ 0, where there is no contact.
+
+        ``depth`` [m] has shape (n,); ``length`` ≥ 0 is the elastocapillary length s = 2τ₀/E* [m],
+        ``thickness`` > 0 that of the layer, h [m]; 0 ≤ ``poissons_ratio`` ≤ ½.
+        """
+        ...
+
+
 @runtime_checkable
 class IsShallowLimit(Protocol):
     """An indenter that approximates another shape at small depths."""

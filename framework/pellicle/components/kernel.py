@@ -60,6 +60,15 @@ class HasRelaxation(Protocol):
 
 
 @runtime_checkable
+class MayBeBondedLayer(Protocol):
+    """A kernel that may be an elastic layer bonded to a rigid base, under a tension at most."""
+
+    def bonded_layer(self) -> tuple[float, float] | None:
+        """Return thickness [m] and Poisson's ratio of the layer; None if it is anything else."""
+        ...
+
+
+@runtime_checkable
 class HasTimeSpan(Protocol):
     """A kernel whose relaxation is meant for some times only."""
 

@@ -106,7 +106,11 @@ class IterativeSolver(Solver):
 
     max_iterations: Annotated[
         int,
-        Field(gt=0, description="iterations after which a step is abandoned and marked"),
+        Field(
+            gt=0,
+            title="iteration limit",
+            description="iterations after which a step is abandoned and marked",
+        ),
     ] = 20_000
 
     @abstractmethod

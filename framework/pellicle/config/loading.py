@@ -111,7 +111,7 @@ class Loading(Model):
         given = getattr(self, self.prescribed)
         return sampled(given) if isinstance(given[0], Leg) else ()
 
-    @property
+    @cached_property
     def values(self) -> tuple[float, ...]:
         """The load steps in order, SI."""
         if self.samples:
@@ -119,12 +119,12 @@ class Loading(Model):
         values: tuple[float, ...] = getattr(self, self.prescribed)
         return values
 
-    @property
+    @cached_property
     def times(self) -> tuple[float, ...] | None:
         """Time [s] at the end of each load step, given or that of the legs; None without times."""
         return tuple(sample.time for sample in self.samples) if self.samples else self.time
 
-    @property
+    @cached_property
     def durations(self) -> tuple[float, ...]:
         """Duration [s] of each load step; 0 for a jump.
 
@@ -134,7 +134,7 @@ class Loading(Model):
         start = (0.0,) if self.samples else times[:1]
         return tuple(after - before for before, after in itertools.pairwise((*start, *times)))
 
-    @property
+    @cached_property
     def oscillates(self) -> bool:
         """Whether a leg is an oscillation."""
         return not all(math.isnan(sample.cycle) for sample in self.samples)

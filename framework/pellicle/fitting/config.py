@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -16,7 +18,12 @@ from pydantic import (
     model_validator,
 )
 
-from pellicle.components import Executor, HasForceCurve, Indenter
+from pellicle.components import (
+    Executor,
+    HasForceCurve,
+    HasLayerForceCurve,
+    Indenter,
+)
 from pellicle.config.component_field import FromRegistry
 from pellicle.config.study import DEFAULT_EXECUTOR
 from pellicle.errors import ConfigError, shown
@@ -32,8 +39,9 @@ from .curves.columns import Calibration
 from .curves.curve import LARGEST, Segment
 from .curves.readers import CurveFile, Curves, Source, expanded, gather
 from .models.force_model import ForceModel, described, tension_model
+from .models.layer import FreeLayerModel, known_layer
 from .models.simulation import GRID_POINTS, Simulation
-from .models.solid import DEFAULT_KERNEL, Solid, solid
+from .models.solid import DEFAULT_KERNEL, Solid, layer_table, solid
 from .parameters import CONTACT_POINT, MODULUS, TENSION
 from .population.judgement import group_pattern
 from .population.rules import rules
@@ -42,6 +50,8 @@ Baseline = Literal["none", "offset", "slope"]
 
 FIXABLE = {parameter.name: parameter for parameter in (CONTACT_POINT, MODULUS, TENSION)}
 """Parameters that can be fixed, by their names."""
+FREE = "free"
+"""Thickness that the fit determines."""
 _COMPONENTS = ("indenter", "kernel", "executor")
 
 
@@ -85,6 +95,16 @@ def _fixed(value: object) -> dict[str, float]:
     return values
 
 
+def _thickness(value: object) -> float | str:
+    """Return a thickness in m, or "free"."""
+    if value == FREE:
+        return FREE
+    try:
+        return Quantity("m", at_least=1 / LARGEST, at_most=LARGEST)(value)
+    except ValueError as error:
+        raise ConfigError(f'{error}; or "{FREE}"') from None
+
+
 def _from_folder(data: dict[str, Any], folder: Path) -> dict[str, Any]:
     """Return the content of a file with its relative paths starting from ``folder``."""
     curves, cache = data.get("curves"), data.get("cache")
@@ -119,6 +139,14 @@ class FitConfig(FromFile, Calibration):
         dict[str, Any] | None,
         BeforeValidator(_component),
         Field(description="the solid without its modulus and tension; a half-space if not given"),
+    ] = None
+    thickness: Annotated[
+        float | str | None,
+        PlainValidator(_thickness, json_schema_input_type=float | str | None),
+        Field(
+            description="of a layer bonded to a rigid base, in place of a half-space; "
+            f'"{FREE}" fits it. It needs poissons_ratio'
+        ),
     ] = None
     fix: Annotated[
         dict[str, float],
@@ -174,9 +202,26 @@ class FitConfig(FromFile, Calibration):
                 "needs pool = true; fits of single curves always have these intervals",
                 "contact_points",
             )
+        if self.thickness is not None:
+            self._solid = self._layer()
         if self.kernel is not None:
             self._solid = solid(self.kernel, self.poissons_ratio)
         return self
+
+    def _layer(self) -> Solid | None:
+        """Return the solid of a layer whose thickness is given."""
+        if self.kernel is not None:
+            raise ConfigError("cannot be given with a kernel; leave out one of them", "thickness")
+        if self.poissons_ratio is None:
+            raise ConfigError(
+                "is missing: the force on a layer depends on it as well as on the thickness; give "
+                "it, such as 0.5 for a gel",
+                "poissons_ratio",
+            )
+        if isinstance(self.thickness, str):
+            return None
+        assert self.thickness is not None
+        return solid(layer_table(self.poissons_ratio, thickness=self.thickness))
 
     @classmethod
     def from_toml(cls, path: str | Path, overrides: Iterable[str] = ()) -> Self:
@@ -197,6 +242,21 @@ class FitConfig(FromFile, Calibration):
             A component that it names is broken.
         """
         return cls.merged(path, overrides)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Return the configuration in a JSON text, such as `to_json` or the JSON of a fit.
+
+        Raises
+        ------
+        ConfigError
+            The text is not JSON, or holds no configuration.
+        """
+        with suppress(ValueError):
+            data = json.loads(text)
+            if isinstance(data, dict) and isinstance(data.get("configuration"), dict):
+                text = json.dumps(data["configuration"])
+        return super().from_json(text)
 
     @classmethod
     def merged(
@@ -280,10 +340,24 @@ class FitConfig(FromFile, Calibration):
                 indenter = registry().make(Indenter, indenter)
             except ConfigError as error:
                 raise error.within("indenter") from None
+        if self.thickness == FREE:
+            return self._free_layer(indenter)
         if self._solid is None and isinstance(indenter, HasForceCurve):
             return tension_model(indenter)
         if not isinstance(indenter, Indenter):
-            raise ConfigError(
-                "cannot be given with a force curve, which includes its solid", "kernel"
-            )
-        return Simulation(indenter, self._solid or solid(DEFAULT_KERNEL, self.poissons_ratio))
+            name = "kernel" if self.thickness is None else "thickness"
+            raise ConfigError("cannot be given with a force curve, which includes its solid", name)
+        known = self._solid or solid(DEFAULT_KERNEL, self.poissons_ratio)
+        return known_layer(indenter, known) or Simulation(indenter, known)
+
+    def _free_layer(self, indenter: object) -> FreeLayerModel:
+        assert self.poissons_ratio is not None
+        if isinstance(indenter, HasLayerForceCurve) and self.poissons_ratio >= 0:
+            return FreeLayerModel(indenter, self.poissons_ratio)
+        name = described(indenter).get("type")
+        raise ConfigError(
+            f"cannot be free with the indenter {name!r} and ν = {self.poissons_ratio:g}, only for "
+            "a paraboloid, a sphere, a cone and a flat punch, and for 0 ≤ ν ≤ 0.5; give it, then "
+            "the force is simulated",
+            "thickness",
+        )

@@ -31,6 +31,11 @@ class Parameter:
         """The last word of the name, for sentences."""
         return self.name.rpartition("_")[2]
 
+    @property
+    def is_length(self) -> bool:
+        """Whether it varies as a logarithm between limits that the range of positions sets."""
+        return self.logarithmic and self.unit == "m"
+
     def of_curve(self, index: int) -> Parameter:
         """Return the parameter of one curve of a pooled fit."""
         return self if self.shared else replace(self, curve=index)
@@ -55,6 +60,8 @@ MODULUS = Parameter("reduced_modulus", "Pa", logarithmic=True, shared=True, plau
 """E*."""
 TENSION = Parameter("tension", "N/m", minimum=0.0, shared=True, plausible=(0.0, 10.0))
 """τ₀."""
+THICKNESS = Parameter("thickness", "m", logarithmic=True, shared=True, plausible=(1e-9, 1.0))
+"""h of a layer."""
 OFFSET = Parameter("offset", "N")
 """Force of the baseline at the first position."""
 SLOPE = Parameter("slope", "N/m")

@@ -16,7 +16,7 @@ linear in x where tension hardly matters and logarithmic where it dominates.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -28,10 +28,11 @@ from scipy.interpolate import make_interp_spline
 from pellicle.arrays import Array, Mask
 from pellicle.components import ForceCurve
 
-Correction = Callable[[Array], tuple[Array, Array]]
-"""log(P/P₀) and its derivative in x, at x ≥ 0 of shape (n,)."""
+from .stretched_spline import Interpolant, stretched_spline
 
 SCALE = 1e-3
+LEAST_DEPTH = 1e-60
+"""[m]; powers of a depth at the end of the range of floats would overflow."""
 FILE = files("pellicle_plugins.analytic").joinpath("master_curves.json")
 
 
@@ -41,23 +42,13 @@ def _table() -> dict[str, Any]:
     return table
 
 
-def one_variable(nodes: Mapping[str, Sequence[float]]) -> Correction:
+def one_variable(nodes: Mapping[str, Sequence[float]]) -> Interpolant:
     """Return the interpolant of ``x`` and ``log_ratio``; beyond the last x it is a power law."""
-    t = np.log1p(np.asarray(nodes["x"]) / SCALE)
-    spline = make_interp_spline(t, nodes["log_ratio"], 5)
-    slope = spline.derivative()
-
-    def correction(x: Array) -> tuple[Array, Array]:
-        at = np.log1p(x / SCALE)
-        inside = np.minimum(at, t[-1])
-        rate = slope(inside)
-        return spline(inside) + rate * (at - inside), rate / (x + SCALE)
-
-    return correction
+    return stretched_spline(nodes["x"], nodes["log_ratio"], SCALE)
 
 
 @cache
-def _one_variable(name: str) -> Correction:
+def _one_variable(name: str) -> Interpolant:
     return one_variable(_table()[name])
 
 
@@ -129,8 +120,7 @@ def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
 def _touching(depth: Array) -> tuple[Mask, Array]:
     """Return where there is contact, and the depths there."""
     touching = depth > 0
-    # Powers of a depth at the end of the range of floats would overflow.
-    return touching, np.maximum(depth[touching], 1e-60)
+    return touching, np.maximum(depth[touching], LEAST_DEPTH)
 
 
 def _spread(touching: Mask, *values: Array) -> ForceCurve:

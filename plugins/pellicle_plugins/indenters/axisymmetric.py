@@ -1,15 +1,17 @@
-"""Indenters of revolution whose force curve is interpolated from master curves."""
+"""Indenters of revolution whose force curves are interpolated between exact solutions."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
+from functools import lru_cache
 
 from pellicle.arrays import Array
-from pellicle.components import ForceCurve, Indenter
+from pellicle.components import ForceCurve, Indenter, LayerForceCurve
+from pellicle_plugins.analytic.layer_curves import Layer, Profile, Punch
 
 
 class Axisymmetric(Indenter):
-    """An indenter of revolution with a master curve of the axisymmetric equation."""
+    """An indenter of revolution with curves of the axisymmetric equation."""
 
     @property
     def depth_limit(self) -> float:
@@ -20,5 +22,27 @@ class Axisymmetric(Indenter):
         """Return P/E* and its partial derivatives at depths [m] and s = 2τ₀/E* [m]."""
         return self._master_curve(depth, length)
 
+    def layer_depth_limit(self, thickness: float, poissons_ratio: float) -> float:
+        """Return the depth [m] up to which the force curve holds on a bonded layer."""
+        limit = _layer_curves(self).depth_limit(thickness, poissons_ratio)
+        return min(limit, self.depth_limit)
+
+    def layer_force_curve(
+        self, depth: Array, length: float, thickness: float, poissons_ratio: float
+    ) -> LayerForceCurve:
+        """Return P/E* and its partial derivatives on a bonded layer, 0 ≤ ν ≤ ½."""
+        layer = Layer(length, thickness, poissons_ratio)
+        return _layer_curves(self).curve(depth, layer)
+
     @abstractmethod
     def _master_curve(self, depth: Array, length: float) -> ForceCurve: ...
+
+    @abstractmethod
+    def _make_layer_curves(self) -> Profile | Punch:
+        """Return the curves of the indenter on bonded layers."""
+
+
+@lru_cache(maxsize=64)
+def _layer_curves(indenter: Axisymmetric) -> Profile | Punch:
+    # Splines are kept for each profile, which has to be the same object for equal indenters.
+    return indenter._make_layer_curves()

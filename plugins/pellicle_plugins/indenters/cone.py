@@ -14,6 +14,7 @@ from pellicle.arrays import Array
 from pellicle.components import ForceCurve, Indenter
 from pellicle.units import Quantity
 from pellicle_plugins.analytic import master_curves
+from pellicle_plugins.analytic.layer_curves import Profile, cone_profile
 
 from .axisymmetric import Axisymmetric
 
@@ -25,7 +26,9 @@ class Cone(Axisymmetric):
     half_angle: Annotated[
         float,
         Quantity("rad", above=0, below=pi / 2),
-        Field(description="angle between axis and side [rad], or as '70 degree'"),
+        Field(
+            title="half-angle", description="angle between axis and side [rad], or as '70 degree'"
+        ),
     ]
 
     def profile(self, x: Array, y: Array) -> Array:
@@ -41,6 +44,9 @@ class Cone(Axisymmetric):
 
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.cone(self.half_angle, depth, length)
+
+    def _make_layer_curves(self) -> Profile:
+        return cone_profile(self.half_angle)
 
 
 @hookimpl

@@ -13,6 +13,7 @@ from pellicle.arrays import Array
 from pellicle.components import ForceCurve, Indenter
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
+from pellicle_plugins.analytic.layer_curves import Punch
 
 from .axisymmetric import Axisymmetric
 
@@ -29,6 +30,9 @@ class FlatPunch(Axisymmetric):
 
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.flat_punch(self.radius, depth, length)
+
+    def _make_layer_curves(self) -> Punch:
+        return Punch(self.radius)
 
 
 @hookimpl

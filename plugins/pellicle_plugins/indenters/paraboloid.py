@@ -13,6 +13,7 @@ from pellicle.arrays import Array
 from pellicle.components import ForceCurve, Indenter
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
+from pellicle_plugins.analytic.layer_curves import Profile, smooth_profile
 
 from .axisymmetric import Axisymmetric
 from .sphere import Sphere
@@ -38,6 +39,9 @@ class Paraboloid(Axisymmetric):
 
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.paraboloid(self.radius, depth, length)
+
+    def _make_layer_curves(self) -> Profile:
+        return smooth_profile(self.radius, inf, self.abel_slope)
 
     def whole_shape(self) -> Sphere:
         """Return the sphere of the same radius."""

@@ -13,6 +13,7 @@ from pellicle.arrays import Array
 from pellicle.components import ForceCurve, Indenter
 from pellicle.units import Length
 from pellicle_plugins.analytic import master_curves
+from pellicle_plugins.analytic.layer_curves import Profile, smooth_profile
 
 from .axisymmetric import Axisymmetric
 
@@ -54,6 +55,9 @@ class Sphere(Axisymmetric):
 
     def _master_curve(self, depth: Array, length: float) -> ForceCurve:
         return master_curves.sphere(self.radius, depth, length)
+
+    def _make_layer_curves(self) -> Profile:
+        return smooth_profile(self.radius, self.radius, self.abel_slope)
 
 
 @hookimpl

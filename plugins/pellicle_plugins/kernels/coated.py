@@ -10,7 +10,7 @@ from pydantic import Field
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
-from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel
+from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel, MayBeBondedLayer
 from pellicle.config.component_field import FromRegistry
 from pellicle.numerics.operators import mean_compliance
 
@@ -27,7 +27,12 @@ class Coated(Skin):
 
     type: Literal["coated"] = "coated"
     substrate: Annotated[
-        Kernel, FromRegistry(), Field(description="the kernel under the skin: a table with type")
+        Kernel,
+        FromRegistry(),
+        Field(
+            examples=[{"type": "half_space", "reduced_modulus": "10 kPa"}],
+            description="the kernel under the skin: a table with type",
+        ),
     ]
 
     def compliance(self, q: Array) -> Array:
@@ -57,6 +62,15 @@ class Coated(Skin):
         if isinstance(self.substrate, HasRelaxation):
             return self.substrate.without_skin()
         return self.substrate
+
+    def bonded_layer(self) -> tuple[float, float] | None:
+        """Return thickness [m] and Poisson's ratio of a substrate that is a bonded layer.
+
+        None if it is not, or if the skin resists bending.
+        """
+        if self.bending or not isinstance(self.substrate, MayBeBondedLayer):
+            return None
+        return self.substrate.bonded_layer()
 
 
 @hookimpl

@@ -16,6 +16,8 @@ from pellicle.plugins import registry
 from pellicle.units import Quantity, quantity_of
 
 DEFAULT_KERNEL = "tensed_membrane"
+SKIN, LAYER = "coated", "bonded_layer"
+"""Kernels of a layer whose thickness is given."""
 _DIGITS = 12
 """Digits of a scaled length, so that problems of equal proportions share a study."""
 
@@ -69,6 +71,12 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
     except ConfigError as error:
         raise error.within("kernel") from None
     return Solid(kernel, modulus, tension, poissons_ratio if ratio is None else ratio)
+
+
+def layer_table(poissons_ratio: float, **thickness: float) -> dict[str, Any]:
+    """Return the table of a layer bonded to a rigid base, under tension."""
+    substrate = {"type": LAYER, **thickness, "poissons_ratio": poissons_ratio}
+    return {"type": SKIN, "substrate": substrate}
 
 
 def _field(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:

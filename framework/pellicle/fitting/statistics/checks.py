@@ -10,9 +10,10 @@ from scipy.special import chdtri
 from pellicle.arrays import Array
 from pellicle.components import Component, HasForceCurve, IsShallowLimit
 from pellicle.errors import ConfigError, ConvergenceError
-from pellicle.fitting.models.force_model import ClosedFormModel
+from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
+from pellicle.fitting.models.layer import FreeLayerModel, LayerModel
 from pellicle.fitting.models.solid import lengths
-from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
+from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, THICKNESS, Coordinates
 
 from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
@@ -111,12 +112,7 @@ def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str
     """
     messages = []
     model, depth = likelihood.force_model, float(likelihood.depth(parameters)[-1])
-    if depth > model.depth_limit:
-        raise ConfigError(
-            f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at "
-            f"{model.depth_limit:.3g} m; is the radius right? If so, leave out the deepest part",
-            "indenter",
-        )
+    check_depth(model, depth, parameters)
     shape = getattr(model, "indenter", None)
     radius = next(iter(lengths(shape)), None) if isinstance(shape, Component) else None
     if radius is not None and not _PLAUSIBLE_DEPTH[0] <= depth / radius <= _PLAUSIBLE_DEPTH[1]:
@@ -132,6 +128,27 @@ def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str
                 "units right?"
             )
     return messages
+
+
+def check_depth(model: ForceModel, depth: float, parameters: Coordinates) -> None:
+    """Raise ConfigError if a depth [m] is beyond that to which the force model holds."""
+    if isinstance(model, FreeLayerModel):
+        model = model.at(THICKNESS.value(parameters[THICKNESS]))
+    if depth <= model.depth_limit:
+        return
+    if isinstance(model, LayerModel):
+        raise ConfigError(
+            f"the depth reaches {depth:.3g} m, and the curve of this indenter on a layer "
+            f"{model.thickness:.3g} m thick ends at {model.depth_limit:.3g} m: there it reaches "
+            "the base, its contact is ten times as wide as the layer is thick, or the shape ends. "
+            "Are thickness and radius right? If so, leave out the deepest part",
+            "thickness",
+        )
+    raise ConfigError(
+        f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at "
+        f"{model.depth_limit:.3g} m; is the radius right? If so, leave out the deepest part",
+        "indenter",
+    )
 
 
 def _spikes(residuals: Residuals) -> list[FailedCheck]:

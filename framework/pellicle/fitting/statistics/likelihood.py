@@ -20,6 +20,8 @@ REACH = np.log(100.0)
 """Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""
 _FARTHEST = 10.0
 """Largest distance of the contact point before the first position, over the range of positions."""
+_LENGTHS = (0.05, 1e6)
+"""Least and largest length (thickness of a layer) over the range of positions."""
 _LARGEST_CHANGE = 20.0
 """Largest change of a logarithm in one search: beyond every interval, and exp does not overflow."""
 _METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 60), ("trf", 1000))
@@ -44,7 +46,7 @@ class Range(NamedTuple):
     scale: float
     """Order of magnitude of its variation."""
     low: float
-    """Least coordinate; for a logarithmic parameter relative to the start of a search."""
+    """Least coordinate; of a logarithm that is not a length, relative to the start of a search."""
     high: float
     """Greatest coordinate, likewise."""
 
@@ -179,7 +181,7 @@ class ChiSquared(ABC):
             return Minimum(start, self.chi_squared(start))
         columns = self.columns(free)
         scale, lowest, highest = np.array([self.ranges[p] for p in free]).T
-        origin = np.array([start[p] if p.logarithmic else 0.0 for p in free])
+        origin = np.array([start[p] if p.logarithmic and not p.is_length else 0.0 for p in free])
         lowest, highest = lowest + origin, highest + origin
 
         def full(u: Array) -> Coordinates:
@@ -268,13 +270,15 @@ class Likelihood(ChiSquared):
         span, height = float(np.ptp(z)), float(np.ptp(force))
         sizes = {"m": span, "N": height, "N/m": height / span}
         steepest = height / float(self.travel[-1])
-        ranges = {
-            p: Range(1.0, -_LARGEST_CHANGE, _LARGEST_CHANGE)
-            if p.logarithmic
-            else Range(sizes[p.unit], p.minimum, np.inf)
-            for p in self.force_model.parameters
-        }
-        return ranges | {
+
+        def range_of(parameter: Parameter) -> Range:
+            if parameter.is_length:
+                return Range(1.0, *(float(np.log(share * span)) for share in _LENGTHS))
+            if parameter.logarithmic:
+                return Range(1.0, -_LARGEST_CHANGE, _LARGEST_CHANGE)
+            return Range(sizes[parameter.unit], parameter.minimum, np.inf)
+
+        return {p: range_of(p) for p in self.force_model.parameters} | {
             CONTACT_POINT: Range(span, z.min() - _FARTHEST * span, z.max()),
             OFFSET: Range(height, force.min() - height, force.max() + height),
             SLOPE: Range(height / span, -steepest, steepest),

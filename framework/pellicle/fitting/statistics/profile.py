@@ -181,7 +181,7 @@ def confidence_interval(
     """Return the ends at which the profile of χ² exceeds its minimum by ``threshold``.
 
     None stands for an end that is not reached: no tension, a modulus or a tension a hundred times
-    as large or as small, or the limit of the contact point or of the baseline.
+    as large or as small, or the limit of the contact point, of the baseline or of a thickness.
 
     Raises
     ------
@@ -189,7 +189,7 @@ def confidence_interval(
         The profile falls below ``best``.
     """
     value, (scale, low, high) = best.parameters[parameter], likelihood.ranges[parameter]
-    if parameter.logarithmic:
+    if parameter.logarithmic and not parameter.is_length:
         low, high = value - REACH, value + REACH
     elif np.isinf(high):
         high = float(np.exp(REACH)) * max(value, scale)

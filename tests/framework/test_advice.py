@@ -1,0 +1,99 @@
+"""The advice on a grid: expected errors hold, and what is suggested meets the allowed one."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+import pellicle as pl
+from pellicle.cli import app
+from pellicle.errors import ConfigError
+from pellicle.runs.advice import advise
+from pellicle_plugins.analytic.abel_transform import HasAbelTransform
+from pellicle_plugins.analytic.axisymmetric import indent
+from pellicle_plugins.indenters.cone import Cone
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+
+MODULUS, DEPTH = 1e4, 2e-6
+SHAPES: dict[str, tuple[dict[str, Any], HasAbelTransform]] = {
+    "paraboloid": ({"type": "paraboloid", "radius": 1e-4}, Paraboloid(radius=1e-4)),
+    "cone": ({"type": "cone", "half_angle": 1.4}, Cone(half_angle=1.4)),
+}
+
+
+def run(points: int = 64, shape: str = "paraboloid", tension: float = 0.05, **more: Any) -> pl.Run:
+    """Return a run whose exact force is known."""
+    return pl.Run(
+        **{
+            "grid": {"points": points, "size": 4e-5},
+            "kernel": {"type": "tensed_membrane", "reduced_modulus": MODULUS, "tension": tension},
+            "indenter": SHAPES[shape][0],
+            "loading": {"depth": [DEPTH / 2, DEPTH]},
+            **more,
+        }
+    )
+
+
+@pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("tension", [1e-6, 0.05])
+def test_errors_are_at_most_those_expected(shape: str, tension: float) -> None:
+    """The true error of the force is below the expected one, which is not far above 5 %."""
+    given = run(shape=shape, tension=tension)
+    forces = pl.run(given, progress=False).dataset["force"].values
+    for depth, force, step in zip(
+        given.loading.values, forces, advise(given, 0.01).steps, strict=True
+    ):
+        exact = indent(SHAPES[shape][1], MODULUS, tension, depth=depth).force
+        assert abs(force / exact - 1) <= step.force_error <= 0.1
+
+
+@pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
+def test_the_suggested_grid_meets_the_allowed_error() -> None:
+    """On it every expected error of the force is about the allowed one, or below."""
+    advice = advise(run(), 0.002)
+    again = advise(run(points=advice.points[0]), 0.002)
+    assert max(step.force_error for step in again.steps) <= 0.004
+
+
+def test_a_domain_far_wider_than_the_contact_is_told() -> None:
+    """The suggested one holds the contact with some margin; on a periodic one there is none."""
+    wide = run(grid={"points": 128, "size": 3e-4})
+    size = advise(wide, 0.01).size
+    assert size is not None
+    radius = indent(Paraboloid(radius=1e-4), MODULUS, 0.05, depth=DEPTH).contact_radius
+    assert 2 * radius < size[0] < 4 * radius
+    assert advise(run(), 0.01).size is None
+    periodic = run(grid={"points": 64, "size": 3e-4, "boundary": "periodic"})
+    assert advise(periodic, 0.01).size is None
+
+
+def test_a_step_without_contact_has_no_error() -> None:
+    """At depth 0 there is nothing to be wrong about."""
+    first, second = advise(run(loading={"depth": [0.0, DEPTH]}), 0.01).steps
+    assert math.isnan(first.force_error)
+    assert second.force_error > 0
+
+
+def test_a_grid_too_coarse_to_compare_is_refused() -> None:
+    """The message says how many cells it takes."""
+    with pytest.raises(ConfigError, match=r"grid\.points: .*at least 32"):
+        advise(run(points=20), 0.01)
+
+
+def test_the_command_prints_advice(tmp_path: Path) -> None:
+    """Errors in per cent, memory and the suggested grid; or all of it as JSON in SI."""
+    path = tmp_path / "wide.toml"
+    path.write_text(run(grid={"points": 64, "size": 3e-4}).to_toml(), encoding="utf-8")
+    printed = CliRunner().invoke(app, ["check", str(path)])
+    assert printed.exit_code == 0, printed.output
+    assert "grid.size = [" in printed.output
+    assert "MB" in printed.output
+    data = json.loads(CliRunner().invoke(app, ["check", str(path), "--json"]).stdout)
+    assert [step["step"] for step in data["steps"]] == [1, 2]
+    assert data["size"][0] < 3e-4
