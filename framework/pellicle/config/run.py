@@ -131,16 +131,6 @@ class Run(FromFile):
         return self
 
     @model_validator(mode="after")
-    def _stiffness_of_hard_contact(self) -> Self:
-        if self.interaction is not None and self.loading.stiffness:
-            raise ConfigError(
-                "the contact stiffness is known only without an interaction; leave it out, and "
-                "take dF/dδ from neighbouring steps in depth",
-                "loading.stiffness",
-            )
-        return self
-
-    @model_validator(mode="after")
     def _each_correction_once(self) -> Self:
         types = [correction.type_name for correction in self.corrections]
         for index, type_ in enumerate(types):

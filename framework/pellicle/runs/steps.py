@@ -121,4 +121,4 @@ def _stiffness(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> Stiffnes
     if not contact.any():
         return Stiffness(0.0, 0.0)
     response = response_of(run.solver, problem, equilibrium.state, monitor)
-    return measure_stiffness(problem, contact, response)
+    return measure_stiffness(problem, contact, response, equilibrium.attraction_slope)
