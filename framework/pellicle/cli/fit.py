@@ -12,8 +12,8 @@ import typer
 from pellicle.errors import ConfigError
 
 from .exits import INTERRUPTED, NOT_CONVERGED
-from .print_fits import print_fit, print_fits
-from .printing import print_json
+from .print_fits import print_fit, print_fits, print_notes
+from .printing import echo, print_json
 
 if TYPE_CHECKING:
     from pellicle.fitting.fit import Fit
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 def fit(
     files: Annotated[
-        list[Path],
+        list[Path] | None,
         typer.Argument(
             metavar="[CONFIG.toml] CURVES",
             help="A configuration, whose values the options replace. Curves: files or a folder of "
             "them: tables with a header such as position (um),force (nN); HDF5; formats of "
             "instruments. Or a table file,radius (um) that lists files.",
         ),
-    ],
+    ] = None,
     indenter: Annotated[
         str | None,
         typer.Option(
@@ -135,7 +135,8 @@ def fit(
         Path | None, typer.Option(help="Folder that keeps simulated force curves.")
     ] = None,
     directory: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for JSON, table and figure.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Folder for JSON, table and figure."),
     ] = None,
     report: Annotated[
         bool,
@@ -143,6 +144,13 @@ def fit(
             "--report", help="Write a web page, to the folder of --output or the current one."
         ),
     ] = False,
+    again: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FIT.json",
+            help="Repeat the fit that a JSON file records, and say if files or versions differ.",
+        ),
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")
@@ -150,24 +158,29 @@ def fit(
 ) -> None:
     """Fit reduced modulus, tension and contact point to measured curves, with intervals.
 
-    Exit code 0 only if every curve was fitted.
+    Exit code 0 only if every curve was fitted, 1 if some could not be fitted.
     """
     from pellicle.fitting.config import FitConfig
     from pellicle.fitting.curves.readers import SourceStream
     from pellicle.fitting.fit import fit_source
     from pellicle.fitting.many import ManyFits, fit_sources
     from pellicle.fitting.pooled import pool_sources
+    from pellicle.fitting.record import repetition
     from pellicle.fitting.report.figures import save_figure
     from pellicle.fitting.report.page import save_report
 
+    files = files or []
     configs = [path for path in files if path.suffix.lower() == ".toml"]
     if len(configs) > 1:
         raise ConfigError(
             f"{', '.join(map(str, configs))}: several configurations; give one, and name curves "
             "with the suffix .toml in it (curves = […])"
         )
+    repeated = None if again is None else repetition(again)
+    if repeated is not None and configs:
+        raise ConfigError(f"{configs[0]}: --again has a configuration of its own; leave one out")
     config = FitConfig.merged(
-        configs[0] if configs else None,
+        configs[0] if configs else repeated and repeated.config,
         [*map(_override, fix or ()), *(set_ or ())],
         curves=tuple(path for path in files if path not in configs) or None,
         indenter=indenter,
@@ -199,8 +212,10 @@ def fit(
         sources = [source for file in curves for source in file.open()]
         result = pool_sources(config, sources, progress=progress)
         name, title = "pool", "Pooled fit"
-    elif [file.path for file in curves] == [config.curves[0]] and curves[0].open().is_single:
-        (source,) = curves[0].open()
+    elif [file.path for file in curves] == [config.curves[0]] and (
+        (opened := curves[0].open()).is_single
+    ):
+        (source,) = opened
         result = fit_source(config, source, progress=progress)
         name, title = f"{config.curves[0].stem}-fit", config.curves[0].stem
     else:
@@ -208,20 +223,26 @@ def fit(
             result = fit_sources(config, SourceStream(curves), directory, progress=not quiet)
         except KeyboardInterrupt:
             hint = f"; finished fits are in {directory}, and the same command continues"
-            typer.echo(f"interrupted{hint if directory else ''}", err=True)
+            echo(f"interrupted{hint if directory else ''}", err=True)
             raise typer.Exit(INTERRUPTED) from None
         name, title = "fits", f"Fits of {len(result.rows)} curves"
     if json:
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
         print_fits(result, quiet=quiet, directory=directory)
-    elif not quiet:
-        print_fit(result)
+    else:
+        (print_notes if quiet else print_fit)(result)
+    if repeated is not None:
+        record = None if isinstance(result, ManyFits) else result.record
+        rows = result.rows if isinstance(result, ManyFits) else []
+        data = record.data if record else [row["data"] for row in rows if "data" in row]
+        for difference in repeated.differences(data, record):
+            echo(f"warning: {difference}", err=True)
     written: list[Path] = []
     if isinstance(result, ManyFits):
         written += result.files
         if result.resumed and not quiet:
-            typer.echo(f"{result.resumed} of {len(result.rows)} fits were done before", err=json)
+            echo(f"{result.resumed} of {len(result.rows)} fits were done before", err=json)
     elif directory is not None:
         written.append(result.save(directory / f"{name}.json"))
         written.append(save_figure(result, directory / f"{name}.png"))
@@ -229,9 +250,9 @@ def fit(
         page = (directory or Path()) / f"{name}.html"
         written.append(save_report(result, page, title))
     for path in [] if quiet else written:
-        typer.echo(f"wrote {path}", err=json)
+        echo(f"wrote {path}", err=json)
     if isinstance(result, ManyFits) and result.failed:
-        typer.echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
+        echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
 
