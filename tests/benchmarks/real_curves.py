@@ -15,6 +15,7 @@ import argparse
 import warnings
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from importlib import import_module
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -59,9 +60,9 @@ class Outcome:
 
 def nanite_fit(curve: Curve) -> tuple[float, float]:
     """Return Young's modulus [Pa] and sum of squares [N²] of nanite's Hertz fit to all rows."""
-    import nanite
-    from nanite.model import models_available
-
+    # docs/nanite shares its name, so a plain import would have its type.
+    nanite = import_module("nanite")
+    models_available = import_module("nanite.model").models_available
     order = np.argsort(curve.position)
     position, force = curve.position[order], curve.force[order]
     data = {
