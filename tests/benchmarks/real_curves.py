@@ -17,7 +17,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -112,15 +112,15 @@ def nanite_fit(curve: Curve) -> tuple[float, float]:
 
 def outcome(curve: Curve | PellicleError) -> Outcome:
     """Return what becomes of a curve."""
-    began = perf_counter()
+    began = process_time()
     if isinstance(curve, PellicleError):
         return Outcome(0.0, str(curve))
     options: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "poissons_ratio": RATIO}
     try:
         pl.fit(curve.position, curve.force, baseline="offset", **options)
     except PellicleError as error:
-        return Outcome(perf_counter() - began, str(error))
-    seconds = perf_counter() - began
+        return Outcome(process_time() - began, str(error))
+    seconds = process_time() - began
     rows = clean(replace(curve, stiffness=None, time=None, speed=None))
     hertz = pl.fit(rows.position, rows.force, baseline="offset", fix={"tension": 0}, **options)
     assert hertz.youngs_modulus is not None
@@ -156,7 +156,9 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args().folder
     warnings.simplefilter("ignore")
-    print("file | curves | fitted | slowest [s] | E over nanite's, largest difference | not fitted")
+    print(
+        "file | curves | fitted | slowest [s of CPU] | E over nanite's, largest difference | not fitted"
+    )
     print("--- | ---: | ---: | ---: | ---: | ---")
     for path in sorted(path for path in folder.rglob("*") if path.suffix.lower() in SUFFIXES):
         curves = curves_of(path)
