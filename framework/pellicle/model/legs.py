@@ -17,10 +17,14 @@ from pellicle.units import Quantity, ramp
 from .base import Model
 
 _MOST = 1_000_000
+_LONGEST = 1e100
 # Three samples are the fewest that show an amplitude and a phase; four meet both extremes.
 _FEWEST_OF_CYCLE = 4
 
-Number = Annotated[int, Field(ge=1, le=_MOST, description="number of load steps of the leg")]
+Number = Annotated[
+    int,
+    Field(title="number of steps", ge=1, le=_MOST, description="number of load steps of the leg"),
+]
 
 
 class Sample(NamedTuple):
@@ -49,6 +53,11 @@ class Leg(Model):
     def steps(self) -> int:
         """The number of its load steps."""
 
+    @property
+    @abstractmethod
+    def duration(self) -> float:
+        """Its duration [s]."""
+
     @abstractmethod
     def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
         """Yield the load steps of leg ``index`` after ``start``, the value at ``time`` [s]."""
@@ -63,9 +72,11 @@ class Move(Leg):
     """A straight way to a value: { to, time, num }."""
 
     key: ClassVar[str] = "to"
-    to: Annotated[float, Field(description="value at the end of the leg")]
+    to: Annotated[float, Field(title="end value", description="value at the end of the leg")]
     time: Annotated[
-        float, Quantity("s", at_least=0), Field(description="duration of the leg [s]; 0 is a jump")
+        float,
+        Quantity("s", at_least=0),
+        Field(title="duration", description="duration of the leg [s]; 0 is a jump"),
     ]
     num: Number
 
@@ -74,10 +85,15 @@ class Move(Leg):
         """The number of its load steps."""
         return self.num
 
+    @property
+    def duration(self) -> float:
+        """Its duration [s]."""
+        return self.time
+
     def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
         """Yield ``num`` values evenly spaced, the last one ``to``."""
         values = ramp(start, self.to, self.num + 1)[1:]
-        times = ramp(time, time + self.time, self.num + 1)[1:]
+        times = ramp(time, time + self.duration, self.steps + 1)[1:]
         for value, end in zip(values, times, strict=True):
             yield Sample(value, end, index)
 
@@ -86,7 +102,11 @@ class Hold(Leg):
     """A time at the value reached: { hold, num }."""
 
     key: ClassVar[str] = "hold"
-    hold: Annotated[float, Quantity("s", above=0), Field(description="duration of the leg [s]")]
+    hold: Annotated[
+        float,
+        Quantity("s", above=0),
+        Field(title="duration", description="duration of the leg [s]"),
+    ]
     num: Number
 
     @property
@@ -94,9 +114,14 @@ class Hold(Leg):
         """The number of its load steps."""
         return self.num
 
+    @property
+    def duration(self) -> float:
+        """Its duration [s]."""
+        return self.hold
+
     def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
         """Yield ``num`` times evenly spaced at the value ``start``."""
-        for end in ramp(time, time + self.hold, self.num + 1)[1:]:
+        for end in ramp(time, time + self.duration, self.steps + 1)[1:]:
             yield Sample(start, end, index)
 
 
@@ -108,10 +133,17 @@ class Oscillation(Leg):
     frequency: Annotated[
         float, Quantity("Hz", above=0), Field(description="frequency of the oscillation [Hz]")
     ]
-    cycles: Annotated[int, Field(ge=1, le=_MOST, description="number of cycles")]
+    cycles: Annotated[
+        int, Field(title="number of cycles", ge=1, le=_MOST, description="number of cycles")
+    ]
     num: Annotated[
         int,
-        Field(ge=_FEWEST_OF_CYCLE, le=_MOST, description="number of load steps of each cycle"),
+        Field(
+            title="steps of a cycle",
+            ge=_FEWEST_OF_CYCLE,
+            le=_MOST,
+            description="number of load steps of each cycle",
+        ),
     ]
 
     @property
@@ -119,9 +151,14 @@ class Oscillation(Leg):
         """The number of its load steps."""
         return self.cycles * self.num
 
+    @property
+    def duration(self) -> float:
+        """Its duration [s]."""
+        return self.cycles / self.frequency
+
     def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
         """Yield ``num`` values each cycle of ``start`` + amplitude · sin(2πft)."""
-        times = ramp(time, time + self.cycles / self.frequency, self.steps + 1)[1:]
+        times = ramp(time, time + self.duration, self.steps + 1)[1:]
         for number, end in enumerate(times, start=1):
             angle = 2 * math.pi * (number % self.num) / self.num
             # Rounding removes the 1e-16 that sin(π) leaves.
@@ -170,6 +207,10 @@ def legs_of(given: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
             "is a jump",
             "0",
         )
+    if (steps := sum(leg.steps for leg in legs)) > _MOST:
+        raise ConfigError(f"has {steps} load steps; give legs of {_MOST} at most")
+    if not sum(leg.duration for leg in legs) < _LONGEST:
+        raise ConfigError(f"lasts longer than {_LONGEST:g} s; check the units of its times")
     for index, values in enumerate(_values_of_legs(legs)):
         try:
             quantity(min(values))
