@@ -157,7 +157,7 @@ def main() -> None:
     folder = parser.parse_args().folder
     warnings.simplefilter("ignore")
     print(
-        "file | curves | fitted | slowest [s of CPU] | E over nanite's, largest difference | not fitted"
+        "file | curves | fitted | slowest [s of CPU] | E over nanite's, largest change | not fitted"
     )
     print("--- | ---: | ---: | ---: | ---: | ---")
     for path in sorted(path for path in folder.rglob("*") if path.suffix.lower() in SUFFIXES):
