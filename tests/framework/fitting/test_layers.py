@@ -19,6 +19,7 @@ from pellicle.fitting.models import simulation
 from pellicle.fitting.models.layer import FreeLayerModel, LayerModel
 from pellicle.fitting.models.simulation import Simulation
 from pellicle.fitting.parameters import MODULUS, TENSION, THICKNESS
+from pellicle.fitting.statistics.design import _designs
 
 Array = NDArray[np.float64]
 Cli = Callable[..., Result]
@@ -200,6 +201,16 @@ def test_a_contact_far_wider_than_the_layer_is_refused() -> None:
     position, force = curve(radius=1.0, thickness=4e-6)
     with pytest.raises(pl.ConfigError, match="ten times as wide as the layer is thick"):
         pl.fit(position, force, indenter="sphere", radius=1.0, thickness=THICK, poissons_ratio=0.5)
+
+
+def test_advice_stays_within_the_layer() -> None:
+    """No experiment is recommended that reaches the base, and other radii are compared."""
+    fit = pl.fit(*curve(tension=1e-4), thickness=THICK, fix={"contact_point": 7e-6}, **BEAD)
+    _, designs = _designs(fit.likelihood, fit.parameters)
+    words = [design.words for design in designs]
+    assert not any("deeper" in text for text in words)
+    assert any("shallower" in text for text in words)
+    assert any("a larger radius" in text for text in words)
 
 
 def test_free_layer_as_a_force_model() -> None:
