@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 def fit(
     files: Annotated[
-        list[Path],
+        list[Path] | None,
         typer.Argument(
             metavar="[CONFIG.toml] CURVES",
             help="A configuration, whose values the options replace. Curves: files or a folder of "
             "them: tables with a header such as position (um),force (nN); HDF5; formats of "
             "instruments. Or a table file,radius (um) that lists files.",
         ),
-    ],
+    ] = None,
     indenter: Annotated[
         str | None,
         typer.Option(
@@ -140,6 +140,13 @@ def fit(
             "--report", help="Write a web page, to the folder of --output or the current one."
         ),
     ] = False,
+    again: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FIT.json",
+            help="Repeat the fit that a JSON file records, and say if files or versions differ.",
+        ),
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")
@@ -154,17 +161,22 @@ def fit(
     from pellicle.fitting.fit import fit_source
     from pellicle.fitting.many import ManyFits, fit_sources
     from pellicle.fitting.pooled import pool_sources
+    from pellicle.fitting.record import repetition
     from pellicle.fitting.report.figures import save_figure
     from pellicle.fitting.report.page import save_report
 
+    files = files or []
     configs = [path for path in files if path.suffix.lower() == ".toml"]
     if len(configs) > 1:
         raise ConfigError(
             f"{', '.join(map(str, configs))}: several configurations; give one, and name curves "
             "with the suffix .toml in it (curves = […])"
         )
+    repeated = None if again is None else repetition(again)
+    if repeated is not None and configs:
+        raise ConfigError(f"{configs[0]}: --again has a configuration of its own; leave one out")
     config = FitConfig.merged(
-        configs[0] if configs else None,
+        configs[0] if configs else repeated and repeated.config,
         [*map(_override, fix or ()), *(set_ or ())],
         curves=tuple(path for path in files if path not in configs) or None,
         indenter=indenter,
@@ -195,8 +207,10 @@ def fit(
         sources = [source for file in curves for source in file.open()]
         result = pool_sources(config, sources, progress=progress)
         name, title = "pool", "Pooled fit"
-    elif [file.path for file in curves] == [config.curves[0]] and curves[0].open().is_single:
-        (source,) = curves[0].open()
+    elif [file.path for file in curves] == [config.curves[0]] and (
+        (opened := curves[0].open()).is_single
+    ):
+        (source,) = opened
         result = fit_source(config, source, progress=progress)
         name, title = f"{config.curves[0].stem}-fit", config.curves[0].stem
     else:
@@ -213,6 +227,12 @@ def fit(
         print_fits(result, quiet=quiet, directory=directory)
     elif not quiet:
         print_fit(result)
+    if repeated is not None:
+        record = None if isinstance(result, ManyFits) else result.record
+        rows = result.rows if isinstance(result, ManyFits) else []
+        data = record.data if record else [row["data"] for row in rows if "data" in row]
+        for difference in repeated.differences(data, record):
+            typer.echo(f"warning: {difference}", err=True)
     written: list[Path] = []
     if isinstance(result, ManyFits):
         written += result.files

@@ -34,6 +34,8 @@ def print_fit(fit: FitResult) -> None:
         print_table(list(curves[0]), curves)
     for sentence in fit.sentences:
         typer.echo(sentence)
+    for warning in fit.warnings:
+        typer.echo(f"warning: {warning}", err=True)
     for note in fit.notes:
         typer.echo(f"note: {note}", err=True)
 

@@ -39,5 +39,4 @@ def print_json(value: object) -> None:
     """Print JSON in ASCII, which every code page contains."""
     import json
 
-    json.dump(value, sys.stdout, indent=2)
-    sys.stdout.write("\n")
+    sys.stdout.write(json.dumps(value, indent=2) + "\n")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from contextlib import suppress
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -33,19 +33,33 @@ def now_with(runs: Iterable[Run]) -> dict[str, str]:
         for value in (run.loading.prescription, *(value for _, value, _ in walk(run)))
         if isinstance(value, Component)
     }
+    numbers = versions(used)
+    return {
+        "versions": ", ".join(f"{name} {number}" for name, number in numbers.items()),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+    }
+
+
+def versions(used: Collection[type[Component]], others: Iterable[str] = ()) -> dict[str, str]:
+    """Return the version of pellicle, of the owners of components, and of libraries by name.
+
+    Parameters
+    ----------
+    used
+        The components.
+    others
+        Libraries beside those that the components name.
+    """
     owners = {
         registered.origin.distribution: registered.origin.version
         for family in registry().components.values()
         for registered in family.values()
         if registered.component in used
     }
-    libraries = sorted({name for component in used for name in component.libraries})
-    versions = {name: version(name) for name in ("pellicle", "numpy", "scipy")} | owners
+    libraries = sorted({*others, *(name for component in used for name in component.libraries)})
+    numbers = {name: version(name) for name in ("pellicle", "numpy", "scipy")} | owners
     for name in libraries:
         # A worker may receive data that a library has read without having the library itself.
         with suppress(PackageNotFoundError):
-            versions[name] = version(name)
-    return {
-        "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
-        "date": datetime.now(UTC).isoformat(timespec="seconds"),
-    }
+            numbers[name] = version(name)
+    return numbers

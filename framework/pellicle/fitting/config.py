@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -240,6 +242,21 @@ class FitConfig(FromFile, Calibration):
             A component that it names is broken.
         """
         return cls.merged(path, overrides)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Return the configuration in a JSON text, such as `to_json` or the JSON of a fit.
+
+        Raises
+        ------
+        ConfigError
+            The text is not JSON, or holds no configuration.
+        """
+        with suppress(ValueError):
+            data = json.loads(text)
+            if isinstance(data, dict) and isinstance(data.get("configuration"), dict):
+                text = json.dumps(data["configuration"])
+        return super().from_json(text)
 
     @classmethod
     def merged(

@@ -18,6 +18,7 @@ from .curves.curve import Curve
 from .curves.readers import Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
+from .record import Stopwatch, data_of
 from .result import FitResult, doubt_of_tension, status_line, thickness_of
 from .statistics.checks import check_plausible, fit_single
 from .statistics.design import advice
@@ -60,15 +61,20 @@ class Fit(FitResult):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
-        return super().to_dict() | {
-            "model": self.model(),
-            "noise": {"value": self.noise, "unit": "N", "from": self.noise_from},
-            "points": self.points,
-        }
+        data = {} if self.record is None else {"data": self.record.data[0]}
+        return (
+            super().to_dict()
+            | data
+            | {
+                "model": self.model(),
+                "noise": {"value": self.noise, "unit": "N", "from": self.noise_from},
+                "points": self.points,
+            }
+        )
 
 
 def fit(
-    position: ArrayLike | None = None,
+    position: ArrayLike | str | Path | None = None,
     force: ArrayLike | None = None,
     *,
     depth: ArrayLike | None = None,
@@ -93,7 +99,8 @@ def fit(
     position, force
         Position of the indenter [m], growing into the solid, and force [N], both of shape (n,).
         With the option ``spring_constant`` [N/m], position is that of the cantilever's base less
-        its deflection, so that the noise of the deflection is in both.
+        its deflection, so that the noise of the deflection is in both.  Instead of both, a file:
+        ``pl.fit("bead.csv", …)``.
     depth
         Depth [m] instead of position: the contact point is then fixed at 0.
     time
@@ -114,6 +121,12 @@ def fit(
     ConvergenceError, StorageError
         A study failed, or its folder cannot be used.
     """
+    if isinstance(position, (str, Path)):
+        file, position = Path(position), None
+        if file.suffix.lower() == ".toml" and config is None:
+            config = file
+        else:
+            options["curves"] = file
     config = FitConfig.merged(config, **options)
     curves = None
     positions = [values for values in (position, depth) if values is not None]
@@ -137,12 +150,15 @@ def fit(
 
 def fit_source(config: FitConfig, source: Source, *, progress: bool) -> Fit:
     """Return the fit of one curve."""
+    watch = Stopwatch()
     (problem,) = problems(config, [source])
     if isinstance(problem, PellicleError):
         raise problem
-    problem = problem.simulated(config, progress=progress)
+    simulated = problem.simulated(config, progress=progress)
     with status_line(progress) as report:
-        return replace(fit_problem(problem, report), config=config)
+        result = fit_problem(simulated, report)
+    record = watch.record(config, [data_of(problem.curve, config)])
+    return replace(result, config=config, record=record)
 
 
 def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stage: None) -> Fit:

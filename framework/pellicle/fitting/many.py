@@ -34,6 +34,7 @@ from .population.rules import NUMBERS
 from .population.sketch import Sketch, from_json, of_curve, to_json
 from .population.summary import Quartiles, summary
 from .problem import FitProblem, problems
+from .record import Stopwatch, data_of
 from .result import write_json
 
 if TYPE_CHECKING:
@@ -56,6 +57,8 @@ _WITHOUT_EFFECT = {
     "group_by",
 }
 """Fields of a configuration that do not change the fit of a curve."""
+_MEASURED = {"spring_constant": "N/m", "sensitivity": "m/V", "poissons_ratio": "1"}
+"""Numbers in the data of a row, and their units."""
 _BYTES_PER_POINT = 2000
 """Memory of a fit, approximately."""
 _BATCH = 4_000_000
@@ -175,7 +178,7 @@ def fit_sources(
     from .report.population import save_population
 
     lists = read_names(config.accepted), read_names(config.rejected)
-    fits = ManyFits([])
+    fits, watch = ManyFits([]), Stopwatch()
     with nullcontext() if directory is None else locked(directory, "fits"):
         if directory is not None:
             check_writable(directory / "fits.h5")
@@ -188,13 +191,14 @@ def fit_sources(
             # A table without any fit would replace an earlier one.
             if directory is not None and any(row["status"] == FITTED for row in fits.rows):
                 judge(fits.rows, config.accept, *lists)
-                _write(fits, config, directory)
+                _write(fits, config, watch, directory)
             raise
         notes = judge(fits.rows, config.accept, *lists)
         fits.maps, of_maps = force_maps(fits.rows)
         fits.notes = [*notes, *of_maps]
         if directory is not None:
-            fits.files = (*_write(fits, config, directory), *save_population(fits, directory))
+            tables = _write(fits, config, watch, directory)
+            fits.files = (*tables, *save_population(fits, directory))
     return fits
 
 
@@ -239,6 +243,7 @@ def _fit_batch(
         try:
             if isinstance(problem, PellicleError):
                 raise problem
+            rows[number]["data"] = data_of(problem.curve, config)
             path = None
             if directory is not None:
                 name = f"{_identity(config, source, problem)[:16]}.json"
@@ -356,20 +361,36 @@ def table(rows: list[Row]) -> xr.Dataset:
         columns[name] = texts(row.get(name, "") for row in rows)
     checks = [[check["code"] for check in row.get("failed_checks", ())] for row in rows]
     columns["failed_checks"] = texts(map("; ".join, checks))
+    data = [row.get("data", {}) for row in rows]
+    for name, unit in _MEASURED.items():
+        columns[name] = numbers((entry.get(name) for entry in data), unit)
+    for name in ("segment", "baseline", "file", "sha256"):
+        columns[name] = texts(entry.get(name) or "" for entry in data)
+    roles = [entry.get("columns", {}).items() for entry in data]
+    columns["columns"] = texts("; ".join(f"{r} = {c}" for r, c in items) for items in roles)
     columns["messages"] = texts("; ".join(row.get("messages", ())) for row in rows)
     return xr.Dataset(columns, {"curve": texts(row["curve"] for row in rows)})
 
 
-def _write(fits: ManyFits, config: FitConfig, directory: Path) -> tuple[Path, ...]:
+def _write(
+    fits: ManyFits, config: FitConfig, watch: Stopwatch, directory: Path
+) -> tuple[Path, ...]:
     """Write the tables of the curves and of the groups, and return their paths."""
-    dataset = table(fits.rows)
+    record = watch.record(config, [row["data"] for row in fits.rows if "data" in row])
+    attributes = {
+        "configuration": config.to_json(),
+        "versions": ", ".join(f"{name} {number}" for name, number in record.versions.items()),
+        "date": record.date,
+    }
+    dataset = table(fits.rows).assign_attrs(attributes)
     hdf5, text, groups = (directory / f"fits{end}" for end in (".h5", ".csv", "-groups.csv"))
     storage.write(dataset, hdf5)
     columns = ["curve", *dataset.data_vars]
-    heads = [header(str(name), dataset[name]) for name in columns]
-    _write_csv(text, heads, zip(*(dataset[name].values.tolist() for name in columns), strict=True))
+    heads = [*(header(str(name), dataset[name]) for name in columns), *attributes]
+    cells = zip(*(dataset[name].values.tolist() for name in columns), strict=True)
+    _write_csv(text, heads, ((*row, *attributes.values()) for row in cells))
     _write_csv(groups, Quartiles._fields, fits.summary())
-    content = fits.to_dict() | {"configuration": config.to_dict()}
+    content = fits.to_dict() | {"configuration": config.to_dict()} | record.to_dict()
     return hdf5, text, groups, write_json(content, directory / "fits.json")
 
 

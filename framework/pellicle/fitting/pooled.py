@@ -14,9 +14,11 @@ from scipy.special import bdtrc, chdtrc
 from pellicle.errors import ConfigError, PellicleError
 
 from .config import FitConfig
+from .curves.curve import Note
 from .curves.readers import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
+from .record import Stopwatch, data_of
 from .result import FitResult, doubt_of_tension, interval_text, status_line, thickness_of
 from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
 from .statistics.design import pooled_advice
@@ -69,6 +71,7 @@ class PooledCurve:
             "contact_point": self.contact_point.to_dict(),
             "failed_checks": [check._asdict() for check in self.failed_checks],
             "messages": list(self.messages),
+            "notes": [text for text in self.messages if isinstance(text, Note)],
         }
 
 
@@ -98,9 +101,11 @@ class PooledFit(FitResult):
         return list(filter(None, [self.comparison, self.agreement, self.advice]))
 
     @property
-    def notes(self) -> list[str]:
-        """All warnings, those of single curves with their names."""
-        own = [f"{curve.name}: {text}" for curve in self.curves for text in curve.messages]
+    def all_messages(self) -> list[str]:
+        """Warnings and notes, those of single curves with their names."""
+        own = [
+            type(text)(f"{curve.name}: {text}") for curve in self.curves for text in curve.messages
+        ]
         return [*self.messages, *own]
 
     def curve_rows(self) -> list[dict[str, str]]:
@@ -126,10 +131,12 @@ class PooledFit(FitResult):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
-        return super().to_dict() | {
-            "agreement": self.agreement,
-            "curves": [curve.to_dict() for curve in self.curves],
-        }
+        curves = [curve.to_dict() for curve in self.curves]
+        if self.record is not None:
+            curves = [
+                curve | {"data": data} for curve, data in zip(curves, self.record.data, strict=True)
+            ]
+        return super().to_dict() | {"agreement": self.agreement, "curves": curves}
 
 
 def fit_pooled(
@@ -174,7 +181,7 @@ def pool_sources(config: FitConfig, sources: Sequence[Source], *, progress: bool
         )
     if len(sources) < 2:
         raise ConfigError("holds one curve, and a pool needs two; use fit", "curves")
-    singles = []
+    singles, watch = [], Stopwatch()
     for source, problem in zip(sources, problems(config, sources), strict=True):
         try:
             if isinstance(problem, PellicleError):
@@ -185,7 +192,8 @@ def pool_sources(config: FitConfig, sources: Sequence[Source], *, progress: bool
             raise source.named(error, "; leave it out") from None
     with status_line(progress) as report:
         fit = _fit_pool(singles, config.contact_points, report)
-    return replace(fit, config=config)
+    data = [data_of(problem.curve, config) for problem, _ in singles]
+    return replace(fit, config=config, record=watch.record(config, data))
 
 
 def _fit_pool(

@@ -7,16 +7,23 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pellicle.files import atomic_write
+from pellicle.units import readable
 
 from .config import FitConfig
+from .curves.curve import Note
 from .models.force_model import ForceModel
 from .models.layer import LayerModel
 from .parameters import THICKNESS, Coordinates
 from .statistics.noise import FailedCheck
 from .statistics.profile import CONFIDENCE, Estimate, ProfileResult
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from .record import Record
 
 
 def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:
@@ -62,7 +69,7 @@ class FitResult:
     advice: str
     """The Cramér–Rao bound, and the experiment that would tighten it."""
     messages: tuple[str, ...]
-    """Warnings."""
+    """Warnings, and notes of what was done."""
     parameters: Coordinates
     """Best coordinates: the value of each `Parameter`, for the modulus its natural logarithm."""
     parameters_without_tension: Coordinates
@@ -77,6 +84,8 @@ class FitResult:
     """h [m], if the solid is a bonded layer with a force curve."""
     config: FitConfig | None = field(default=None, kw_only=True)
     """The configuration of the fit."""
+    record: Record | None = field(default=None, kw_only=True)
+    """Files with their hashes, versions, date and wall time."""
 
     @property
     def youngs_modulus(self) -> Estimate | None:
@@ -98,13 +107,15 @@ class FitResult:
         if tension.held and not tension.value:
             return "tension is fixed at 0, so whether it is needed was not tested"
         if tension.held:
-            return f"tension is fixed at {tension.value:.4g} N/m ({figures} against none)"
+            return (
+                f"tension is fixed at {readable(tension.value, 'N/m', 4)} ({figures} against none)"
+            )
         if tension.low is not None and self.doubt:
             return f"tension fits better than none ({figures}), but {self.doubt}"
         if tension.low is not None:
             return f"tension is needed ({figures} against none); {self._look_alikes}"
         if tension.high is not None:
-            bound = f"it is below {tension.high:.3g} N/m"
+            bound = f"it is below {readable(tension.high, 'N/m', 3)}"
             return f"{self._subject} not show tension ({figures}); {bound}"
         return f"{self._subject} not show tension ({figures}), nor set a bound on it"
 
@@ -119,9 +130,19 @@ class FitResult:
         return list(filter(None, [self.comparison, self.advice]))
 
     @property
-    def notes(self) -> list[str]:
-        """All warnings, those of single curves with their names."""
+    def all_messages(self) -> list[str]:
+        """Warnings and notes, those of single curves with their names."""
         return list(self.messages)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to be careful of."""
+        return [text for text in self.all_messages if not isinstance(text, Note)]
+
+    @property
+    def notes(self) -> list[str]:
+        """What was done."""
+        return [text for text in self.all_messages if isinstance(text, Note)]
 
     def estimates(self) -> dict[str, Estimate]:
         """Return the parameters by name; baseline and Young's modulus only if requested."""
@@ -148,10 +169,19 @@ class FitResult:
             "advice": self.advice,
             "failed_checks": [check._asdict() for check in self.failed_checks],
             "messages": list(self.messages),
+            "notes": [text for text in self.messages if isinstance(text, Note)],
         }
         if self.config is not None:
             result["configuration"] = self.config.to_dict()
+        if self.record is not None:
+            result |= self.record.to_dict()
         return result
+
+    def plot(self) -> Figure:
+        """Return a figure of pyplot with the data, the fit, and how well it determines it."""
+        from .report.figures import plot
+
+        return plot(self)
 
     def to_json(self) -> str:
         """Return what `to_dict` returns as JSON."""
@@ -174,8 +204,8 @@ def interval_text(low: float | None, high: float | None) -> str:
 
 
 def as_json(value: object) -> str:
-    """Return indented JSON."""
-    return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+    """Return indented JSON in ASCII, which every terminal and code page contains."""
+    return json.dumps(value, indent=2) + "\n"
 
 
 def write_json(value: object, path: Path) -> Path:

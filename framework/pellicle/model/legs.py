@@ -17,6 +17,7 @@ from pellicle.units import Quantity, ramp
 from .base import Model
 
 _MOST = 1_000_000
+_LONGEST = 1e100
 # Three samples are the fewest that show an amplitude and a phase; four meet both extremes.
 _FEWEST_OF_CYCLE = 4
 
@@ -49,6 +50,11 @@ class Leg(Model):
     def steps(self) -> int:
         """The number of its load steps."""
 
+    @property
+    @abstractmethod
+    def duration(self) -> float:
+        """Its duration [s]."""
+
     @abstractmethod
     def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
         """Yield the load steps of leg ``index`` after ``start``, the value at ``time`` [s]."""
@@ -74,10 +80,15 @@ class Move(Leg):
         """The number of its load steps."""
         return self.num
 
+    @property
+    def duration(self) -> float:
+        """Its duration [s]."""
+        return self.time
+
     def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
         """Yield ``num`` values evenly spaced, the last one ``to``."""
         values = ramp(start, self.to, self.num + 1)[1:]
-        times = ramp(time, time + self.time, self.num + 1)[1:]
+        times = ramp(time, time + self.duration, self.steps + 1)[1:]
         for value, end in zip(values, times, strict=True):
             yield Sample(value, end, index)
 
@@ -94,9 +105,14 @@ class Hold(Leg):
         """The number of its load steps."""
         return self.num
 
+    @property
+    def duration(self) -> float:
+        """Its duration [s]."""
+        return self.hold
+
     def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
         """Yield ``num`` times evenly spaced at the value ``start``."""
-        for end in ramp(time, time + self.hold, self.num + 1)[1:]:
+        for end in ramp(time, time + self.duration, self.steps + 1)[1:]:
             yield Sample(start, end, index)
 
 
@@ -119,9 +135,14 @@ class Oscillation(Leg):
         """The number of its load steps."""
         return self.cycles * self.num
 
+    @property
+    def duration(self) -> float:
+        """Its duration [s]."""
+        return self.cycles / self.frequency
+
     def samples(self, start: float, time: float, index: int) -> Iterator[Sample]:
         """Yield ``num`` values each cycle of ``start`` + amplitude · sin(2πft)."""
-        times = ramp(time, time + self.cycles / self.frequency, self.steps + 1)[1:]
+        times = ramp(time, time + self.duration, self.steps + 1)[1:]
         for number, end in enumerate(times, start=1):
             angle = 2 * math.pi * (number % self.num) / self.num
             # Rounding removes the 1e-16 that sin(π) leaves.
@@ -170,6 +191,10 @@ def legs_of(given: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
             "is a jump",
             "0",
         )
+    if (steps := sum(leg.steps for leg in legs)) > _MOST:
+        raise ConfigError(f"has {steps} load steps; give legs of {_MOST} at most")
+    if not sum(leg.duration for leg in legs) < _LONGEST:
+        raise ConfigError(f"lasts longer than {_LONGEST:g} s; check the units of its times")
     for index, values in enumerate(_values_of_legs(legs)):
         try:
             quantity(min(values))

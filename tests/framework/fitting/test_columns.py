@@ -13,7 +13,7 @@ from scipy.io import savemat
 
 import pellicle as pl
 from pellicle.fitting.curves.columns import Calibration
-from pellicle.fitting.curves.curve import Curve
+from pellicle.fitting.curves.curve import Curve, clean
 from pellicle.fitting.curves.readers import read
 from pellicle.fitting.curves.roles import column_map
 
@@ -284,3 +284,40 @@ def test_bad_files(
         error = raised
     assert isinstance(error, pl.PellicleError)
     assert words in str(error)
+
+
+def _ramp(pause: str, noise: float) -> tuple[Array, Array]:
+    """Return position [m] and force [N] of an approach, a pause and a retract."""
+    up = np.linspace(0, 3e-6, 400)
+    rest = np.full(300, up[-1])
+    if pause == "creep":
+        rest += np.linspace(0, 1e-7, rest.size)
+    position = np.concatenate([up, rest, rest[-1] * np.linspace(1, 0, 400)])
+    position += noise * np.random.default_rng(0).standard_normal(position.size)
+    depth = np.clip(position - 1e-6, 0, None)
+    force = 1e3 * depth**1.5
+    force[400:700] *= np.linspace(1, 0.7, 300)
+    force[700:] *= 0.7
+    return position, force
+
+
+@pytest.mark.parametrize(("pause", "noise"), [("hold", 0.0), ("hold", 2e-9), ("creep", 1e-9)])
+def test_pauses_are_left_out(pause: str, noise: float) -> None:
+    """Approach and retract end where the pause between them begins and ends."""
+    position, force = _ramp(pause, noise)
+    approach = clean(Curve(position, force))
+    assert approach.position.size == pytest.approx(400, abs=10)
+    assert any("are the approach" in text for text in approach.messages)
+    retract = clean(Curve(position, force), "retract")
+    assert retract.position.size == pytest.approx(400, abs=10)
+    # Without a retract, the pause ends the file.
+    alone = clean(Curve(position[:700], force[:700]))
+    assert alone.position.size == pytest.approx(400, abs=10)
+
+
+@pytest.mark.parametrize("motion", ["triangle", "sine"])
+def test_a_pass_without_a_pause_is_whole(motion: str) -> None:
+    """A steady motion loses no row, and neither does one that slows down as a sine."""
+    share = np.linspace(0, 1, 400)
+    depth = 3e-6 * (share if motion == "triangle" else (1 - np.cos(np.pi * share)) / 2) - 1e-6
+    assert clean(Curve(depth, np.clip(depth, 0, None) ** 1.5)).position.size == 400

@@ -12,12 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
 from .columns import Calibration
 from .curve import Axis, Curve, Site
+from .origin import Origin
 
 SUFFIXES = (
     ".jpk-force",
@@ -30,6 +31,8 @@ SUFFIXES = (
 )
 """Suffixes that only instrument files have; .h5, .csv and .txt may be an instrument's too."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
+_FAR = 0.5
+"""Least motion of a segment that is no pause, over the largest motion."""
 _SPRING, _TIP = "spring constant", "tip position"
 _HEIGHTS = ("height (measured)", "height (piezo)")
 
@@ -148,20 +151,43 @@ def _curve(
     force = np.asarray(data["force"], dtype=float)
     stiffness = metadata.get(_SPRING, overrides.get(_SPRING))
     if _TIP in data:
-        tip = np.asarray(data[_TIP], dtype=float)
+        tip, source = np.asarray(data[_TIP], dtype=float), _TIP
     else:
         height = next((name for name in _HEIGHTS if name in data), None)
         if height is None:
             raise ConfigError(f"{path}: has no height over the sample (has {', '.join(data)})")
         bending = force / Calibration(spring_constant=stiffness).required_spring_constant()
-        tip = np.asarray(data[height], dtype=float) + bending
+        tip, source = np.asarray(data[height], dtype=float) + bending, height
     rows: Any = slice(None)
     if "segment" in data and segment != "both":
-        # The first and the last segment are the same if there is only one.
-        segments = np.asarray(data["segment"])
-        rows = segments == (segments.min() if segment == "approach" else segments.max())
+        rows = _rows_of(np.asarray(data["segment"]), tip, segment)
+    used = {"position": f"{source} [m]", "force": "force [N]"}
     time = _time(data, rows)
-    return Curve(-tip[rows], force[rows], stiffness=stiffness, time=time, site=_site(metadata))
+    origin = Origin(
+        columns=used if time is None else used | {"time": "time [s]"},
+        sensitivity=metadata.get("sensitivity", overrides.get("sensitivity")),
+        library="afmformats",
+    )
+    site = _site(metadata)
+    return Curve(-tip[rows], force[rows], stiffness=stiffness, time=time, origin=origin, site=site)
+
+
+def _rows_of(segments: Array, tip: Array, segment: str) -> Mask:
+    """Return the rows of the approach or of the retract, between which there may be pauses.
+
+    The approach is the first segment that falls by half of the largest motion, the retract the last
+    that rises by as much; in a file without such segments they are the first and the last.
+    """
+    numbers = np.unique(segments)
+    motions = np.array([np.ptp(tip[segments == number][[0, -1]]) for number in numbers])
+    down = np.array([float(np.diff(tip[segments == number][[0, -1]])[0]) < 0 for number in numbers])
+    far = motions >= _FAR * motions.max()
+    if segment == "approach":
+        chosen = next(iter(numbers[far & down]), numbers[0])
+    else:
+        chosen = next(iter(numbers[far & ~down][::-1]), numbers[-1])
+    mask: Mask = segments == chosen
+    return mask
 
 
 def _time(data: Mapping[str, Any], rows: Any) -> Array | None:

@@ -14,6 +14,7 @@ from pellicle.model.base import Model
 from pellicle.units import Quantity
 
 from .curve import Curve
+from .origin import Origin
 from .roles import EXAMPLE, OF_BASE, POSITIONS, SIGNALS, TIME, ColumnMap, factor, is_voltage
 
 SpringConstant = Annotated[float, Quantity("N/m", above=0)]
@@ -29,6 +30,8 @@ class Channel(NamedTuple):
 
     unit: str
     values: Array
+    name: str = ""
+    """Its name in the file."""
 
 
 class Calibration(Model):
@@ -110,6 +113,10 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
         stiffness=calibration.spring_constant,
         time=_time(columns, np.isfinite(position) & np.isfinite(force)),
         speed=calibration.speed,
+        origin=Origin(
+            columns={role: f"{c.name or role} [{c.unit}]" for role, c in columns.items()},
+            sensitivity=calibration.sensitivity,
+        ),
     )
 
 

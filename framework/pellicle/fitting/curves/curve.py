@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Literal, NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, shown
+from pellicle.units import axis_unit
+
+from .origin import Origin
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 Segment = Literal["approach", "retract", "both"]
 """The pass that is fitted; both: approach, dwell and retract in order of time."""
@@ -23,8 +29,20 @@ LARGEST = 1e30
 """Largest SI value that is fitted; the smallest is one over this."""
 _TURN = 0.5
 """Share of its range by which the position must move back for a change of direction to count."""
+_BLOCKS, _BLOCK_ROWS = 50, 4
+"""Parts of a pass in which a pause is sought, and their least number of rows."""
+_SLOW, _FAST_QUANTILE = 0.1, 0.9
+"""Largest speed in a pause over that quantile of all speeds."""
+_PAUSE_BLOCKS = 3
+"""Least number of blocks of a pause; a position that turns as a sine is as slow in one."""
 _SIGNIFICANT = 4.0
 """Standard errors that the rise of the force must exceed."""
+
+
+class Note(str):
+    """A message that says what was done; any other is a warning."""
+
+    __slots__ = ()
 
 
 class Axis(NamedTuple):
@@ -66,6 +84,21 @@ class Curve:
     """Constant speed [m/s] of the base, from which the time follows if `time` is None."""
     site: Site | None = None
     """Where on the sample it was measured, if it belongs to a force map."""
+    origin: Origin = field(default_factory=Origin)
+    """Its file, with the hash, the columns and the calibration."""
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw force against position on ``axes``, or else those of pyplot, and return them."""
+        if axes is None:
+            from matplotlib import pyplot
+
+            axes = pyplot.gca()
+        length, length_unit = axis_unit(self.position, "m")
+        scale, unit = axis_unit(self.force, "N")
+        axes.plot(np.asarray(self.position) * length, np.asarray(self.force) * scale, ".-")
+        label = "depth" if self.is_depth else "position"
+        axes.set(xlabel=f"{label} [{length_unit}]", ylabel=f"force [{unit}]")
+        return axes
 
 
 def clean(curve: Curve, segment: Segment = "approach") -> Curve:
@@ -89,7 +122,8 @@ def clean(curve: Curve, segment: Segment = "approach") -> Curve:
     messages = list(curve.messages)
     finite = np.isfinite(z) & np.isfinite(f)
     if missing := int(np.sum(~finite)):
-        messages.append(f"{missing} of {z.size} rows hold no finite number and were left out")
+        text = f"{missing} of {z.size} rows hold no finite number and were left out"
+        messages.append(Note(text))
     t = None if curve.time is None else _time(curve.time, finite)
     z, f = z[finite], f[finite]
     _check_count(z, "the curve")
@@ -229,14 +263,40 @@ def _rows(z: Array, segment: Segment, messages: list[str]) -> slice:
     # Rows of a dwell at the turn precede the retract.
     while first and z[first + 1] == z[first]:
         first += 1
-    if len(passes) > 1:
+    first, last = _without_pause(z, first, last, approach)
+    if left_out := z.size - 1 - last + first:
         messages.append(
-            f"rows {first + 1} to {last + 1} are the {segment}; "
-            f"the other {z.size - 1 - last + first} were left out"
+            Note(
+                f"rows {first + 1} to {last + 1} are the {segment}; the other {left_out} were left "
+                "out"
+            )
         )
     if not approach:
         messages.append("a retract is fitted as if nothing adhered: compare with the approach")
     return slice(first, last + 1)
+
+
+def _without_pause(z: Array, first: int, last: int, approach: bool) -> tuple[int, int]:
+    """Return the first and the last row of a pass without a pause at its deep end.
+
+    In a pause the position creeps or is only noise; the rows of an approach and its pause are split
+    into blocks, and those that move by less than a tenth of what the fast ones do are the pause.
+    """
+    rows = z[first : last + 1] if approach else z[first : last + 1][::-1]
+    size = rows.size // _BLOCKS
+    if size < _BLOCK_ROWS:
+        return first, last
+    blocks = rows[rows.size - size * _BLOCKS :].reshape(_BLOCKS, size)
+    centred = np.arange(size) - (size - 1) / 2
+    speed = np.abs(blocks @ centred)
+    slow = speed < _SLOW * np.quantile(speed, _FAST_QUANTILE)
+    count = int(np.argmin(slow[::-1])) if not slow.all() else 0
+    if count < _PAUSE_BLOCKS:
+        return first, last
+    begin, later = np.median(blocks[-count : 2 - count], axis=1)
+    # The block before holds rows of the ramp and, at most one block of creep earlier, of the pause.
+    end = int(np.argmax(rows >= begin - 1.5 * max(later - begin, 0.0)))
+    return (first, first + end) if approach else (last - end, last)
 
 
 def _turns(z: Array, least: float) -> list[int]:

@@ -18,6 +18,7 @@ from pellicle.units import Quantity
 from . import afm
 from .columns import Calibration, from_columns, is_curve
 from .curve import Curve, Site
+from .origin import Stamped, state
 from .roles import EXAMPLE
 from .text_table import FILE, curves_of, read_cells
 from .tree import read_hdf5, read_matlab
@@ -272,7 +273,14 @@ def read(
     StorageError
         The file cannot be read.
     """
-    calibration, suffix = calibration or Calibration(), path.suffix.lower()
+    before = state(path)
+    return Stamped(_read(path, calibration or Calibration(), segment), path, before)
+
+
+def _read(
+    path: Path, calibration: Calibration, segment: str
+) -> Mapping[str, Curve | PellicleError]:
+    suffix = path.suffix.lower()
     mapped = calibration.columns or {}
     if suffix in _SPREADSHEETS:
         raise StorageError(

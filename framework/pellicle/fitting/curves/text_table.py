@@ -78,6 +78,10 @@ class Cells:
         """Names of the columns, or the first numbers of a table without."""
         return self.names or self.rows[0]
 
+    def name(self, index: int) -> str:
+        """Return the name of a column, or its number from 1."""
+        return self.heads[index].name if self.heads else str(index + 1)
+
     def numbers(self, rows: Sequence[Sequence[str]], index: int) -> Array:
         """Return a column of some rows; NaN where a cell is missing or holds no number.
 
@@ -237,7 +241,7 @@ def curves_of(
             curves.setdefault(row[label].strip() if label < len(row) else "", []).append(row)
     return {
         text: {
-            role: Channel(units[role], cells.numbers(rows, index))
+            role: Channel(units[role], cells.numbers(rows, index), cells.name(index))
             for role, index in indices.items()
         }
         for text, rows in curves.items()

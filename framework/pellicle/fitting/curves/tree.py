@@ -105,7 +105,7 @@ def _mapped(path: Path, root: Any, mapped: Mapping[str, str]) -> dict[str, Mappi
         for label, array in _leaves(root, _parts(root, pattern)):
             for row, values in _rows(array, first=not hasattr(root, "filename")):
                 whole = "/".join(filter(None, (label, row)))
-                arrays[whole] = Channel(role.unit or _unit(array), values)
+                arrays[whole] = Channel(role.unit or _unit(array), values, pattern)
         if not arrays:
             raise ConfigError(
                 f"{path}: has no array of numbers at {pattern!r} (it has {_content(root)})",

@@ -26,6 +26,7 @@ from pellicle.fitting.parameters import (
 )
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.population.judgement import Row
+from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
 from pellicle.fitting.statistics.profile import Estimate
 from pellicle.report.plotting import save_figure as save_drawing
@@ -36,7 +37,7 @@ from .map_files import figure_size, map_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import FigureBase
+    from matplotlib.figure import Figure, FigureBase
 
 SIZE = (5.2, 4.6)
 """Width and height of a panel [inch]."""
@@ -118,15 +119,30 @@ def save_figure(fit: Fit | PooledFit, path: Path) -> Path:
         The file cannot be written.
     """
     beside = panels(fit)
-
-    def draw(figure: FigureBase) -> None:
-        parts = figure.subfigures(1, len(beside), squeeze=False)[0]
-        for panel, part in zip(beside, parts, strict=True):
-            panel.draw(part)
-
-    size = len(beside) * SIZE[0], SIZE[1]
+    draw, size = partial(_beside, beside), _size(beside)
     (file,) = save_drawing(draw, path.with_suffix(""), [path.suffix[1:]], size)
     return file
+
+
+def plot(fit: FitResult) -> Figure:
+    """Return a figure of pyplot with the panels of a fit beside each other."""
+    from matplotlib import pyplot
+
+    assert isinstance(fit, (Fit, PooledFit)), "these are all fits that have panels"
+    beside = panels(fit)
+    figure = pyplot.figure(figsize=_size(beside), layout="constrained")
+    _beside(beside, figure)
+    return figure
+
+
+def _size(beside: Sequence[Panel]) -> tuple[float, float]:
+    return len(beside) * SIZE[0], SIZE[1]
+
+
+def _beside(beside: Sequence[Panel], figure: FigureBase) -> None:
+    parts = figure.subfigures(1, len(beside), squeeze=False)[0]
+    for panel, part in zip(beside, parts, strict=True):
+        panel.draw(part)
 
 
 def curve(fit: Fit, axes: Axes) -> None:

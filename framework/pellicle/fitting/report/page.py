@@ -16,13 +16,14 @@ from pellicle.fitting.fit import Fit
 from pellicle.fitting.many import FITTED, ManyFits
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.population.judgement import Row
-from pellicle.fitting.result import as_json
+from pellicle.fitting.result import FitResult, as_json
 from pellicle.fitting.statistics.profile import CONFIDENCE
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
 from pellicle.report.plotting import svg
 from pellicle.units import axis_unit, readable
 
+from .answer import answer, interval, scale
 from .contact_sheet import LEGEND, PAGE, sheets
 from .figures import SIZE, panels
 
@@ -42,6 +43,7 @@ _COLUMNS = (
     ("contact_point", "m"),
 )
 _MEANINGS = {
+    "interval": "values that describe the data nearly as well; < and >: open to the other side",
     "low": "lower end of the interval",
     "high": "upper end of the interval",
     "bound": "Cramér–Rao bound: the standard deviation that no unbiased fit could beat",
@@ -86,13 +88,16 @@ def save_report(fit: Fit | PooledFit | ManyFits, path: Path, title: str) -> Path
 
 def _fit(fit: Fit | PooledFit) -> tuple[list[Block], list[Block]]:
     """Return results and inputs of a fit or a pooled fit."""
-    results: list[Block] = [Notice(_sentence(fit.comparison), good=not fit.doubt)]
+    results: list[Block] = [
+        Text(answer(fit)),
+        Notice(_sentence(fit.comparison), good=not fit.doubt),
+    ]
     if isinstance(fit, Fit):
-        results += [*_warnings(fit.notes), _estimates(fit)]
-        return results, [_inputs([fit.model()]), _data(fit)]
+        results += [*_warnings(fit.warnings), _estimates(fit), *_notes(fit)]
+        return results, [_inputs([fit.model()]), _data(fit), *_record(fit)]
     results.append(Notice(_sentence(fit.agreement), good=fit.agree))
-    results += [*_warnings(fit.notes), _estimates(fit), _curves(fit)]
-    return results, [_inputs([curve.model for curve in fit.curves])]
+    results += [*_warnings(fit.warnings), _estimates(fit), _curves(fit), *_notes(fit)]
+    return results, [_inputs([curve.model for curve in fit.curves]), *_record(fit)]
 
 
 def _many(fits: ManyFits) -> tuple[list[Block], list[Block]]:
@@ -171,17 +176,54 @@ def _warnings(messages: Sequence[str]) -> list[Notice]:
     return [Notice("Warnings:", good=False, details=messages)] if messages else []
 
 
+def _notes(fit: FitResult) -> list[Block]:
+    """Return what was done with the data, apart from the warnings."""
+    return [Notice("Notes:", good=True, details=fit.notes)] if fit.notes else []
+
+
+def _record(fit: FitResult) -> list[Block]:
+    """Return the table of the files that were fitted, and the versions."""
+    if fit.record is None:
+        return []
+    heads = {
+        "file": [entry["file"] or "numbers given in Python" for entry in fit.record.data],
+        "curve": [entry["curve"] or "" for entry in fit.record.data],
+        "columns": [
+            ", ".join(f"{role} = {column}" for role, column in entry["columns"].items())
+            for entry in fit.record.data
+        ],
+        **{
+            name.replace("_", " "): [
+                "" if entry[name] is None else readable(entry[name], unit)
+                for entry in fit.record.data
+            ]
+            for name, unit in (("spring_constant", "N/m"), ("sensitivity", "m/V"))
+        },
+        "segment": [entry["segment"] for entry in fit.record.data],
+        "baseline": [entry["baseline"] for entry in fit.record.data],
+        "SHA-256": [entry["sha256"] or "" for entry in fit.record.data],
+    }
+    columns = {Column(head, words=True): texts for head, texts in heads.items() if any(texts)}
+    versions = ", ".join(f"{name} {number}" for name, number in fit.record.versions.items())
+    return [_table("The data, and how they were read.", columns), Text(f"Versions: {versions}.")]
+
+
 def _estimates(fit: Fit | PooledFit) -> Table:
     rows = []
+    # A tension at its limit is left out of the bounds of the others, but not of their intervals.
+    bounded = fit.tension.held or fit.tension.value > 0
     for name, estimate in fit.estimates().items():
-        factor, unit = axis_unit(np.array([estimate.value]), estimate.unit)
-        ends = [_end(end, factor, estimate.held) for end in (estimate.low, estimate.high)]
-        bound = f"{estimate.bound * factor:.2g}" if np.isfinite(estimate.bound) else "none"
+        factor, unit = scale(estimate)
+        is_known = bounded and np.isfinite(estimate.bound)
+        bound = f"{estimate.bound * factor:.2g}" if is_known else "none"
         bound = "" if estimate.held else bound
-        rows.append([name.replace("_", " "), f"{estimate.value * factor:.4g}", *ends, unit, bound])
+        value = f"{estimate.value * factor:.4g}"
+        name = name.replace("_", " ").replace("youngs", "Young's")
+        rows.append([name, value, interval(estimate), unit, bound])
+    heads = ("parameter", "value", "interval", "unit", "bound")
     columns = [
         Column(head, meaning=_MEANINGS.get(head, ""), words=head in ("parameter", "unit"))
-        for head in ("parameter", "value", "low", "high", "unit", "bound")
+        for head in heads
     ]
     caption = f"Estimates, with {100 * CONFIDENCE:.0f} % intervals of the profile likelihood."
     return Table(caption, columns, rows)

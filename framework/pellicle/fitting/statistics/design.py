@@ -11,6 +11,7 @@ import numpy as np
 from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.models.layer import FreeLayerModel, LayerModel, with_thickness
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
+from pellicle.units import readable
 
 from .likelihood import Likelihood
 from .profile import Estimate
@@ -55,7 +56,7 @@ def advice(
             "their errors holds; the intervals do"
         )
     else:
-        condition = f"for a tension of {supposed[TENSION]:.2g} N/m: "
+        condition = f"for a tension of {readable(supposed[TENSION], 'N/m', 2)}: "
         shares = {"modulus": now.modulus, "tension": now.tension}
         words = (
             f"{condition if supposed[TENSION] != tension.value else ''}"

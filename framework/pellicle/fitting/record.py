@@ -1,0 +1,186 @@
+"""The record of a fit: what was fitted, with which versions, when; and the same fit again."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from time import perf_counter
+from typing import Any, NamedTuple
+
+from pellicle.components import Component
+from pellicle.config.provenance import versions
+from pellicle.errors import ConfigError, StorageError
+from pellicle.plugins import registry
+
+from .config import FitConfig
+from .curves.curve import Curve
+from .curves.origin import sha256
+
+_ABOVE = 2
+"""Folders above that of a record in which its curves are sought."""
+
+
+@dataclass(frozen=True)
+class Record:
+    """When a fit was made, with which versions, from which data."""
+
+    data: tuple[dict[str, Any], ...]
+    """File, hash, columns, calibration, segment and baseline of each curve."""
+    versions: Mapping[str, str]
+    """Version of each package that the fit used."""
+    date: str
+    wall_time: float
+    """[s]"""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what the fit has once as JSON data; its curves hold their own data."""
+        return {
+            "versions": dict(self.versions),
+            "date": self.date,
+            "wall_time": self.wall_time,
+        }
+
+
+class Stopwatch:
+    """Makes the record of a fit that began when it was created."""
+
+    def __init__(self) -> None:
+        self._began = perf_counter()
+
+    def record(self, config: FitConfig, data: Iterable[dict[str, Any]]) -> Record:
+        """Return the record of a fit of curves with these `data_of`, which ends now."""
+        entries = tuple(data)
+        libraries = {entry["library"] for entry in entries if entry["library"]}
+        return Record(
+            entries,
+            versions(_components(config), libraries),
+            datetime.now(UTC).isoformat(timespec="seconds"),
+            round(perf_counter() - self._began, 3),
+        )
+
+
+def data_of(curve: Curve, config: FitConfig) -> dict[str, Any]:
+    """Return what was measured, and which part of it is fitted, as JSON data."""
+    return {
+        **curve.origin.to_dict(),
+        "spring_constant": curve.stiffness,
+        "segment": config.segment,
+        "baseline": config.baseline,
+        "poissons_ratio": config.poissons_ratio,
+    }
+
+
+def _components(config: FitConfig) -> set[type[Component]]:
+    """Return the components that a fit uses; of some only the tables are known."""
+    tables = [entry for entry in (config.indenter, config.kernel) if isinstance(entry, Mapping)]
+    types = {table["type"] for table in tables}
+    named = {
+        registered.component
+        for family in registry().components.values()
+        for name, registered in family.items()
+        if name in types
+    }
+    objects = (config.indenter, config.executor)
+    return named | {type(entry) for entry in objects if isinstance(entry, Component)}
+
+
+class Repetition(NamedTuple):
+    """A fit that is to be made again."""
+
+    config: FitConfig
+    sha256: Mapping[str, str]
+    """Hash of each file that was fitted, by its path as it was given."""
+    versions: Mapping[str, str]
+
+    def differences(
+        self, data: Iterable[Mapping[str, Any]], record: Record | None
+    ) -> Iterator[str]:
+        """Yield in words which files and versions differ from those of the first fit.
+
+        Parameters
+        ----------
+        data
+            `data_of` each curve that is fitted now.
+        record
+            Record of the fit, with its versions, if it has one.
+        """
+        hashes = {entry["file"]: entry["sha256"] for entry in data}
+        for file, known in hashes.items():
+            if file not in self.sha256:
+                yield f"{file}: was not among the curves that were fitted then"
+            elif self.sha256[file] != known:
+                yield (
+                    f"{file}: is not the file that was fitted then: its SHA-256 is {known}, and "
+                    f"was {self.sha256[file]}"
+                )
+        for file in self.sha256.keys() - hashes.keys():
+            yield f"{file}: was fitted then, and is not read now"
+        for name, version in (record.versions if record else {}).items():
+            if self.versions.get(name) not in (None, version):
+                yield f"{name} is version {version}, and was {self.versions[name]}"
+
+
+def repetition(path: Path) -> Repetition:
+    """Return what the JSON file of a fit, of a pooled fit or of many fits says was fitted.
+
+    Its curves are sought from the current folder, from that of the file, and from those above it;
+    those whose hashes are the recorded ones are preferred.
+
+    Raises
+    ------
+    ConfigError
+        The file is not the JSON of a fit, or the curves were not read from files.
+    StorageError
+        The file cannot be read.
+    """
+    content = _content(path)
+    rows = content.get("curves", [content])
+    entries = [row.get("data") for row in rows if isinstance(row, dict)]
+    hashes = {
+        str(data["file"]): str(data.get("sha256"))
+        for data in entries
+        if isinstance(data, dict) and data.get("file")
+    }
+    if not hashes:
+        raise ConfigError(
+            f"{path}: holds no fit of a file; numbers that were given in Python have to be given "
+            "again, with FitConfig.from_json"
+        )
+    config = FitConfig.from_json(json.dumps(content))
+    folder = _folder(path, hashes)
+    if folder != Path():
+        hashes = {str(folder / file): known for file, known in hashes.items()}
+        config = FitConfig.merged(config, curves=tuple(folder / curve for curve in config.curves))
+    known = content.get("versions")
+    return Repetition(config, hashes, known if isinstance(known, dict) else {})
+
+
+def _content(path: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except ValueError:
+        content = None
+    if not isinstance(content, dict) or not isinstance(content.get("configuration"), dict):
+        raise ConfigError(
+            f"{path}: is not the JSON of a fit; give the file that pellicle fit -o leaves, such as "
+            "bead-fit.json or fits.json"
+        )
+    return content
+
+
+def _folder(path: Path, hashes: Mapping[str, str]) -> Path:
+    """Return the folder from which the recorded paths lead to the curves."""
+    file, known = next(iter(hashes.items()))
+    above = path.resolve().parents
+    folders = [folder for folder in (Path(), *above[: 1 + _ABOVE]) if (folder / file).is_file()]
+    if not folders:
+        raise StorageError(
+            f"{file}: is not there, nor in the folder of {path} or above it; call pellicle where "
+            "the fit was made"
+        )
+    return next((folder for folder in folders if sha256(folder / file) == known), folders[0])
