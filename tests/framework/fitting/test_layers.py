@@ -89,7 +89,7 @@ def test_of_free_thickness() -> None:
     assert not fit.thickness.held
     assert fit.reduced_modulus.bound > 1.5 * given.reduced_modulus.bound
     again = pl.fit(config=fit.config, position=curve()[0], force=curve()[1])
-    assert again.to_dict() == fit.to_dict()
+    assert again.estimates() == fit.estimates()
 
 
 def test_a_half_space_has_no_upper_bound_of_thickness() -> None:
