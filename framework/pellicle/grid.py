@@ -60,12 +60,18 @@ class Grid(Model):
     points: Annotated[
         tuple[_Points, _Points],
         BeforeValidator(pair, json_schema_input_type=_Whole | tuple[_Whole, _Whole]),
-        Field(description="number of cells: one whole number, or two as [along x, along y]"),
+        Field(
+            title="number of cells",
+            description="number of cells: one whole number, or two as [along x, along y]",
+        ),
     ]
     size: Annotated[
         tuple[Length, Length],
         BeforeValidator(pair, json_schema_input_type=Length | tuple[Length, Length]),
-        Field(description="edge length of the domain [m]: one, or two as [along x, along y]"),
+        Field(
+            title="domain size",
+            description="edge length of the domain [m]: one, or two as [along x, along y]",
+        ),
     ]
     boundary: Annotated[
         Boundary,

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache, lru_cache
-from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any, get_args
+from numbers import Integral, Real
+from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple, get_args
 
 from pydantic_core import core_schema
 
@@ -34,6 +34,7 @@ _EXAMPLES = {
     "Pa/m": "1 kPa/mm",
     "N": "2 uN",
     "m**2": "0.01 mm**2",
+    "m**3": "0.001 mm**3",
     "rad": "70 degree",
     "s": "1 s",
     "Hz": "1 Hz",
@@ -53,10 +54,72 @@ _POWER = (
 _FACTOR = rf"(?:\( ?)*(?:1(?![\w.])|{_NAME}){_POWER}(?: ?\){_POWER})*"
 _UNIT = re.compile(rf"{_FACTOR}(?:(?: ?[*/·⋅×.] ?| ){_FACTOR})*")
 _LONGEST_UNIT = 100
-_PREFIXABLE = re.compile(r"[^\W\d_]+(?:/.*|\*(?!\*).*)?")
-_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f"}
+_FIRST = re.compile(r"([^\W\d_]+)(?:(?:\*\*|\^)?([23]))?(?![\w.^]|\*\*)(.*)")
+"""First symbol of a unit, its power if that is 2 or 3, and the rest."""
+_PREFIXED = frozenset({"m", "N", "Pa", "J", "s", "V", "A", "W", "Hz"})
+"""Units that take prefixes; those of strangers may be counts, photons or decibels."""
+_PREFIXES = {
+    12: "T",
+    9: "G",
+    6: "M",
+    3: "k",
+    0: "",
+    -3: "m",
+    -6: "µ",
+    -9: "n",
+    -12: "p",
+    -15: "f",
+} | {-18: "a", -21: "z", -24: "y"}
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MOST = 8
 """Largest number of values written out; of more, some are left out."""
+DIGITS: Final = 4
+"""Significant digits of a number that is shown."""
+NOTHING: Final = "–"
+"""The text for a number that does not exist."""
+_NOUNS = {
+    "m": "a length",
+    "Pa": "a pressure",
+    "N/m": "a tension",
+    "J/m**2": "an energy per area",
+    "N*m": "a bending stiffness",
+    "Pa/m": "a stiffness per area",
+    "N": "a force",
+    "J": "an energy",
+    "m**2": "an area",
+    "m**3": "a volume",
+    "rad": "an angle",
+    "s": "a time",
+    "m/V": "a length per voltage",
+    "m/s": "a speed",
+    "Hz": "a frequency",
+    "m/Pa": "a compliance",
+    "rad/m": "a wavenumber",
+}
+"""Nouns for the values that a field takes, by its SI unit."""
+_MEASURED = {
+    "m": "a length",
+    "N": "a force",
+    "Pa": "a pressure",
+    "N/m": "a force per length",
+    "J": "an energy",
+    "Pa/m": "a pressure per length",
+    "m**2": "an area",
+    "m**3": "a volume",
+    "s": "a time",
+    "1/m": "an inverse length",
+    "m/s": "a speed",
+    "Hz": "a frequency",
+    "kg": "a mass",
+    "kg/m**3": "a density",
+    "Pa*s": "a viscosity",
+    "K": "a temperature",
+    "V": "a voltage",
+    "A": "a current",
+    "W": "a power",
+    "m/V": "a length per voltage",
+}
+"""Nouns for values of other dimensions, by a unit of that dimension."""
 
 
 def _root(one: Any) -> str:
@@ -135,11 +198,10 @@ def _factor(unit: str, si: str) -> float:
         # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
         if type(error).__name__ != "DimensionalityError":
             raise ValueError(unknown) from None
-        measured = registry.Unit(unit).dimensionality
-        raise ValueError(f"measures {measured}, not {_dimension(si)}") from None
+        raise ValueError(f"is {_measured(unit)}") from None
     # In pint per cent, decibels and counts have no dimension, and neither have angles.
     if _root(one) != root:
-        raise ValueError(f"measures {_root(one)}, not {_dimension(si)}")
+        raise ValueError(f"is {_measured(unit)}")
     if zero != 0:
         raise ValueError(f"is in a unit whose zero is {zero:.6g} {si}")
     if not 0 < factor < math.inf:
@@ -147,53 +209,117 @@ def _factor(unit: str, si: str) -> float:
     return factor
 
 
-def _dimension(unit: str) -> str:
-    dimension = str(_registry().Unit(unit).dimensionality)
-    return "an angle" if dimension == "dimensionless" else dimension
+def _measured(unit: str) -> str:
+    """Return what a unit that pint knows measures, as a noun with its article."""
+    registry = _registry()
+    dimension = registry.Unit(unit).dimensionality
+    if not dimension:
+        root = _root(registry.Quantity(1.0, unit))
+        kinds = {"dimensionless": "a pure number", "radian": "an angle"}
+        return kinds.get(root, f"a number of {root}")
+    for known, noun in _MEASURED.items():
+        if registry.Unit(known).dimensionality == dimension:
+            return noun
+    return f"a value in {unit}"
 
 
-def axis_unit(values: ArrayLike, unit: str) -> tuple[float, str]:
-    """Return a factor and a prefixed unit that bring ``values``, in SI, to between 1 and 1000.
+class Scale(NamedTuple):
+    """The unit in which all values of one kind are shown, in a column or along an axis."""
 
-    A unit that begins with a power, such as m⁴, takes no prefix, since the power would apply to the
-    prefix too; areas do take one, chosen accordingly. Pure numbers and texts have an empty unit.
+    factor: float
+    """Factor from SI to the unit."""
+    unit: str
+    """The unit, with a prefix; empty for pure numbers and texts."""
+
+    def number(self, value: object, digits: int = DIGITS) -> str:
+        """Return a value in SI as text in the unit, without it; NaN is a dash.
+
+        Whole numbers and texts are not rounded.
+        """
+        if not isinstance(value, Real) or isinstance(value, bool):
+            return value if isinstance(value, str) else shown(value)
+        if isinstance(value, Integral) and self.factor == 1.0:
+            return str(int(value))
+        number = float(value) * self.factor
+        if math.isnan(number):
+            return NOTHING
+        if math.isinf(number):
+            return "∞" if number > 0 else "-∞"
+        # Adding 0 removes the sign of a negative zero.
+        text = f"{number + 0.0:.{digits}g}"
+        return f"{number:.0f}" if "e+0" in text and abs(number) < 1e6 else text
+
+    def text(self, value: object, digits: int = DIGITS) -> str:
+        """Return a value in SI as text with the unit, such as ``"30 mN/m"``."""
+        number = self.number(value, digits)
+        is_number = not isinstance(value, str) and number != NOTHING
+        return self.with_unit(number) if is_number else number
+
+    def with_unit(self, number: str) -> str:
+        """Return a number that is in the unit with the unit: ``"30 mN/m"``, ``"70°"``."""
+        return f"{number}{'' if self.unit == '°' else ' '}{self.unit}".rstrip()
+
+    def listing(self, numbers: Sequence[str]) -> str:
+        """Return numbers as a list, followed by the unit; of many, some are left out."""
+        if len(numbers) > _MOST:
+            shortened = f"{', '.join(numbers[: _MOST - 2])}, …, {numbers[-1]}"
+            return f"{self.with_unit(shortened)} ({len(numbers)} values)"
+        joined = ", ".join(numbers)
+        return joined if {*numbers} <= {NOTHING} else self.with_unit(joined)
+
+
+def example(unit: str) -> str:
+    """Return a value in a unit as text, such as ``"10 kPa"``."""
+    return _EXAMPLES.get(unit, f"1 {unit}")
+
+
+def printed(unit: str) -> str:
+    """Return a unit as it is printed: ``J/m²`` for ``J/m**2``, ``°C`` as it is."""
+    raised = re.sub(
+        r"(?:\*\*|\^)(?:\((-?\d+)\)|(-?\d+)(?![\d.]))|(?<=[^\W\d_])(\d+)(?![\w.])",
+        lambda match: (match[1] or match[2] or match[3]).translate(_RAISED),
+        unit,
+    )
+    return raised.replace("**", "^").replace("*", "·")
+
+
+def axis_unit(values: ArrayLike, unit: str) -> Scale:
+    """Return the scale, with one prefix, that brings the largest of ``values``, in SI, near 1.
+
+    Lengths, forces and the like come to between 1 and 1000, areas and volumes to above 0.01 and
+    0.001, since their prefix is raised with the unit. Angles come to degrees. Where no prefix
+    serves, and in units that take none, values stay in SI. Pure numbers and texts have an empty
+    unit.
     """
     import numpy as np
 
     if unit in ("", "1"):
-        return 1.0, ""
+        return Scale(1.0, "")
+    if unit == "rad":
+        return Scale(180 / math.pi, "°")
     finite = np.abs(np.asarray(values)[np.isfinite(values)])
-    highest = float(finite.max(initial=0.0))
-    if unit in ("m2", "m**2"):
-        # The prefix of a square counts twice: 1 mm² is 1e-6 m²; down to 0.01 mm² reads well.
-        exponent = 3 * int(np.floor(np.log10(10 * np.sqrt(highest)) / 3)) if highest else 0
-        exponent = min(max(exponent, -15), 0)
-        return 10.0 ** (-2 * exponent), f"{_PREFIXES[exponent]}m²"
-    if not _PREFIXABLE.fullmatch(unit):
-        return 1.0, unit
-    exponent = 3 * int(np.floor(np.log10(highest) / 3)) if highest else 0
-    exponent = min(max(exponent, -15), 9)
-    return 10.0**-exponent, f"{_PREFIXES[exponent]}{unit}"
+    # Round-off of 1e-6 to 9.999999999999999e-07 must not turn 1 µm into 1000 nm.
+    highest = float(f"{float(finite.max(initial=0.0)):.{DIGITS}g}")
+    match = _FIRST.fullmatch(unit)
+    if match is None or match[1] not in _PREFIXED or not highest:
+        return Scale(1.0, printed(unit))
+    power = int(match[2] or 1)
+    lowest = 1.0 if power == 1 else 0.1
+    exponent = 3 * math.floor(round(math.log10(highest) / power - math.log10(lowest), 9) / 3)
+    if power > 1 or match[1] == "s":
+        # 3600 s reads better than 3.6 ks.
+        exponent = min(exponent, 0)
+    if exponent not in _PREFIXES:
+        return Scale(1.0, printed(unit))
+    return Scale(10.0 ** (-power * exponent), f"{_PREFIXES[exponent]}{printed(unit)}")
 
 
 def readable(value: Any, unit: str = "1", digits: int = 6) -> str:
     """Return one or several values, in SI, as text with a unit that brings them near 1 … 1000."""
     values = list(value) if isinstance(value, (list, tuple)) else [value]
     numeric = all(isinstance(v, (int, float)) and v is not True for v in values)
-    factor, name = axis_unit(values, unit) if values and numeric else (1.0, "")
-    if name:
-        texts = [f"{v * factor:.{digits}g}" for v in values]
-    else:
-        texts = [f"{v:.{digits}g}" if isinstance(v, float) else _text(v) for v in values]
-    if len(texts) > _MOST:
-        return f"{', '.join(texts[: _MOST - 2])}, …, {texts[-1]} {name}".rstrip() + (
-            f" ({len(values)} values)"
-        )
-    return f"{', '.join(texts)} {name}".rstrip()
-
-
-def _text(value: Any) -> str:
-    return value if isinstance(value, str) else shown(value)
+    scale = axis_unit(values, unit) if values and numeric else Scale(1.0, "")
+    return scale.listing([scale.number(v, digits) for v in values])
 
 
 @dataclass(frozen=True)
@@ -206,6 +332,9 @@ class Quantity:
         SI unit, e.g. ``"Pa"``; ``"1"`` for a pure number.
     above, at_least, below, at_most
         Bounds in that unit; ``above`` and ``below`` exclude the bound.
+    noun
+        What the values are, with an article, for messages such as "is a force, not a spring
+        constant"; without it, a noun for the unit.
     """
 
     unit: str
@@ -213,6 +342,7 @@ class Quantity:
     at_least: float | None = None
     below: float | None = None
     at_most: float | None = None
+    noun: str = ""
 
     def __call__(self, value: object) -> float:
         """Return ``value`` in SI.
@@ -258,7 +388,9 @@ class Quantity:
         try:
             factor = _factor(" ".join(unit.split()), self.unit)
         except ValueError as problem:
-            raise ValueError(f"{shown(value)} {problem}; give {self._wanted()}") from None
+            noun = self.noun or _NOUNS.get(self.unit, f"a value in {self.unit}")
+            contrast = f", not {noun}" if str(problem).startswith("is a") else ""
+            raise ValueError(f"{shown(value)} {problem}{contrast}; give {self._wanted()}") from None
         if not math.isfinite(float(number)) or float(number) == 0:
             # Its exponent may be beyond the range of a decimal.
             return float(number)
@@ -295,6 +427,17 @@ class Quantity:
         """The bounds as text, e.g. ``["> 0", "≤ 0.5"]``."""
         all_four = ((">", self.above), ("≥", self.at_least), ("<", self.below), ("≤", self.at_most))
         return [f"{sign} {bound:g}" for sign, bound in all_four if bound is not None]
+
+    @property
+    def example(self) -> str | float:
+        """A value within the bounds, as text with its unit or as a number."""
+        if self.unit != "1":
+            return example(self.unit)
+        low = self.above if self.above is not None else self.at_least
+        high = self.below if self.below is not None else self.at_most
+        if low is None or high is None:
+            return 1.0 if low is None else low + 1.0
+        return float(f"{low + 0.8 * (high - low):.3g}")
 
     def _wanted(self) -> str:
         if self.unit == "1":

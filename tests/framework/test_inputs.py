@@ -45,13 +45,13 @@ def test_values_have_units(table: dict[str, Input]) -> None:
         "grid.boundary": "free",
         "kernel": "coated",
         "kernel.tension": "200 mN/m",
-        "kernel.substrate": "frictionless_layer",
+        "kernel.substrate": "frictionless layer",
         "kernel.substrate.thickness": "100 µm",
         "kernel.substrate.youngs_modulus": "10 kPa",
-        "indenter.half_angle": "1.22173 rad",
+        "indenter.half_angle": "70°",
         "loading.depth": "1, 2, 3, 4, 5, 6, …, 20 µm (20 values)",
         "solver.tolerance": "1e-08",
-        "corrections.0": "yastrebov",
+        "corrections.0": "Yastrebov",
     }.items():
         assert table[name].value == value
 
@@ -71,7 +71,7 @@ def test_what_nobody_explains_is_there() -> None:
     """A component that is not installed here is listed with its bare numbers."""
     data = {"kernel": {"type": "of_a_stranger", "stiffness": 3.0, "stops": [{"at": 1}]}}
     assert [(entry.name, entry.value, entry.meaning) for entry in inputs(data)] == [
-        ("kernel", "of_a_stranger", ""),
+        ("kernel", "of a stranger", ""),
         ("kernel.stiffness", "3", ""),
         ("kernel.stops.0.at", "1", ""),
     ]
@@ -99,10 +99,10 @@ def test_readable(value: Any, unit: str, words: str) -> None:
     [
         (1e-8, "m**2", "0.01 mm²"),
         ([1e-12, 4e-12], "m2", "1, 4 µm²"),
-        (2e-11, "N*m", "20 pN*m"),
+        (2e-11, "N*m", "20 pN·m"),
         (9e7, "Pa/m", "90 MPa/m"),
-        (3e-24, "m4", "3e-24 m4"),
-        (3e-9, "m**3", "3e-09 m**3"),
+        (3e-24, "m4", "3e-24 m⁴"),
+        (3e-9, "m**3", "3 mm³"),
         (5e6, "1/m", "5e+06 1/m"),
     ],
 )

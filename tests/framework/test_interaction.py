@@ -80,7 +80,7 @@ def test_adds_variables(file: Path) -> None:
     header = next(file.parent.glob("*.csv")).read_text(encoding="utf-8").partition("\n")[0]
     assert {"zone_area [m2]", "zone_width [m]", "energy [J]"} <= {*header.split(",")}
     shown = CliRunner().invoke(app, ["show", str(file.with_suffix(".h5"))]).output
-    assert "zone_area [m2]" in shown
+    assert "area of the zone [" in shown
     hard = pl.run(
         run.model_copy(update={"interaction": None, "loading": pl.Loading(depth="5 um")}),
         progress=False,
@@ -99,7 +99,7 @@ def test_work_of_adhesion_on_the_command_line(file: Path) -> None:
     assert pl.load(result).configuration["interaction"]["work_of_adhesion"] == pytest.approx(0.04)
     done = CliRunner().invoke(app, [*command, f'{WORK}="5 mJ"'])
     assert done.exit_code == 2
-    assert f"{WORK}: '5 mJ' measures" in done.output
+    assert f"{WORK}: '5 mJ' is an energy, not an energy per area" in done.output
 
 
 def test_study_varies_the_work_of_adhesion() -> None:

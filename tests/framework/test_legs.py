@@ -128,7 +128,7 @@ def test_legs_at_the_command_line(tmp_path: Path) -> None:
     np.testing.assert_allclose(result.dataset["time"][-1], 4.0)
     shown = CliRunner().invoke(app, ["show", str(folder / "legs.h5")]).output
     head = next(line for line in shown.splitlines() if line.startswith("step"))
-    assert head.split()[:5] == ["step", "time", "[s]", "depth", "[m]"]
+    assert head.split()[:5] == ["step", "time", "[s]", "depth", "[µm]"]
 
 
 def test_a_study_varies_whole_paths() -> None:
@@ -164,15 +164,18 @@ def test_a_study_varies_legs(run: Any) -> None:
         ([{**LEGS[0], "time": "-1 s"}], "depth.0.time: '-1 s' is not allowed"),
         ([LEGS[0], {**LEGS[1], "hold": -1}], "depth.1.hold: -1 is not allowed"),
         ([LEGS[0], {**LEGS[1], "hold": 0}], "depth.1.hold: 0 is not allowed"),
-        ([LEGS[0], {**LEGS[1], "hold": "5 um"}], "depth.1.hold: '5 um' measures [length]"),
-        ([{**LEGS[0], "to": "1 s"}], "depth.0.to: '1 s' measures [time]"),
+        ([LEGS[0], {**LEGS[1], "hold": "5 um"}], "depth.1.hold: '5 um' is a length, not a time"),
+        ([{**LEGS[0], "to": "1 s"}], "depth.0.to: '1 s' is a time, not a length"),
         ([{**LEGS[0], "num": 0}], "depth.0.num: 0 is not allowed; give a value ≥ 1"),
         ([{**LEGS[0], "num": 2.5}], "depth.0.num: 2.5 is not allowed; give a whole number"),
         ([{"to": "1 um", "num": 2}], "depth.0.time: is missing"),
         ([LEGS[0], {**LEGS[2], "num": 3}], "depth.1.num: 3 is not allowed; give a value ≥ 4"),
         ([LEGS[0], {**LEGS[2], "cycles": 0.5}], "depth.1.cycles: 0.5 is not allowed"),
         ([LEGS[0], {**LEGS[2], "amplitude": 0}], "depth.1.amplitude: 0 is not allowed"),
-        ([LEGS[0], {**LEGS[2], "frequency": "1 s"}], "depth.1.frequency: '1 s' measures [time]"),
+        (
+            [LEGS[0], {**LEGS[2], "frequency": "1 s"}],
+            "depth.1.frequency: '1 s' is a time, not a frequency",
+        ),
         ([LEGS[0], {"amplitude": "1 nm", "num": 8}], "depth.1.frequency: is missing"),
         ([LEGS[0], {"frequency": "1 Hz", "num": 8}], "depth.1: has frequency, num; give {"),
         ([{**LEGS[0], "hold": "1 s"}], "depth.0: mixes to and hold"),

@@ -51,5 +51,5 @@ def test_derived_columns(tmp_path: Path) -> None:
     assert {float(row["missed"]) for row in rows} == {2.0}
     shown = CliRunner().invoke(app, ["show", str(folder)])
     head, *lines = [line.split() for line in shown.output.splitlines()[3:]]
-    assert head[-4:] == ["s", "pull", "missed", "status"]
-    assert [line[-3] for line in lines] == [f"{last:.6g}" for last in wanted[:, -1]]
+    assert head[-5:] == ["s", "pull", "missed", "status", "file"]
+    assert [line[-4] for line in lines] == [f"{last:.0f}" for last in wanted[:, -1]]

@@ -140,6 +140,44 @@ def test_force_is_the_slope_of_the_energy(interaction: dict[str, Any], length: f
     assert (energy[1] - energy[3]) / 0.02 == pytest.approx(force[2], rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("interaction", "length"),
+    [
+        (JKR, 1.0),
+        ({"type": "linear", "work_of_adhesion": 1.0, "strength": 2.0}, 0.0),
+        ({"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0}, 1.0),
+        ({"type": "exponential", "work_of_adhesion": 1.0, "range": 0.4}, 0.0),
+    ],
+)
+def test_stiffness_is_the_slope_of_the_path(interaction: dict[str, Any], length: float) -> None:
+    """dF/dδ with contact fixed and zone following is that of neighbouring steps, to 1e-3."""
+    depths = [0.5, 0.3001, 0.3, 0.2999]
+    path = solved(48, length, depths, interaction=interaction, size=7.0, stiffness=True)
+    force = path["force"].values
+    differences = (force[1] - force[3]) / 2e-4
+    assert path["zone_area"][2] > 0
+    assert float(path["stiffness"][2]) == pytest.approx(differences, rel=1e-3)
+
+
+def test_stiffness_is_that_of_the_closed_theory_on_average() -> None:
+    """Of a path whose contact grows by many cells; single steps scatter by a tenth."""
+    closed = theory(1.0)
+    one, other = closed.equilibrium(1.7), closed.equilibrium(2.2)
+    slope = float((other.force - one.force) / (other.depth - one.depth))
+    edges = np.linspace(float(other.depth), float(one.depth), 17)
+    depths = [edges[0] + 0.2, *(edges[1:] + edges[:-1]) / 2]
+    law = {**JKR, "estimate_error": False}
+    path = solved(64, 1.0, depths, interaction=law, size=7.0, stiffness=True)
+    assert float(path["stiffness"][1:].mean()) == pytest.approx(slope, rel=0.03)
+
+
+def test_stiffness_after_pull_off_is_none() -> None:
+    """Without contact and zone the indenter is held by nothing."""
+    path = solved(32, 0.0, [0.3, -3.0], stiffness=True)
+    assert path["stiffness"].values[0] > 1
+    assert path["stiffness"].values[1] == 0.0
+
+
 def test_a_wavy_surface_sticks_as_in_johnsons_theory() -> None:
     """Partial contact of a sine, one cell across, on the way back from twice its depth."""
     height, work = 0.1, 0.002

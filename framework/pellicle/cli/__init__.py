@@ -6,27 +6,57 @@ Heavy imports are inside the commands, so that ``pellicle --help`` answers at on
 from __future__ import annotations
 
 import sys
+import traceback
 import warnings
-from typing import Any
+from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from pellicle.errors import PellicleError
+from pellicle.version import CITATION, __version__
 
-from . import check, explore, fit, new, plot, plugins, run, schema, show, validate
+from . import check, explain, explore, fit, new, plot, plugins, run, schema, show, validate
 from .encoding import encode_readably
-from .exits import BAD_INPUT, INTERRUPTED
-from .printing import print_warning
+from .exits import BAD_INPUT, CRASHED, INTERRUPTED
+from .printing import echo, print_warning
+
+
+def _named_by_use(parameters: list[Any]) -> list[Any]:
+    """Replace the types of Python that help texts show by names of values; flags have none."""
+    for parameter in parameters:
+        if parameter.param_type_name == "argument":
+            # Earlier versions of typer show the metavar of an argument alone.
+            parameter.display_type_rich = lambda ctx: None
+        elif parameter.metavar is None:
+            is_flag = getattr(parameter, "is_flag", False)
+            parameter.metavar = "" if is_flag else str(parameter.name).upper()
+    return parameters
+
+
+class _Command(TyperCommand):
+    """A command whose help shows no types of Python."""
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        return _named_by_use(super().get_params(ctx))
 
 
 class _Group(TyperGroup):
-    """Turns errors into one message and an exit code: no traceback reaches a user."""
+    """Turns errors into one message and an exit code: bad input causes no traceback."""
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        return _named_by_use(super().get_params(ctx))
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         for stream in (sys.stdout, sys.stderr):
             encode_readably(stream)
-        return super().main(*args, **kwargs)
+        try:
+            return super().main(*args, **kwargs)
+        except Exception:
+            # Python would end with 1, which means that a step did not converge.
+            echo(traceback.format_exc(), err=True)
+            echo("error: this is a fault of pellicle; please report the lines above", err=True)
+            sys.exit(CRASHED)
 
     def invoke(self, ctx: Any) -> Any:
         try:
@@ -35,16 +65,16 @@ class _Group(TyperGroup):
                 return super().invoke(ctx)
         except PellicleError as error:
             for line in str(error).splitlines():
-                typer.echo(f"error: {line}", err=True)
+                echo(f"error: {line}", err=True)
             raise typer.Exit(BAD_INPUT) from None
         except Exception as error:
             # The orchestrator adds a note that names the component at fault.
             if not (notes := getattr(error, "__notes__", ())):
                 raise
-            typer.echo(f"error: {notes[0]}: {type(error).__name__}: {error}", err=True)
+            echo(f"error: {notes[0]}: {type(error).__name__}: {error}", err=True)
             raise typer.Exit(BAD_INPUT) from None
         except KeyboardInterrupt:
-            typer.echo("interrupted", err=True)
+            echo("interrupted", err=True)
             raise typer.Exit(INTERRUPTED) from None
 
 
@@ -55,12 +85,36 @@ app = typer.Typer(
     help="Contact mechanics of soft solids under a tensed skin.",
 )
 
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        echo(f"pellicle {__version__}")
+        echo(f"to cite it: {CITATION}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version",
+            is_eager=True,
+            callback=_print_version,
+            help="Print the version and how to cite it.",
+        ),
+    ] = False,
+) -> None:
+    pass
+
+
 # In the order of the help.
 for command in (
     run.run,
     check.check,
     explore.explore,
     fit.fit,
+    explain.explain,
     plugins.plugins,
     schema.schema,
     new.new,
@@ -68,4 +122,4 @@ for command in (
     plot.plot,
     validate.validate,
 ):
-    app.command()(command)
+    app.command(cls=_Command)(command)

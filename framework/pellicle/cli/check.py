@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from .printing import print_json, print_table
+from .printing import echo, print_json, print_table
 
 
 def check(
@@ -55,15 +55,13 @@ def check(
     ]
     print_table(list(rows[0]), rows)
     nx, ny = run.grid.points
-    typer.echo(f"{nx} × {ny} cells need {needed / 1e6:.3g} MB; errors are at most about these")
+    echo(f"{nx} × {ny} cells need {needed / 1e6:.3g} MB; errors are at most about these")
     if advice.size:
         x, y = (readable(edge, "m", 3) for edge in advice.size)
-        typer.echo(f'the contact fits into a smaller domain: grid.size = ["{x}", "{y}"]')
+        echo(f'the contact fits into a smaller domain: grid.size = ["{x}", "{y}"]')
     if advice.points != run.grid.points:
         nx, ny = advice.points
-        typer.echo(
-            f"for {100 * error:.2g} % of the force in every step: grid.points = [{nx}, {ny}]"
-        )
+        echo(f"for {100 * error:.2g} % of the force in every step: grid.points = [{nx}, {ny}]")
 
 
 def _share(value: float) -> str:

@@ -9,6 +9,8 @@ import typer
 
 from pellicle.errors import ConfigError, PellicleError
 
+from .printing import echo
+
 if TYPE_CHECKING:
     from pellicle.config.run import Run
     from pellicle.explore.page import Measured
@@ -47,13 +49,13 @@ def explore(
     run = _run(file, set_ or [])
     measured = _measured(curve) if curve else None
     server = Server(lambda document: Explorer(run, measured, document).show(), port)
-    typer.echo(f"{server.address}\nopen it in a browser on this machine; Ctrl-C ends it")
+    echo(f"{server.address}\nopen it in a browser on this machine; Ctrl-C ends it")
     if browser:
         webbrowser.open(server.address)
     try:
         server.run()
     except KeyboardInterrupt:
-        typer.echo("ended")
+        echo("ended")
 
 
 def _run(file: Path | None, overrides: list[str]) -> Run:

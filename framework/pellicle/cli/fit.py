@@ -12,8 +12,8 @@ import typer
 from pellicle.errors import ConfigError
 
 from .exits import INTERRUPTED, NOT_CONVERGED
-from .print_fits import print_fit, print_fits
-from .printing import print_json
+from .print_fits import print_fit, print_fits, print_notes
+from .printing import echo, print_json
 
 if TYPE_CHECKING:
     from pellicle.fitting.fit import Fit
@@ -132,7 +132,8 @@ def fit(
         Path | None, typer.Option(help="Folder that keeps simulated force curves.")
     ] = None,
     directory: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for JSON, table and figure.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Folder for JSON, table and figure."),
     ] = None,
     report: Annotated[
         bool,
@@ -154,7 +155,7 @@ def fit(
 ) -> None:
     """Fit reduced modulus, tension and contact point to measured curves, with intervals.
 
-    Exit code 0 only if every curve was fitted.
+    Exit code 0 only if every curve was fitted, 1 if some could not be fitted.
     """
     from pellicle.fitting.config import FitConfig
     from pellicle.fitting.curves.readers import SourceStream
@@ -218,26 +219,26 @@ def fit(
             result = fit_sources(config, SourceStream(curves), directory, progress=not quiet)
         except KeyboardInterrupt:
             hint = f"; finished fits are in {directory}, and the same command continues"
-            typer.echo(f"interrupted{hint if directory else ''}", err=True)
+            echo(f"interrupted{hint if directory else ''}", err=True)
             raise typer.Exit(INTERRUPTED) from None
         name, title = "fits", f"Fits of {len(result.rows)} curves"
     if json:
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
         print_fits(result, quiet=quiet, directory=directory)
-    elif not quiet:
-        print_fit(result)
+    else:
+        (print_notes if quiet else print_fit)(result)
     if repeated is not None:
         record = None if isinstance(result, ManyFits) else result.record
         rows = result.rows if isinstance(result, ManyFits) else []
         data = record.data if record else [row["data"] for row in rows if "data" in row]
         for difference in repeated.differences(data, record):
-            typer.echo(f"warning: {difference}", err=True)
+            echo(f"warning: {difference}", err=True)
     written: list[Path] = []
     if isinstance(result, ManyFits):
         written += result.files
         if result.resumed and not quiet:
-            typer.echo(f"{result.resumed} of {len(result.rows)} fits were done before", err=json)
+            echo(f"{result.resumed} of {len(result.rows)} fits were done before", err=json)
     elif directory is not None:
         written.append(result.save(directory / f"{name}.json"))
         written.append(save_figure(result, directory / f"{name}.png"))
@@ -245,9 +246,9 @@ def fit(
         page = (directory or Path()) / f"{name}.html"
         written.append(save_report(result, page, title))
     for path in [] if quiet else written:
-        typer.echo(f"wrote {path}", err=json)
+        echo(f"wrote {path}", err=json)
     if isinstance(result, ManyFits) and result.failed:
-        typer.echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
+        echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
         raise typer.Exit(NOT_CONVERGED)
 
 

@@ -9,12 +9,15 @@ import typer
 
 from pellicle.errors import ConfigError, StorageError
 
+from .printing import echo
+
 
 def new(
     path: Annotated[
         Path | None,
         typer.Argument(
-            help="File to write (default: indent.toml); with --plugin, the component's name."
+            metavar="PATH",
+            help="File to write (default: indent.toml); with --plugin, the component's name.",
         ),
     ] = None,
     plugin: Annotated[
@@ -36,7 +39,7 @@ def new(
     if path is None:
         raise ConfigError(f"is missing; for example: pellicle new --plugin {plugin} mine", "NAME")
     folder = write_plugin(plugin, str(path), Path())
-    typer.echo(f"wrote {folder}; next: cd {folder}, pip install -e ., python -m pytest")
+    echo(f"wrote {folder}; next: cd {folder}, pip install -e ., python -m pytest")
 
 
 def _write_starter(path: Path) -> None:
@@ -51,4 +54,4 @@ def _write_starter(path: Path) -> None:
                 file.write(text)
         except FileExistsError:
             raise StorageError(f"{path} exists already; give another name") from None
-    typer.echo(f"wrote {path}; next: pellicle run {path}")
+    echo(f"wrote {path}; next: pellicle run {path}")

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from .printing import echo
+
 
 class Format(StrEnum):
     """File formats of figures."""
@@ -19,13 +21,18 @@ class Format(StrEnum):
 
 def plot(
     results: Annotated[
-        Path, typer.Argument(help="Result file (.h5), or the folder or study.h5 of a study.")
+        Path,
+        typer.Argument(
+            metavar="RESULTS", help="Result file (.h5), or the folder or study.h5 of a study."
+        ),
     ],
     directory: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder (default: that of the result).")
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Folder (default: that of the result)."),
     ] = None,
     formats: Annotated[
-        list[Format] | None, typer.Option("--format", help="png, svg or pdf; repeat for several.")
+        list[Format] | None,
+        typer.Option("--format", metavar="FORMAT", help="png, svg or pdf; repeat for several."),
     ] = None,
 ) -> None:
     """Draw the figures of a result or of a study."""
@@ -41,4 +48,4 @@ def plot(
         folder = directory or results.parent
         files = save_figures(load(results), folder, results.stem, chosen)
     for path in files:
-        typer.echo(f"wrote {path}")
+        echo(f"wrote {path}")

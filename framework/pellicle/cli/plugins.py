@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from .printing import print_json, print_table
+from .printing import echo, print_json, print_table
 
 
 def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False) -> None:
@@ -48,7 +48,7 @@ def plugins(json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = 
         return
     print_table(["family", "type", "origin", "version", "description"], rows)
     if broken:
-        typer.echo("broken:")
+        echo("broken:")
         print_table(["entry_point", "origin", "version", "error"], broken)
     for origin in disabled:
-        typer.echo(f"switched off: {origin}")
+        echo(f"switched off: {origin}")

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import typer
-
-from .printing import print_table
+from .printing import echo, print_columns
 
 if TYPE_CHECKING:
     from pellicle.fitting.many import ManyFits
     from pellicle.fitting.result import FitResult
+    from pellicle.units import Scale
+
+_WORDS = {
+    "youngs_modulus": "Young's modulus",
+    "offset": "offset of the baseline",
+    "slope": "slope of the baseline",
+    "chi_squared": "χ²",
+}
 
 _UNITS = {"reduced_modulus": "Pa", "tension": "N/m", "thickness": "m", "contact_point": "m"}
 """Parameters that a line has, if a fit has them."""
@@ -22,22 +28,28 @@ _LINES = 50
 
 def print_fit(fit: FitResult) -> None:
     """Print the estimates of a fit, a line for each curve of a pool, and the fit in words."""
-    from pellicle.fitting.result import interval_text
+    from pellicle.units import axis_unit
 
     rows = []
     for name, estimate in fit.estimates().items():
-        ends = "fixed" if estimate.held else interval_text(estimate.low, estimate.high)
-        value = f"{estimate.value:.4g}"
-        rows.append({"": name, "value": value, "95 % interval": ends, "unit": estimate.unit})
-    print_table(["", "value", "95 % interval", "unit"], rows)
+        scale = axis_unit([estimate.value], estimate.unit)
+        ends = "fixed" if estimate.held else _interval(estimate.low, estimate.high, scale)
+        rows.append((_words(name), scale.number(estimate.value), ends, scale.unit))
+    heads = ("parameter", "value", "95 % interval", "unit")
+    print_columns(list(zip(heads, zip(*rows, strict=True), strict=True)))
     if curves := fit.curve_rows():
-        print_table(list(curves[0]), curves)
+        print_columns([(_words(name), [row[name] for row in curves]) for name in curves[0]])
     for sentence in fit.sentences:
-        typer.echo(sentence)
+        echo(sentence)
+    print_notes(fit)
+
+
+def print_notes(fit: FitResult) -> None:
+    """Print the warnings and notes of a fit."""
     for warning in fit.warnings:
-        typer.echo(f"warning: {warning}", err=True)
+        echo(f"warning: {warning}", err=True)
     for note in fit.notes:
-        typer.echo(f"note: {note}", err=True)
+        echo(f"note: {note}", err=True)
 
 
 def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None) -> None:
@@ -45,55 +57,94 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None) -> None:
 
     Of many curves, lines are left out if the table is in the folder.
     """
-    from pellicle.units import readable
-
-    for row in fits.rows:
-        _, _, reason = row["status"].partition(": ")
-        if reason:
-            typer.echo(f"{row['curve']}: {reason}", err=True)
+    _print_failures(fits.rows)
     for note in fits.notes:
-        typer.echo(f"note: {note}", err=True)
+        echo(f"note: {note}", err=True)
     if quiet:
         return
     if directory is None or len(fits.rows) <= _LINES:
-        names = [name for name in _UNITS if any(name in row for row in fits.rows)]
-        lines = [_line(row, names) for row in fits.rows]
-        print_table(list(lines[0]), lines)
+        print_columns(_curves(fits.rows))
     else:
-        typer.echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
-    groups = []
-    for part in fits.summary():
-        numbers = part.lower_quartile, part.median, part.upper_quartile
-        low, middle, high = (readable(value, part.unit, 4) for value in numbers)
-        groups.append(
-            {
-                "group": part.group,
-                "parameter": part.parameter,
-                "accepted": f"{part.n} of {part.curves}",
-                "outliers": str(part.outliers),
-                "median": middle,
-                "quartiles": f"{low} to {high}",
-            }
-        )
-    if groups and len(fits.rows) > 1:
-        print_table(list(groups[0]), groups)
+        echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
+    if len(fits.rows) > 1:
+        print_columns(_groups(fits))
 
 
-def _line(row: Mapping[str, Any], names: Sequence[str]) -> dict[str, str]:
-    """Return the line of one curve with some parameters; the table has its sentences."""
-    from pellicle.fitting.result import interval_text
+def _curves(rows: list[dict[str, Any]]) -> list[tuple[str, list[str]]]:
+    """Return a row for each curve; the table in the folder has their sentences."""
+    from pellicle.units import axis_unit
 
-    line = {"curve": row["curve"]}
-    for name in names:
-        estimate = row.get(name)
-        line[f"{name} [{_UNITS[name]}]"] = f"{estimate['value']:.4g}" if estimate else ""
+    columns = [("curve", [str(row["curve"]) for row in rows])]
+    for name, unit in _UNITS.items():
+        estimates = [row.get(name) for row in rows]
+        if not any(name in row for row in rows):
+            continue
+        scale = axis_unit([e["value"] for e in estimates if e], unit)
+        values = [scale.number(e["value"]) if e else "" for e in estimates]
+        columns.append((f"{_words(name)} [{scale.unit}]", values))
         if name != "contact_point":
-            interval = interval_text(estimate["low"], estimate["high"]) if estimate else ""
-            fixed = estimate and estimate["held"]
-            line[f"95 % of {name}"] = "" if fixed else interval
-    codes = ", ".join(check["code"] for check in row.get("failed_checks", ()))
-    notes = str(len(row.get("messages", ())))
-    verdict = row["status"].partition(": ")[0]
-    if verdict == "fitted" and not row["accepted"]:
-        verdict = "rejected"
-    return line | {"failed checks": codes, "notes": notes, "status": verdict}
+            ends = [_interval_of(estimate, scale) for estimate in estimates]
+            columns.append((f"95 % of {_words(name)}", ends))
+    return [
+        *columns,
+        ("failed checks", [_failed_checks(row) for row in rows]),
+        ("notes", [str(len(row.get("messages", ()))) for row in rows]),
+        ("status", list(map(_verdict, rows))),
+    ]
+
+
+def _verdict(row: Mapping[str, Any]) -> str:
+    verdict = str(row["status"]).partition(": ")[0]
+    return "rejected" if verdict == "fitted" and not row["accepted"] else verdict
+
+
+def _groups(fits: ManyFits) -> list[tuple[str, list[str]]]:
+    """Return a row for each parameter of each group of curves; no columns without any."""
+    from pellicle.units import axis_unit
+
+    parts, quartiles = fits.summary(), []
+    for part in parts:
+        numbers = part.lower_quartile, part.median, part.upper_quartile
+        scale = axis_unit(numbers, part.unit)
+        low, middle, high = map(scale.number, numbers)
+        quartiles.append((scale.with_unit(middle), scale.with_unit(f"{low} to {high}")))
+    columns = [
+        ("group", [part.group for part in parts]),
+        ("parameter", [_words(part.parameter) for part in parts]),
+        ("accepted", [f"{part.n} of {part.curves}" for part in parts]),
+        ("outliers", [str(part.outliers) for part in parts]),
+        ("median", [median for median, _ in quartiles]),
+        ("quartiles", [ends for _, ends in quartiles]),
+    ]
+    return columns if parts else []
+
+
+def _print_failures(rows: list[dict[str, Any]]) -> None:
+    """Print why curves could not be fitted; curves of one reason on one line."""
+    reasons: dict[str, list[str]] = {}
+    for row in rows:
+        if reason := str(row["status"]).partition(": ")[2]:
+            reasons.setdefault(reason, []).append(str(row["curve"]))
+    for reason, (first, *others) in reasons.items():
+        echo(f"{first}{f' and {len(others)} more' if others else ''}: {reason}", err=True)
+
+
+def _failed_checks(row: Mapping[str, Any]) -> str:
+    return ", ".join(check["code"] for check in row.get("failed_checks", ()))
+
+
+def _interval_of(estimate: Mapping[str, Any] | None, scale: Scale) -> str:
+    if not estimate or estimate["held"]:
+        return ""
+    return _interval(estimate["low"], estimate["high"], scale)
+
+
+def _interval(low: float | None, high: float | None, scale: Scale) -> str:
+    """Return an interval in the unit of the scale, an open end as "open"."""
+    return " to ".join("open" if end is None else scale.number(end) for end in (low, high))
+
+
+def _words(name: str) -> str:
+    for key, words in _WORDS.items():
+        name = name.replace(key, words)
+    return name.replace("_", " ")

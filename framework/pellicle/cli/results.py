@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from pellicle.files import for_document
 
 from .exits import NOT_CONVERGED
-from .printing import print_table, print_warning
+from .printing import echo, print_columns, print_json, print_warning
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import xarray as xr
 
     from pellicle.results.result import Result
@@ -20,10 +23,10 @@ if TYPE_CHECKING:
 def print_origin(data: xr.Dataset) -> None:
     """Print title, date and versions of a result."""
     for name in ("title", "date", "versions"):
-        typer.echo(f"{name + ':':10}{for_document(str(data.attrs.get(name, '')))}")
+        echo(f"{name + ':':10}{for_document(str(data.attrs.get(name, '')))}")
 
 
-def print_steps(result: Result) -> None:
+def print_steps(result: Result, *, si: bool = False) -> None:
     """Print a row for each step."""
     from pellicle.results.variables import names_of
 
@@ -42,97 +45,198 @@ def print_steps(result: Result) -> None:
         "too coarse" if n in coarse else "converged" if converged[n] else "NOT CONVERGED"
         for n in numbers
     ]
-    _print_steps(data, names, {"status": verdicts})
+    print_columns([*_columns(data, names, si), ("status", verdicts)])
     several = {**coarse, **dict(result.steep()), **dict(result.cramped())}
-    for number, status in zip(numbers, data["status"].values.tolist(), strict=True):
-        if converged[number] and status != "converged" and number not in several:
-            typer.echo(f"step {number}: {for_document(status)}", err=True)
+    caveats = [
+        (number, code, status)
+        for number, code, status in _statuses(data)
+        if converged[number] and code != "CONVERGED" and number not in several
+    ]
+    for steps, status in _grouped(caveats):
+        echo(f"{steps}: {for_document(status)}", err=True)
 
 
-def print_contact(result: Result) -> None:
+def print_contact(result: Result, *, si: bool = False) -> None:
     """Print the shape of the contact at each step, and of the zone around it."""
     from pellicle.results.variables import names_of
 
     # Files of earlier versions lack them.
     names = [name for name in names_of("contact", "interaction") if name in result.dataset]
     if names := [name for name in names if not name.startswith("residual_")]:
-        typer.echo("contact:")
-        _print_steps(result.dataset, names, {})
+        print_columns(_columns(result.dataset, names, si), "contact")
 
 
-def print_path(result: Result) -> None:
+def print_path(result: Result, *, si: bool = False) -> None:
     """Print the events on the path and its work, where there is an interaction."""
-    import math
-
     from pellicle.results.variables import VARIABLES, names_of
-    from pellicle.units import readable
+    from pellicle.units import DIGITS, Scale, printed, readable
 
-    events = names_of("path")
-    if summary := {n: value for n, value in result.path_summary.items() if n in events}:
-        typer.echo("path:")
-        rows = [
-            {
-                "name": name,
-                "value": "none" if math.isnan(value) else readable(value, VARIABLES[name].unit),
-                "meaning": VARIABLES[name].meaning,
-            }
-            for name, value in summary.items()
+    def value(number: float, unit: str) -> str:
+        text = Scale(1.0, printed(unit)).text(number, 6) if si else readable(number, unit, DIGITS)
+        return "none" if number != number else text
+
+    summary, events = result.path_summary, names_of("path")
+    rows = [(VARIABLES[name], number) for name, number in summary.items() if name in events]
+    if rows:
+        columns = [
+            ("path", [variable.words for variable, _ in rows]),
+            ("value", [value(number, variable.unit) for variable, number in rows]),
+            ("meaning", [variable.meaning for variable, _ in rows]),
         ]
-        print_table(["name", "value", "meaning"], rows)
+        print_columns(columns)
 
 
-def print_oscillations(result: Result) -> None:
+def print_oscillations(result: Result, *, si: bool = False) -> None:
     """Print a row for each oscillation on the path."""
-    from dataclasses import asdict
+    from pellicle.results.variables import names_of, wording_of
 
-    from pellicle.results.variables import VARIABLES, names_of
-
-    if rows := [asdict(oscillation) for oscillation in result.oscillations]:
-        typer.echo("oscillations:")
-        names = names_of("oscillation")
-        units = {name: VARIABLES[name].unit for name in names}
-        heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit != "1"}
-        lines = [{name: f"{value:.6g}" for name, value in row.items()} for row in rows]
-        print_table(list(names), lines, heads)
+    if oscillations := result.oscillations:
+        columns = []
+        for name in names_of("oscillation"):
+            values = [getattr(oscillation, name) for oscillation in oscillations]
+            shown = wording_of(name, values, si=si)
+            columns.append((shown.head, [shown.number(value) for value in values]))
+        print_columns(columns, "oscillations")
 
 
-def _print_steps(data: xr.Dataset, names: list[str], texts: dict[str, list[str]]) -> None:
-    """Print a row for each step: numbers by their names, and further columns of texts."""
-    columns = {"step": [str(number) for number in data["step"].values.tolist()]}
-    columns |= {name: [f"{value:.6g}" for value in data[name].values] for name in names} | texts
-    rows = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-    print_table(list(columns), rows, _heads(data, names))
+def _columns(data: xr.Dataset, names: Sequence[str], si: bool) -> list[tuple[str, list[str]]]:
+    """Return head and cells of the steps and of variables."""
+    from pellicle.results.variables import wording
+
+    columns = [("step", [str(number) for number in data["step"].values.tolist()])]
+    for name in names:
+        shown = wording(data[name], si=si)
+        columns.append((shown.head, [shown.number(v) for v in data[name].values.tolist()]))
+    return columns
 
 
-def _heads(data: xr.Dataset, names: list[str]) -> dict[str, str]:
-    from pellicle.results.variables import header
-
-    return {name: header(name, data[name]) for name in names}
-
-
-def print_runs(table: xr.Dataset) -> None:
+def print_runs(table: xr.Dataset, *, si: bool = False) -> None:
     """Print parameters, last step and verdict of each run of a study, and its path."""
-    from pellicle.studies.summary import paths, rows
+    from pellicle.studies.summary import columns, paths
 
-    for caption, lines in (("", rows(table)), ("path:", paths(table))):
-        if lines:
-            if caption:
-                typer.echo(caption)
-            names = list(lines[0])
-            print_table(names, lines, _heads(table, [name for name in names if name in table]))
+    print_columns(columns(table, si=si))
+    print_columns(paths(table, si=si), "path")
+
+
+def print_result_json(result: Result, files: Sequence[Path] = ()) -> None:
+    """Print a result as JSON: its origin, and the numbers of each step in SI."""
+    data = result.dataset
+    print_json(
+        {
+            **_origin(data),
+            "converged": result.converged and data.sizes["step"] == result.planned_steps,
+            "planned_steps": result.planned_steps,
+            "steps": _steps(data),
+            "path": result.path_summary,
+            "units": _units(data),
+            "files": list(map(str, files)),
+        }
+    )
+
+
+def print_study_json(table: xr.Dataset, files: Sequence[Path] = ()) -> None:
+    """Print a study as JSON: its origin, and the numbers of each step of each run in SI."""
+    from pellicle.studies.summary import progress_of, runs_of
+
+    runs = []
+    for run in runs_of(table):
+        done, planned, verdict = progress_of(run)
+        axes = {str(n): value.item() for n, value in run.coords.items() if n != "step"}
+        per_run = {
+            str(name): variable.item()
+            for name, variable in run.data_vars.items()
+            if not variable.dims and name != "run"
+        }
+        runs.append(
+            {
+                "file": f"runs/{run['run'].item()}.h5",
+                "parameters": axes,
+                "converged": verdict == "converged" and done == planned,
+                "planned_steps": planned,
+                "steps": _steps(run.isel(step=slice(planned))),
+                "path": per_run,
+            }
+        )
+    print_json(
+        {
+            **_origin(table),
+            "converged": all(run["converged"] for run in runs),
+            "runs": runs,
+            "units": _units(table),
+            "files": list(map(str, files)),
+        }
+    )
+
+
+def _origin(data: xr.Dataset) -> dict[str, Any]:
+    return {name: data.attrs.get(name, "") for name in ("title", "date", "versions")}
+
+
+def _steps(data: xr.Dataset) -> list[dict[str, Any]]:
+    names = [
+        "step",
+        *(str(n) for n, variable in data.data_vars.items() if variable.dims == ("step",)),
+    ]
+    columns = [data[name].values.tolist() for name in names]
+    return [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
+
+
+def _units(data: xr.Dataset) -> dict[str, str]:
+    return {
+        str(name): variable.attrs["units"]
+        for name, variable in data.variables.items()
+        if variable.attrs.get("units", "1") != "1"
+    }
 
 
 def exit_by_convergence(result: Result) -> None:
     """Print which steps did not converge, or have a caveat; exit unless all converged."""
     from pellicle.results.result import first_message
 
-    for step, message in result.failures():
-        typer.echo(f"step {step} did not converge: {for_document(message)}", err=True)
-    for steps in (result.coarse(), result.steep(), result.cramped()):
-        if steps:
-            print_warning(first_message(steps))
+    failed = result.dataset.isel(step=~result.dataset["converged"].values)
+    for steps, message in _grouped(_statuses(failed)):
+        echo(f"{steps} did not converge: {for_document(message)}", err=True)
+    for caveats in (result.coarse(), result.steep(), result.cramped()):
+        if caveats:
+            print_warning(first_message(caveats))
     if not result.converged:
         raise typer.Exit(NOT_CONVERGED)
+
+
+def _statuses(data: xr.Dataset) -> list[tuple[int, str, str]]:
+    """Return number, code and status of each step."""
+    columns = (data[name].values.tolist() for name in ("step", "status_code", "status"))
+    return list(zip(*columns, strict=True))
+
+
+def _grouped(statuses: Sequence[tuple[int, str, str]]) -> list[tuple[str, str]]:
+    """Return steps and message of each kind of status; of several steps, that of the first."""
+    groups: dict[str, list[tuple[int, str]]] = {}
+    for number, code, message in statuses:
+        groups.setdefault(code, []).append((number, message))
+    return [
+        (_steps_text([number for number, _ in group]), f"{_first(group)}{group[0][1]}")
+        for group in groups.values()
+    ]
+
+
+def _first(group: Sequence[tuple[int, str]]) -> str:
+    several = len({message for _, message in group}) > 1
+    return f"step {group[0][0]}: " if several else ""
+
+
+def _steps_text(numbers: Sequence[int]) -> str:
+    """Return "step 3", "steps 1 and 2" or "steps 1, 3 to 5"."""
+    spans: list[list[int]] = []
+    for number in numbers:
+        if spans and number == spans[-1][-1] + 1:
+            spans[-1].append(number)
+        else:
+            spans.append([number])
+    texts = [str(s[0]) if len(s) == 1 else f"{s[0]} to {s[-1]}" for s in spans]
+    if len(numbers) == 2:
+        texts = [f"{numbers[0]} and {numbers[1]}"]
+    return f"step{'s' * (len(numbers) > 1)} {', '.join(texts)}"
 
 
 def exit_by_status(table: xr.Dataset) -> None:
@@ -141,6 +245,6 @@ def exit_by_status(table: xr.Dataset) -> None:
 
     if message := failures(table):
         for reason in reasons(table):
-            typer.echo(for_document(reason), err=True)
-        typer.echo(message, err=True)
+            echo(for_document(reason), err=True)
+        echo(message, err=True)
         raise typer.Exit(NOT_CONVERGED)

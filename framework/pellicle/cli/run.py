@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from .exits import INTERRUPTED
-from .printing import print_table
-from .results import exit_by_convergence, exit_by_status, print_runs, print_steps
+from .printing import echo, print_json, print_table
+from .results import (
+    exit_by_convergence,
+    exit_by_status,
+    print_result_json,
+    print_runs,
+    print_steps,
+    print_study_json,
+)
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
@@ -17,16 +24,23 @@ if TYPE_CHECKING:
 
 
 def run(
-    file: Annotated[Path, typer.Argument(help="TOML file (`pellicle new` writes one).")],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="TOML file (`pellicle new` writes one).")
+    ],
     directory: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", help="Folder for the results (default: FILE's name without .toml)."
+            "-o",
+            "--output",
+            metavar="DIR",
+            help="Folder for the results (default: FILE's name without .toml).",
         ),
     ] = None,
     set_: Annotated[
         list[str] | None,
-        typer.Option("--set", help='Replace a value: --set kernel.tension="5 mN/m".'),
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help='Replace a value: --set kernel.tension="5 mN/m".'
+        ),
     ] = None,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")
@@ -34,7 +48,9 @@ def run(
     threads: Annotated[
         int | None,
         typer.Option(
-            min=1, help="Threads of the Fourier transforms (default: the fastest number)."
+            min=1,
+            metavar="N",
+            help="Threads of the Fourier transforms (default: the fastest number).",
         ),
     ] = None,
     overwrite: Annotated[
@@ -42,6 +58,10 @@ def run(
     ] = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Print the planned runs without executing them.")
+    ] = False,
+    si: Annotated[bool, typer.Option("--si", help="Print numbers in SI units.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the result as JSON, in SI units.")
     ] = False,
 ) -> None:
     """Solve a run, or all runs of a study, and write the results; continue after an interruption.
@@ -52,16 +72,25 @@ def run(
 
     configuration = from_toml(file, set_ or ())
     folder = directory or Path(file.stem)
+    shown = _Shown(quiet, si, json)
     if dry_run:
-        _print_plan(configuration, folder / file.stem, overwrite)
+        _print_plan(configuration, folder / file.stem, overwrite, json)
     elif isinstance(configuration, Study):
-        _run_study(configuration, folder, quiet=quiet, threads=threads, overwrite=overwrite)
+        _run_study(configuration, folder, shown, threads=threads, overwrite=overwrite)
     else:
         stem = folder / file.stem
-        _run_one(configuration, stem, quiet=quiet, threads=threads, overwrite=overwrite)
+        _run_one(configuration, stem, shown, threads=threads, overwrite=overwrite)
 
 
-def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool) -> None:
+class _Shown(NamedTuple):
+    """What is printed of a result."""
+
+    quiet: bool
+    si: bool
+    json: bool
+
+
+def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: bool) -> None:
     from pellicle.config.study import Study
     from pellicle.runs.journal import Journal
     from pellicle.studies.runner import RunTask, plan, tasks
@@ -85,53 +114,62 @@ def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool) -> None
                 "state": problem or (state if finished else "to do"),
             }
         )
+    if json:
+        print_json({"runs": rows})
+        return
     print_table(["run", "file", "points", "steps", "memory", "state"], rows)
     done = sum(finished >= task.steps for task, finished, _ in planned)
     most = max(task.memory for task, *_ in planned) / 1e6
-    typer.echo(
+    echo(
         f"{len(planned)} run{'s' * (len(planned) > 1)}, {done} done, "
         f"{len(planned) - done} to do; at most {most:.3g} MB each"
     )
 
 
-def _run_one(run: Run, stem: Path, *, quiet: bool, threads: int | None, overwrite: bool) -> None:
+def _run_one(run: Run, stem: Path, shown: _Shown, *, threads: int | None, overwrite: bool) -> None:
     from pellicle.runs.journal import Journal
     from pellicle.runs.progress import Progress
     from pellicle.runs.runner import execute, standard_outputs
 
     steps = len(run.loading.values)
-    journal, bar = Journal(stem, run.identity, overwrite), Progress(steps, not quiet)
+    journal, bar = Journal(stem, run.identity, overwrite), Progress(steps, not shown.quiet)
     try:
         executed = execute(run, journal, standard_outputs(run.outputs), bar, threads=threads)
     except KeyboardInterrupt:
-        typer.echo(f"interrupted; finished steps are in {stem.parent}", err=True)
+        echo(f"interrupted; finished steps are in {stem.parent}", err=True)
         raise typer.Exit(INTERRUPTED) from None
-    if not quiet:
-        print_steps(executed.result)
+    if shown.json:
+        print_result_json(executed.result, executed.files)
+    elif not shown.quiet:
+        print_steps(executed.result, si=shown.si)
         _print_files(executed.files, executed.resumed, f"{steps} steps")
     exit_by_convergence(executed.result)
 
 
 def _run_study(
-    study: Study, folder: Path, *, quiet: bool, threads: int | None, overwrite: bool
+    study: Study, folder: Path, shown: _Shown, *, threads: int | None, overwrite: bool
 ) -> None:
     from pellicle.studies.runner import execute
 
     try:
-        result = execute(study, folder, progress=not quiet, overwrite=overwrite, threads=threads)
+        result = execute(
+            study, folder, progress=not shown.quiet, overwrite=overwrite, threads=threads
+        )
     except KeyboardInterrupt:
-        typer.echo(
+        echo(
             f"interrupted; finished runs are in {folder}, and the same command continues", err=True
         )
         raise typer.Exit(INTERRUPTED) from None
-    if not quiet:
-        print_runs(result.table)
+    if shown.json:
+        print_study_json(result.table, result.files)
+    elif not shown.quiet:
+        print_runs(result.table, si=shown.si)
         _print_files(result.files, result.resumed, f"{len(study.points)} runs")
     exit_by_status(result.table)
 
 
 def _print_files(files: tuple[Path, ...], resumed: int, whole: str) -> None:
     if resumed:
-        typer.echo(f"{resumed} of {whole} were done before (--overwrite starts over)")
+        echo(f"{resumed} of {whole} were done before (--overwrite starts over)")
     for path in files:
-        typer.echo(f"wrote {path}")
+        echo(f"wrote {path}")

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from .exits import NOT_CONVERGED
+from .printing import echo
 from .results import (
     exit_by_convergence,
     exit_by_status,
@@ -15,15 +16,24 @@ from .results import (
     print_origin,
     print_oscillations,
     print_path,
+    print_result_json,
     print_runs,
     print_steps,
+    print_study_json,
 )
 
 
 def show(
     results: Annotated[
-        Path, typer.Argument(help="Result file (.h5), or the folder or study.h5 of a study.")
+        Path,
+        typer.Argument(
+            metavar="RESULTS", help="Result file (.h5), or the folder or study.h5 of a study."
+        ),
     ],
+    si: Annotated[bool, typer.Option("--si", help="Print numbers in SI units.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the result as JSON, in SI units.")
+    ] = False,
 ) -> None:
     """Print the steps of a result, or the runs of a study, and its origin."""
     from pellicle.results.result import load
@@ -32,20 +42,26 @@ def show(
 
     if is_table(results):
         table, _ = read(results)
-        print_origin(table)
-        print_runs(table)
+        if json:
+            print_study_json(table)
+        else:
+            print_origin(table)
+            print_runs(table, si=si)
         for message in caveats(table):
-            typer.echo(message, err=True)
+            echo(message, err=True)
         exit_by_status(table)
         return
     result = load(results)
-    print_origin(result.dataset)
     total, done = result.planned_steps, result.dataset.sizes["step"]
-    print_steps(result)
-    print_contact(result)
-    print_path(result)
-    print_oscillations(result)
+    if json:
+        print_result_json(result)
+    else:
+        print_origin(result.dataset)
+        print_steps(result, si=si)
+        print_contact(result, si=si)
+        print_path(result, si=si)
+        print_oscillations(result, si=si)
     exit_by_convergence(result)
     if done < total:
-        typer.echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
+        echo(f"interrupted: {done} of {total} steps are finished; run it again", err=True)
         raise typer.Exit(NOT_CONVERGED)

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from pellicle.errors import PluginError
 from pellicle.model.base import Model
+from pellicle.results.variables import words_of_name
 
 
 class Component(Model):
@@ -34,3 +35,13 @@ class Component(Model):
                     f"{cls.__name__}.{name}() belongs to the contract of an earlier version, and "
                     f"nothing calls it any more; write {replacement}"
                 )
+
+
+def words_of_type(component: type[Component], type_: str) -> str:
+    """Return the words of a component for figures and tables.
+
+    These are the ``title`` of its own ``model_config``, or its type without underscores.
+    """
+    title = component.model_config.get("title")
+    inherited = {getattr(base, "model_config", {}).get("title") for base in component.__mro__[1:]}
+    return title if title and title not in inherited else words_of_name(type_)

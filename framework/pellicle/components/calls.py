@@ -30,6 +30,7 @@ from pellicle.grid import LARGEST, Grid
 from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
 from pellicle.numerics.relaxation import Branch
 from pellicle.numerics.solution import Solution, State, Stop
+from pellicle.units import DIGITS, readable
 
 from .correction import AreaCorrection
 from .executor import AnyTask, Executor, Outcome, Report, Say
@@ -78,10 +79,20 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
         raise PluginError(
             f"{name}: footprint is {shown(footprint)}; it has to be 'unbounded' or 'domain'"
         )
-    if not (profile <= 0).all() or not np.isfinite(profile).any():
+    if np.isneginf(profile).all():
+        cells, domain = (
+            " × ".join(readable(edge, "m", DIGITS) for edge in edges)
+            for edges in (grid.spacing, grid.size)
+        )
         raise ConfigError(
-            f"the profile of {name} has values that are positive or NaN, or none that is finite; "
-            "it must be ≤ 0 everywhere and 0 at the lowest point",
+            f"cells of {cells} are wider than {name}, which lies over no cell centre; use a "
+            f"smaller grid.size, which is {domain}, or more points",
+            "indenter",
+        )
+    if not (profile <= 0).all():
+        raise ConfigError(
+            f"the profile of {name} has values that are positive or NaN; it must be ≤ 0 "
+            "everywhere and 0 at the lowest point",
             "indenter",
         )
     height = -float(profile.min(where=np.isfinite(profile), initial=0.0))
@@ -317,7 +328,7 @@ def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor
         value = solver.response(view, _read_only_state(state), monitor)
     _require_unchanged(solver, "response()", parts, problem.operator.parts(), "problem.operator")
     pressure = real_array(solver, "response()", value, problem.grid.shape)
-    if pressure[~state.contact].any():
+    if problem.law is None and pressure[~state.contact].any():
         raise PluginError(
             f"{component_name(solver)}: response() returned a pressure off the contact; it has to "
             "be 0 there"

@@ -74,8 +74,9 @@ class Solver(Component):
         This is the pressure per depth under a flat punch with the contact as its footprint: it
         displaces the contact by 1, to `tolerance`, may have either sign there and is 0 elsewhere.
         It does not depend on the profile and the load of ``problem``. Its sum times the area of a
-        cell is the contact stiffness. The default uses conjugate gradients
-        (`scipy.sparse.linalg.cg`); a solver with a preconditioner overrides it.
+        cell is the contact stiffness. With a law the traction off the contact follows the gap with
+        the slope of the law; a solver that takes laws has to include it. The default uses conjugate
+        gradients (`scipy.sparse.linalg.cg`); a solver with a preconditioner overrides it.
         """
         from scipy.sparse.linalg import LinearOperator, cg
 
@@ -105,7 +106,11 @@ class IterativeSolver(Solver):
 
     max_iterations: Annotated[
         int,
-        Field(gt=0, description="iterations after which a step is abandoned and marked"),
+        Field(
+            gt=0,
+            title="iteration limit",
+            description="iterations after which a step is abandoned and marked",
+        ),
     ] = 20_000
 
     @abstractmethod

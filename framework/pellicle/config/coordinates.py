@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from pellicle.components import Component
+from pellicle.components.base import words_of_type
 from pellicle.model.base import Model
 from pellicle.model.input_path import AS_GIVEN
 from pellicle.model.input_path import as_given as path_as_given
 from pellicle.model.paths import get, walk
 from pellicle.model.ranges import Values
-from pellicle.units import quantity_of
+from pellicle.results.variables import WORDS, WORDS_OF_VALUES
+from pellicle.units import DIGITS, quantity_of, readable
 
 from .points import short
 from .run import Run
+from .wording import field_words, words_at
 
 
 class Coordinate(NamedTuple):
@@ -32,7 +36,8 @@ class Coordinate(NamedTuple):
 def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
     """Return the values that ``runs`` hold of the parameter ``key``, ``given`` by the user."""
     values = [_single(get(run, key), value) for run, value in zip(runs, given, strict=True)]
-    attributes = {"long_name": key}
+    words = words_at(json.loads(runs[0].to_json()), Run, key)
+    attributes = {"long_name": words, WORDS: words}
     if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
         if unit := _unit(runs[0], key):
             attributes["units"] = unit
@@ -43,7 +48,56 @@ def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
     ]
     if len(set(texts)) < len(texts):
         texts = [json.dumps(as_json(*pair)) for pair in zip(given, values, strict=True)]
+    shown = _words_of_values(key, values, runs)
+    if shown != texts:
+        by_value = dict(zip(texts, shown, strict=True))
+        attributes[WORDS_OF_VALUES] = json.dumps(by_value, ensure_ascii=False)
     return Coordinate(np.array(texts, dtype=object), attributes)
+
+
+def tell_apart(axes: Mapping[str, Coordinate]) -> None:
+    """Add the name of their table to the words of axes that would have the same ones."""
+    words = [axis.attributes[WORDS] for axis in axes.values()]
+    for key, axis in axes.items():
+        if words.count(axis.attributes[WORDS]) > 1:
+            table = field_words(top := key.partition(".")[0], Run.model_fields.get(top))
+            axis.attributes[WORDS] += f" of the {table}"
+            axis.attributes["long_name"] = axis.attributes[WORDS]
+
+
+def _words_of_values(key: str, values: Sequence[Any], runs: Sequence[Run]) -> list[str]:
+    """Return words for values that are not numbers; a component is named by its words.
+
+    Components of one type are told apart by their fields.
+    """
+    if key.endswith(".type"):
+        key = key.removesuffix(".type")
+        values = [get(run, key) for run in runs]
+    types = [
+        words_of_type(type(value), value.type_name) if isinstance(value, Component) else ""
+        for value in values
+    ]
+    several = len({*types}) < len(types)
+    return [
+        ", ".join([words, *_fields(value)] if several else [words]) if words else _text(value)
+        for words, value in zip(types, values, strict=True)
+    ]
+
+
+def _fields(component: Component) -> Iterator[str]:
+    """Yield the fields of a component that were given, in words and units."""
+    for name in component.model_fields_set - {"type"}:
+        info, value = component.described_fields[name], getattr(component, name)
+        quantity = quantity_of(info)
+        text = readable(value, quantity.unit if quantity else "1", DIGITS)
+        yield f"{field_words(name, info)} {text}"
+
+
+def _text(value: Any) -> str:
+    """Return a value that is not a component as words, each entry of a list by its numbers."""
+    if isinstance(value, (tuple, list)):
+        return " × ".join(map(_text, value))
+    return value if isinstance(value, str) else readable(value, digits=DIGITS)
 
 
 def as_json(given: Any, value: Any, *, as_given: bool = False) -> Any:

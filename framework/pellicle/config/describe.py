@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
-from typing import Any, NamedTuple, get_args
+from typing import Any, NamedTuple
 
-from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from pellicle.components import Component
-from pellicle.errors import ConfigError, PluginError
 from pellicle.loading import LoadSteps
-from pellicle.model.legs import KINDS, fields_of
-from pellicle.plugins import Origin, Registered, registry
+from pellicle.plugins import Origin
 from pellicle.units import quantity_of, readable
 
-from .loading import Loading, model_of
 from .run import Run
+from .wording import (
+    field_words,
+    fields_of_leg,
+    model_in,
+    model_of_table,
+    registered,
+    type_words,
+    words_at,
+)
 
 
 class Input(NamedTuple):
@@ -25,8 +29,12 @@ class Input(NamedTuple):
 
     name: str
     """Dotted path, as in ``--set``."""
+    part: str
+    """Words of the table that it is in, such as "kernel"."""
+    words: str
+    """Words of the field, such as "surface tension"."""
     value: str
-    """The value as text, with a unit that brings it near 1 … 1000."""
+    """The value as text, with a unit that brings it near 1 … 1000; a component by its words."""
     meaning: str
     origin: Origin | None = None
     """Distribution and entry point of a component."""
@@ -37,10 +45,17 @@ def inputs(configuration: Mapping[str, Any]) -> Iterator[Input]:
 
     Fields of components that are not installed have no unit.
     """
-    yield from _table(configuration, Run.model_fields, "")
+    for name, value, meaning, origin in _table(configuration, Run.model_fields, ""):
+        top = name.partition(".")[0]
+        part = field_words(top, Run.model_fields.get(top))
+        yield Input(name, part, words_at(configuration, Run, name), value, meaning, origin)
 
 
-def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str) -> Iterator[Input]:
+_SNAKE = re.compile(r"\b[a-z]+(?:_[a-z]+)+\b")
+_Row = tuple[str, str, str, Origin | None]
+
+
+def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str) -> Iterator[_Row]:
     for key, value in table.items():
         info = fields.get(key)
         name = f"{path}{key}"
@@ -49,46 +64,27 @@ def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str)
         elif isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
             for index, entry in enumerate(value):
                 if info and any(isinstance(m, LoadSteps) for m in info.metadata):
-                    yield from _table(entry, _fields_of_leg(entry, info), f"{name}.{index}.")
+                    yield from _table(entry, fields_of_leg(entry, info), f"{name}.{index}.")
                 else:
                     yield from _one(entry, info.annotation if info else None, f"{name}.{index}")
         elif value not in ([], ""):
             quantity = quantity_of(info) if info else None
             text = readable(value, quantity.unit if quantity else "1")
-            yield Input(name, text, (info.description if info else None) or "")
+            yield name, text, _worded((info.description if info else None) or "", fields), None
 
 
-def _one(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[Input]:
+def _worded(description: str, fields: Mapping[str, FieldInfo]) -> str:
+    """Return the description of a field with words for other fields that it names."""
+    return _SNAKE.sub(lambda match: field_words(match[0], fields.get(match[0])), description)
+
+
+def _one(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[_Row]:
     """Yield the values in the table of a component or of another part of the run."""
-    model = _model(annotation)
-    if "type" not in table:
-        if model is Loading:
-            with suppress(ConfigError, PluginError):
-                model = model_of(table)
-        yield from _table(table, model.model_fields if model else {}, f"{name}.")
-        return
-    known = _registered(model, table["type"])
-    summary, origin = (known.summary, known.origin) if known else ("", None)
-    yield Input(name, str(table["type"]), summary, origin)
+    model = model_of_table(table, annotation)
+    if "type" in table:
+        family = model_in(annotation)
+        known = registered(family, table["type"])
+        summary, origin = (known.summary, known.origin) if known else ("", None)
+        yield name, type_words(family, str(table["type"])), summary, origin
     inner = {key: value for key, value in table.items() if key != "type"}
-    yield from _table(inner, known.component.model_fields if known else {}, f"{name}.")
-
-
-def _fields_of_leg(leg: Mapping[str, Any], info: FieldInfo) -> Mapping[str, FieldInfo]:
-    """Return the fields of a leg of the load steps described by ``info``."""
-    quantity = quantity_of(info)
-    kind = next((kind for kind in KINDS if kind.key in leg), None)
-    return fields_of(kind, quantity.unit) if kind and quantity else {}
-
-
-def _registered(model: type[BaseModel] | None, type_: object) -> Registered | None:
-    if model is None or not issubclass(model, Component):
-        return None
-    return registry().components[model.family].get(str(type_))
-
-
-def _model(annotation: Any) -> type[BaseModel] | None:
-    """Return the model that a field holds, alone or in a list."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    return next(filter(None, map(_model, get_args(annotation))), None)
+    yield from _table(inner, model.model_fields if model else {}, f"{name}.")

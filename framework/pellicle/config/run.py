@@ -39,6 +39,7 @@ from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid, grid_of_run
 from pellicle.model.from_file import FromFile
+from pellicle.model.html import summary
 from pellicle.model.paths import get, replaced, walk
 from pellicle.plugins import registry
 
@@ -130,16 +131,6 @@ class Run(FromFile):
         return self
 
     @model_validator(mode="after")
-    def _stiffness_of_hard_contact(self) -> Self:
-        if self.interaction is not None and self.loading.stiffness:
-            raise ConfigError(
-                "the contact stiffness is known only without an interaction; leave it out, and "
-                "take dF/dδ from neighbouring steps in depth",
-                "loading.stiffness",
-            )
-        return self
-
-    @model_validator(mode="after")
     def _each_correction_once(self) -> Self:
         types = [correction.type_name for correction in self.corrections]
         for index, type_ in enumerate(types):
@@ -172,6 +163,14 @@ class Run(FromFile):
                 "study",
             )
         return cls(**data)
+
+    def _repr_html_(self) -> str:
+        """Return HTML for a notebook: every value with its unit and meaning."""
+        from .describe import inputs
+
+        rows = [(i.name, i.value, i.meaning) for i in inputs(json.loads(self.to_json()))]
+        sentence = f"{self.indenter.type_name} on {self.kernel.type_name}"
+        return summary(self.title or "Run", sentence, ("field", "value", "meaning"), rows)
 
     @property
     def identity(self) -> str:

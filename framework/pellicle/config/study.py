@@ -18,6 +18,7 @@ from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, shown
 from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate
 from pellicle.model.from_file import FromFile, read
+from pellicle.model.html import summary
 from pellicle.model.input_path import paths_relative_to
 from pellicle.model.paths import get
 from pellicle.model.ranges import Axes, expand
@@ -26,7 +27,7 @@ from pellicle.results.derived import constants
 from pellicle.results.variables import FIELDS, VARIABLES, corrected_area, names_of
 
 from .component_field import FromRegistry
-from .coordinates import Coordinate, as_json, coordinate
+from .coordinates import Coordinate, as_json, coordinate, tell_apart
 from .points import Point, points_of
 from .run import Run
 
@@ -106,6 +107,13 @@ class Study(FromFile):
     ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
     _points: tuple[Point, ...] = PrivateAttr()
 
+    def _repr_html_(self) -> str:
+        """Return HTML for a notebook: the varied parameters and the number of runs."""
+        varied = [*self.vary.items(), *(pair for table in self.zip for pair in table.items())]
+        rows = [(name, ", ".join(map(str, values))) for name, values in varied]
+        title = str(self.run.get("title") or "Study")
+        return summary(title, f"{len(self.points)} runs", ("varied", "values"), rows)
+
     @model_validator(mode="after")
     def _expand(self) -> Self:
         self._check_axes()
@@ -141,11 +149,13 @@ class Study(FromFile):
 
     def coordinates(self) -> dict[str, tuple[str, Coordinate]]:
         """Return dimension and values, in SI, of each varied parameter."""
-        return {
+        coordinates = {
             key: (dimension, coordinate(key, values, self._runs_along(number)))
             for number, (dimension, axes) in enumerate(self.dimensions.items())
             for key, values in axes.items()
         }
+        tell_apart({key: axis for key, (_, axis) in coordinates.items()})
+        return coordinates
 
     def _runs_along(self, number: int) -> list[Run]:
         """Return a run for each value along a dimension, at the first value of all others."""

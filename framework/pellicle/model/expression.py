@@ -39,12 +39,33 @@ _OPERATORS: dict[type[ast.AST], Callable[..., Any]] = {
     ast.USub: operator.neg,
 }
 _NAME = re.compile(r"(?<![\w.])[^\W\d]\w*(?:\.\w+)*")
+_TOKEN = re.compile(
+    rf"(?P<name>{_NAME.pattern})|\s*\*\*\s*(?P<power>[2-9])(?![\w.])|\s*(?:\*\*|[*/])\s*"
+)
+_RAISED = str.maketrans("23456789", "²³⁴⁵⁶⁷⁸⁹")
+_SIGNS = {"**": "^", "*": "·", "/": "/"}
+_GREEK = {"pi": "π"}
 _ALLOWED = f"+ - * / ** ( ), {', '.join(FUNCTIONS)} and {', '.join(CONSTANTS)}"
 
 
 def names_in(text: str) -> set[str]:
     """Return the dotted names in ``text`` that are neither functions nor constants."""
     return set(_NAME.findall(text)) - FUNCTIONS.keys() - CONSTANTS.keys()
+
+
+def formula(text: str, words: Callable[[str], str]) -> str:
+    """Return ``text`` as readers write it, with ``words`` in place of its dotted names."""
+
+    def shown(match: re.Match[str]) -> str:
+        name = match["name"]
+        if match["power"]:
+            return match["power"].translate(_RAISED)
+        if name is None:
+            return f" {_SIGNS[match[0].strip()]} "
+        is_function = text[match.end() :].lstrip().startswith("(")
+        return name if is_function else _GREEK.get(name) or words(name)
+
+    return _TOKEN.sub(shown, text.strip())
 
 
 def evaluate(

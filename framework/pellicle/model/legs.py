@@ -21,7 +21,10 @@ _LONGEST = 1e100
 # Three samples are the fewest that show an amplitude and a phase; four meet both extremes.
 _FEWEST_OF_CYCLE = 4
 
-Number = Annotated[int, Field(ge=1, le=_MOST, description="number of load steps of the leg")]
+Number = Annotated[
+    int,
+    Field(title="number of steps", ge=1, le=_MOST, description="number of load steps of the leg"),
+]
 
 
 class Sample(NamedTuple):
@@ -69,9 +72,11 @@ class Move(Leg):
     """A straight way to a value: { to, time, num }."""
 
     key: ClassVar[str] = "to"
-    to: Annotated[float, Field(description="value at the end of the leg")]
+    to: Annotated[float, Field(title="end value", description="value at the end of the leg")]
     time: Annotated[
-        float, Quantity("s", at_least=0), Field(description="duration of the leg [s]; 0 is a jump")
+        float,
+        Quantity("s", at_least=0),
+        Field(title="duration", description="duration of the leg [s]; 0 is a jump"),
     ]
     num: Number
 
@@ -97,7 +102,11 @@ class Hold(Leg):
     """A time at the value reached: { hold, num }."""
 
     key: ClassVar[str] = "hold"
-    hold: Annotated[float, Quantity("s", above=0), Field(description="duration of the leg [s]")]
+    hold: Annotated[
+        float,
+        Quantity("s", above=0),
+        Field(title="duration", description="duration of the leg [s]"),
+    ]
     num: Number
 
     @property
@@ -124,10 +133,17 @@ class Oscillation(Leg):
     frequency: Annotated[
         float, Quantity("Hz", above=0), Field(description="frequency of the oscillation [Hz]")
     ]
-    cycles: Annotated[int, Field(ge=1, le=_MOST, description="number of cycles")]
+    cycles: Annotated[
+        int, Field(title="number of cycles", ge=1, le=_MOST, description="number of cycles")
+    ]
     num: Annotated[
         int,
-        Field(ge=_FEWEST_OF_CYCLE, le=_MOST, description="number of load steps of each cycle"),
+        Field(
+            title="steps of a cycle",
+            ge=_FEWEST_OF_CYCLE,
+            le=_MOST,
+            description="number of load steps of each cycle",
+        ),
     ]
 
     @property

@@ -16,9 +16,14 @@ from pellicle.errors import ConfigError, Problem, shown
 def nearest(word: object, known: Iterable[str]) -> str:
     """Return the known words as text, after ``did you mean 'x'?`` if one of them is similar."""
     names = sorted(known)
-    close = difflib.get_close_matches(str(word), names, n=1)
-    hint = f"did you mean {close[0]!r}? " if close else ""
-    return f"{hint}Known: {', '.join(names) or 'none'}"
+    hint = similar(word, names)
+    return f"{hint}{' ' if hint else ''}Known: {', '.join(names) or 'none'}"
+
+
+def similar(word: object, known: Iterable[str]) -> str:
+    """Return ``did you mean 'x'?`` if one of the known words is similar, or an empty text."""
+    close = difflib.get_close_matches(str(word), sorted(known), n=1)
+    return f"did you mean {close[0]!r}?" if close else ""
 
 
 def problems(

@@ -69,6 +69,11 @@ class Law:
         values = self.law.traction(self._si(gap)) / self.pressure
         return np.where(gap < self.cutoff(), values, 0.0)
 
+    def slope(self, gap: Array) -> Array:
+        """Return dσ/dg of an array of gaps, 0 beyond the cutoff."""
+        values = self.law.slope(self._si(gap)) * (self.length / self.pressure)
+        return np.where(gap < self.cutoff(), values, 0.0)
+
     def cutoff(self) -> float:
         """Return the gap beyond which nothing acts."""
         return self.law.cutoff() / self.length
@@ -92,6 +97,12 @@ class Law:
     def _si(self, gap: Array) -> Array:
         # Far from the indenter the gap is infinite, for which a formula may have no value.
         return np.clip(gap, 0.0, self.cutoff()) * self.length
+
+
+def attraction_slope(law: Law, gap: Array, contact: Mask, boundary: Boundary) -> Array:
+    """Return dσ/dg of `attracted` on each cell off the contact, 0 in contact."""
+    acts = (attracted(law, gap, contact, boundary) != 0) & ~contact
+    return np.where(acts, law.slope(np.where(acts, gap, 0.0)), 0.0)
 
 
 def attracted(law: Law, gap: Array, contact: Mask, boundary: Boundary) -> Array:

@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Grid
 
-from .gap_law import Law, attracted
+from .gap_law import Law, attracted, attraction_slope
 from .grid_transfer import restrict
 from .operators import Operator
 from .solution import Solution, State
@@ -290,6 +290,15 @@ class Equilibrium:
             return np.zeros(self.pressure.shape)
         return attracted(self.problem.law, self.gap, self.contact, self.problem.grid.boundary)
 
+    @property
+    def attraction_slope(self) -> Array | None:
+        """dσ/dg of the law at the gap of each cell off the contact [Pa/m]; None without a law."""
+        if not self.problem.law:
+            return None
+        return attraction_slope(
+            self.problem.law, self.gap, self.contact, self.problem.grid.boundary
+        )
+
     @cached_property
     def zone(self) -> Mask:
         """The cells off the contact where the traction exceeds 1 % of the strength of the law."""
@@ -463,19 +472,28 @@ class Stiffness(NamedTuple):
     """Rms error of the displacement in contact, over the prescribed displacement."""
 
 
-def measure_stiffness(problem: Problem, contact: Mask, pressure: Array) -> Stiffness:
+def measure_stiffness(
+    problem: Problem, contact: Mask, pressure: Array, slope: Array | None = None
+) -> Stiffness:
     """Return the contact stiffness from the pressure per depth [Pa/m] of a flat punch.
 
     The footprint of the punch is ``contact``: cells that join as the depth grows carry no pressure
     at first, so dF/dδ is that of a flat punch (Pharr, Oliver & Brotzen 1992 for axisymmetric
     indenters). The operator is applied once. The value is 2 Σq − Σq·Aq times the area of a cell,
     stationary at the solution, so its error is quadratic in that of q.
+
+    With a law of ``slope`` dσ/dg [Pa/m] on each cell off the contact, the traction there follows
+    the gap, q = dσ/dg (A q − 1), and counts towards the force.
     """
     if not contact.any():
         return Stiffness(0.0, 0.0)
     response = problem.operator.with_spring(0.0)(pressure)
-    missed = 1.0 - response[contact]
-    total = float(pressure.sum()) + float((pressure[contact] * missed).sum())
+    acts, yielding = contact, np.zeros_like(pressure)
+    if slope is not None:
+        acts = contact | (slope > 0)
+        np.divide(pressure, slope, out=yielding, where=slope > 0)
+    missed = (1.0 - response + yielding)[acts]
+    total = float(pressure.sum()) + float((pressure[acts] * missed).sum())
     return Stiffness(
         value=total * problem.grid.cell_area,
         residual=float(np.sqrt((missed**2).mean())),

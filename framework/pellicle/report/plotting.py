@@ -19,7 +19,8 @@ from pellicle.files import atomic_write, for_document, storage_errors
 from pellicle.numerics.problem import height_scale
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
-from pellicle.units import axis_unit, readable
+from pellicle.results.variables import CONTACT_AREA, wording
+from pellicle.units import DIGITS, axis_unit, readable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -188,18 +189,18 @@ def _shade(axes: Axes, x: Array, where: Mask) -> None:
 
 def force_depth(result: Result, axes: Axes) -> None:
     """Draw force against depth over the load steps."""
-    _curve(result, axes, [("force", None, "o-")], "force", "N", "depth", "m")
+    _curve(result, axes, [("force", None, "o-")], "depth")
 
 
 def area_force(result: Result, axes: Axes) -> None:
     """Draw the contact area, of the cells and corrected, against force."""
     corrected = [
-        (str(name), f"{str(name).removeprefix('contact_area_')} correction", "s--")
-        for name in result.dataset.data_vars
+        (str(name), wording(variable).words.removeprefix(f"{CONTACT_AREA}, "), "s--")
+        for name, variable in result.dataset.data_vars.items()
         if str(name).startswith("contact_area_")
     ]
     series = [("contact_area", "cells in contact", "o-"), *corrected]
-    _curve(result, axes, series, "contact area", "m2", "force", "N")
+    _curve(result, axes, series, "force")
     if not has_interaction(result.dataset):
         axes.legend()
 
@@ -208,19 +209,19 @@ def over_time(result: Result, figure: Figure) -> None:
     """Draw force, depth and contact area against time, one above the other."""
     data = result.dataset
     panels = figure.subplots(len(_OVER_TIME), sharex=True)
-    factor, unit = axis_unit(data["time"].values, "s")
+    shown_t = wording(data["time"])
     good = data["converged"].values.astype(bool)
-    t = data["time"].values * factor
+    t = data["time"].values * shown_t.scale.factor
     for axes, (name, colour) in zip(panels, _OVER_TIME.items(), strict=True):
-        scale, scale_unit = _unit_near_one(data[name])
-        y = data[name].values * scale
+        shown = wording(data[name])
+        y = data[name].values * shown.scale.factor
         axes.plot(t, y, color=colour, mfc="white", **_marked(t.size))
         axes.plot(t[~good], y[~good], "x", color="red", markersize=9)
-        axes.set_ylabel(f"{name.replace('_', ' ')} [{scale_unit}]")
+        axes.set_ylabel(shown.head)
         axes.axhline(0.0, color="0.4", linewidth=0.6)
         axes.grid(alpha=0.3)
     panels[0].set_title(data.attrs.get("title", ""))
-    panels[-1].set_xlabel(f"time [{unit}]")
+    panels[-1].set_xlabel(shown_t.head)
     figure.align_ylabels(panels)
 
 
@@ -308,8 +309,8 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     # Seeds are repetitions, not values to compare.
     rest = [d for d in dimensions if d != along]
     compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
-    scale, name = _unit_near_one(table[variable])
-    x_scale, x_name = _unit_near_one(table[against])
+    shown, shown_x = wording(table[variable]), wording(table[against])
+    named_by = wording(table[compared[0]]) if compared else None
     stacked = [d for d in table["status"].dims if d not in (along, *compared)]
     many = table.sizes[compared[0]] if compared else 1
     pulls, paths = has_interaction(table), list[list[Leg]]()
@@ -317,9 +318,10 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
         colour = _colour(number, many)
         # Of many values only some are named: colours change evenly between them.
         named = compared and number % -(-many // _MOST_NAMED) == 0
-        label = _label(part, compared[0]) if named else ""
+        label = named_by.text(part[compared[0]].item()) if named and named_by else ""
         for line in _parts(part, stacked):
-            x, y = line[against].values * x_scale, line[variable].values * scale
+            x = line[against].values * shown_x.scale.factor
+            y = line[variable].values * shown.scale.factor
             if pulls and against == "depth":
                 finished = np.isfinite(line["depth"].values)
                 paths.append(legs(line["depth"].values[finished]))
@@ -340,8 +342,8 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
             axes.plot(x[~good], y[~good], "x", color="red", markersize=9)
             label = ""
     axes.set(
-        xlabel=f"{against} [{x_name}]" if x_name else against,
-        ylabel=f"{variable.replace('_', ' ')} [{name}]" if name else variable.replace("_", " "),
+        xlabel=shown_x.head,
+        ylabel=shown.head,
         title=table.attrs.get("title", ""),
     )
     if pulls:
@@ -443,18 +445,6 @@ def _parts(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Dat
         yield table.isel(dict(zip(dimensions, index, strict=True)))
 
 
-def _unit_near_one(values: xr.DataArray) -> tuple[float, str]:
-    return axis_unit(values.values, values.attrs.get("units", "1"))
-
-
-def _label(part: xr.Dataset, name: str) -> str:
-    value = part[name]
-    if value.dtype.kind not in "if":
-        return f"{name} = {value.item()}"
-    scale, unit = _unit_near_one(value)
-    return f"{name} = {value.item() * scale:.4g} {unit}".rstrip()
-
-
 def _colour(number: int, count: int) -> str | tuple[float, float, float, float]:
     if count <= 10:
         return f"C{number}"
@@ -467,19 +457,16 @@ def _curve(
     result: Result,
     axes: Axes,
     series: Sequence[tuple[str, str | None, str]],
-    what: str,
-    unit: str,
     against: str,
-    against_unit: str,
 ) -> None:
     data = result.dataset
-    scale, name = axis_unit(data[series[0][0]].values, unit)
-    x_scale, x_name = axis_unit(data[against].values, against_unit)
+    shown, shown_x = wording(data[series[0][0]]), wording(data[against])
     good = data["converged"].values.astype(bool)
     pulls, path = has_interaction(data), legs(data["depth"].values)
     hysteretic = pulls or (has_times(data) and len(path) <= MOST_LEGS)
     for number, (variable, label, style) in enumerate(series):
-        x, y = data[against].values * x_scale, data[variable].values * scale
+        x = data[against].values * shown_x.scale.factor
+        y = data[variable].values * shown.scale.factor
         if hysteretic:
             draw_legs(
                 axes,
@@ -496,7 +483,7 @@ def _curve(
             marked = _marked(x.size) | {"linestyle": style[1:]}
             axes.plot(x, y, color=f"C{number}", label=label, mfc="white", **marked)
         axes.plot(x[~good], y[~good], "x", color="red", markersize=9, label="_not converged")
-    axes.set(xlabel=f"{against} [{x_name}]", ylabel=f"{what} [{name}]")
+    axes.set(xlabel=shown_x.head, ylabel=shown.head)
     if hysteretic:
         name_legs(axes, [path])
         if axes.get_legend_handles_labels()[1]:
@@ -566,10 +553,9 @@ def _point_along(axes: Axes, x: Array, y: Array, colour: Any) -> None:
 
 def _caption(result: Result, step: int) -> str:
     data = result.dataset.isel(step=step)
-    scale, name = axis_unit(data["depth"].values, "m")
-    caption = f"depth {data['depth'].item() * scale:.4g} {name}"
+    caption = wording(data["depth"]).text(data["depth"].item())
     if has_times(data):
-        caption = f"{readable(data['time'].item(), 's', digits=4)}, {caption}"
+        caption = f"{readable(data['time'].item(), 's', DIGITS)}, {caption}"
     title = result.dataset.attrs.get("title", "")
     if not bool(data["converged"]):
         caption += ", NOT CONVERGED"

@@ -13,15 +13,22 @@ import numpy as np
 from pellicle.analysis import Oscillation
 from pellicle.errors import ConfigError, StorageError
 from pellicle.grid import Grid
+from pellicle.model.html import summary
 from pellicle.model.legs import number_of_steps
+from pellicle.units import axis_unit, readable
 
 from . import storage
 from .path import oscillations_of, path_variables
 from .status import Status
-from .variables import FIELDS, REQUIRED, damage
+from .variables import FIELDS, REQUIRED, VARIABLES, damage
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_SHOWN = "time", "depth", "force", "contact_area"
+_NO_CONTACT = "0.93"
+_MOST = 12
+"""Rows of the table in a notebook."""
 
 
 @dataclass(frozen=True)
@@ -91,8 +98,78 @@ class Result:
         return _statuses(self.dataset.isel(step=among))
 
     def _repr_html_(self) -> str:
-        """Return HTML for a notebook."""
-        return self.dataset._repr_html_()
+        """Return HTML for a notebook: status, numbers of the steps, the pressure of the last."""
+        columns = [name for name in _SHOWN if name in self.dataset]
+        values = {
+            name: [readable(float(v), VARIABLES[name].unit, 4) for v in self.dataset[name].values]
+            for name in columns
+        }
+        rows = [
+            [str(number), *(values[name][index] for name in columns), str(status)]
+            for index, (number, status) in enumerate(_statuses(self.dataset))
+        ]
+        if len(rows) > _MOST:
+            rows = [*rows[: _MOST - 1], ["…"] * len(rows[0]), rows[-1]]
+        return summary(
+            str(self.configuration.get("title") or "Result"),
+            _outcome(len(self.dataset["step"]), self.planned_steps, len(self.failures())),
+            ["step", *(name.replace("_", " ") for name in columns), "status"],
+            rows,
+            picture=self._picture(),
+            details=self.dataset._repr_html_(),
+        )
+
+    def _picture(self) -> bytes:
+        """Return a small map of the pressure of the last step as PNG."""
+        from io import BytesIO
+
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(3.2, 2.6), layout="constrained")
+        self.plot(ax=figure.subplots())
+        with BytesIO() as file:
+            figure.savefig(file, format="png", dpi=80)
+            return file.getvalue()
+
+    def plot(self, variable: str = "pressure", *, step: int = -1, **options: Any) -> Any:
+        """Draw a field of a load step as a map, x to the right and y up; grey without pressure.
+
+        Parameters
+        ----------
+        variable
+            Name of a field, such as pressure, displacement, gap or contact.
+        step
+            Index of the load step; -1 is the last.
+        **options
+            Passed to `xarray.DataArray.plot.pcolormesh`, such as ``ax`` and ``cmap``.
+
+        Returns
+        -------
+        matplotlib.collections.QuadMesh
+            What was drawn.
+
+        Raises
+        ------
+        ConfigError
+            The variable is not a field of the result.
+        """
+        fields = [name for name, data in self.dataset.items() if data.dims == ("step", "x", "y")]
+        if variable not in fields:
+            raise ConfigError(
+                f"{variable!r} is not a field; give one of {', '.join(map(str, fields))}",
+                "variable",
+            )
+        data = self.dataset.isel(step=step)
+        field = data[variable]
+        if variable == "pressure":
+            field = field.where(data["contact"] | (field != 0))
+        factor, unit = axis_unit([*data["x"].values, *data["y"].values], "m")
+        for name in ("x", "y"):
+            scaled = data[name] * factor
+            field = field.assign_coords({name: scaled.assign_attrs(units=unit, long_name=name)})
+        mesh = field.plot.pcolormesh(x="x", y="y", **options)
+        mesh.axes.set(aspect="equal", facecolor=_NO_CONTACT)
+        return mesh
 
     def save(self, path: str | Path) -> None:
         """Write the result to an HDF5 (NetCDF-4) file.
@@ -103,6 +180,12 @@ class Result:
             The file cannot be written.
         """
         storage.write(self.dataset, Path(path))
+
+
+def _outcome(solved: int, planned: int, failed: int) -> str:
+    """Return how many steps are solved, and how many of them did not converge."""
+    steps = f"{solved} of {planned} steps" if solved < planned else f"{planned} steps"
+    return f"{steps}, {failed} did not converge" if failed else f"{steps}, all converged"
 
 
 def _statuses(data: xr.Dataset) -> list[tuple[int, str]]:

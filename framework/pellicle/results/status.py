@@ -21,8 +21,9 @@ class Status(Enum):
         "{below} to {above}"
     )
     COARSE = (
-        "converged, but the cells are too coarse for this contact, which covers {cells} of them: "
-        "force, depth and area may be far off; use more points, or a smaller grid.size"
+        "converged, but the cells are too coarse for this contact, which covers {cells} of them, "
+        "{width} wide: force, depth and area may be far off; use more points, or a smaller "
+        "grid.size"
     )
     COARSE_ZONE = (
         "converged, but the zone in which the interaction pulls is {cells:.1f} cells wide, where "

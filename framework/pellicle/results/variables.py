@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+import json
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
+
+from pellicle.arrays import Array
+from pellicle.units import DIGITS, NOTHING, Scale, axis_unit, printed
 
 from .status import Status
 
@@ -30,6 +35,19 @@ one value for all steps of a run; so has ``oscillation``, which exists where a l
 Type = Literal["number", "count", "truth", "text"]
 
 
+WORDS: Final = "short_name"
+"""Attribute of a variable with the words that figures and tables show for it."""
+WORDS_OF_VALUES: Final = "value_words"
+"""Attribute of a coordinate of texts: words by value, as JSON."""
+
+
+def words_of_name(name: str) -> str:
+    """Return words for a name that has none: the last part of a dotted path, without _."""
+    *outer, last = name.split(".")
+    words = f"{outer[-1]} {int(last) + 1}" if outer and last.isdecimal() else last
+    return words.replace("_", " ").strip() or name
+
+
 class Variable(NamedTuple):
     """A number, a truth value or a text of a result, for each step or each cell."""
 
@@ -39,11 +57,19 @@ class Variable(NamedTuple):
     meaning: str
     kind: Kind = "requested"
     type: Type = "number"
+    title: str = ""
+    """Words for figures and tables, such as "pull-off force"; those of the name if empty."""
+
+    @property
+    def words(self) -> str:
+        """The name that figures and tables show."""
+        return self.title or words_of_name(self.name)
 
     @property
     def attributes(self) -> dict[str, str]:
-        """Meaning and unit, as attributes of an xarray variable."""
-        return {"long_name": self.meaning} | ({"units": self.unit} if self.unit else {})
+        """Words, meaning and unit, as attributes of an xarray variable."""
+        described = {"long_name": self.meaning, WORDS: self.words}
+        return described | ({"units": self.unit} if self.unit else {})
 
 
 _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type], ...]] = {
@@ -61,8 +87,8 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
     ),
     "other": (("mean_pressure", "Pa", "force over the area of the domain"),),
     "requested": (
-        ("stiffness", "N/m", "contact stiffness dF/dδ, where loading.stiffness asks for it"),
-        ("time", "s", "time at the end of the step, where the loading gives it"),
+        ("stiffness", "N/m", "contact stiffness dF/dδ, if it is asked for"),
+        ("time", "s", "time at the end of the step"),
         ("cycle", "1", "cycles since the oscillation began, in the legs that oscillate"),
         ("wall_pressure", "Pa", "pressure of the indenter without the traction across the gap"),
     ),
@@ -103,7 +129,7 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         (
             "jump_in",
             "m",
-            "depth of the first step in contact after one out of contact; that of jkr depends on "
+            "depth of the first step in contact after one out of contact; that of JKR depends on "
             "the range that the cells give it, and goes to 0 with them",
         ),
         ("jump_in_force", "N", "force at the first step in contact after one out of contact"),
@@ -139,8 +165,45 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         ("status", "", "how the step ended, in a sentence", "text"),
     ),
 }
+_TITLES = {
+    "semi_major_axis": "major semi-axis",
+    "semi_minor_axis": "minor semi-axis",
+    "major_axis_angle": "major-axis angle",
+    "stiffness": "contact stiffness",
+    "zone_area": "area of the zone",
+    "zone_width": "width of the zone",
+    "force_error": "error of the force",
+    "jumped": "jump",
+    "pull_off": "pull-off force",
+    "pull_off_depth": "depth at pull-off",
+    "pull_off_radius": "contact radius at pull-off",
+    "pull_off_step": "step of pull-off",
+    "detach": "depth at detachment",
+    "detach_force": "force at detachment",
+    "detach_step": "step of detachment",
+    "detach_accuracy": "accuracy of the depth at detachment",
+    "jump_in": "depth at jump-in",
+    "jump_in_force": "force at jump-in",
+    "jump_in_step": "step of jump-in",
+    "jump_in_accuracy": "accuracy of the depth at jump-in",
+    "work_accuracy": "accuracy of the work",
+    "wall_time": "computing time",
+    "storage_stiffness": "storage stiffness K′",
+    "loss_stiffness": "loss stiffness K″",
+    "phase": "phase angle",
+    "cycle_dissipation": "dissipation of a cycle",
+    "cycle_drift": "drift of a cycle",
+    "residual_traction": "residual of the traction",
+    "residual_contact": "residual of the contact",
+    "residual_penetration": "residual of penetration",
+    "residual_complementarity": "residual of complementarity",
+    "residual_load": "residual of the load",
+    "status_code": "code of the status",
+}
 VARIABLES: Mapping[str, Variable] = {
-    row[0]: Variable(*row[:3], kind, *row[3:]) for kind, rows in _BY_KIND.items() for row in rows
+    row[0]: Variable(*row[:3], kind, *row[3:])._replace(title=_TITLES.get(row[0], ""))
+    for kind, rows in _BY_KIND.items()
+    for row in rows
 }
 """The variables of a result by name, besides contact areas by correction (`corrected_area`)."""
 
@@ -157,15 +220,107 @@ REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "ite
 """Variables in the result files of every version."""
 
 
-def corrected_area(type_: str) -> Variable:
-    """Return the variable for the contact area with the correction ``type_``."""
-    return Variable(f"contact_area_{type_}", "m2", f"contact area, {type_} correction", "other")
+CONTACT_AREA: Final = "contact area"
+_SI_DIGITS, _ALL_DIGITS = 6, 15
+
+
+def corrected_area(type_: str, words: str = "") -> Variable:
+    """Return the variable for the contact area with the correction ``type_``.
+
+    ``words`` name the correction in figures and tables, by default those of the type.
+    """
+    return Variable(
+        f"contact_area_{type_}",
+        "m2",
+        f"contact area, {type_} correction",
+        "other",
+        title=f"{CONTACT_AREA}, {words or words_of_name(type_)} correction",
+    )
 
 
 def header(name: str, variable: xr.DataArray) -> str:
-    """Return the header of a variable's column in a table: its name and unit."""
+    """Return the header of a variable's column in a file: its name and SI unit."""
     unit = variable.attrs.get("units", "1")
     return name if unit == "1" else f"{name} [{unit}]"
+
+
+@dataclass(frozen=True)
+class Wording:
+    """A variable as figures and tables show it: in words, and in one unit for all values."""
+
+    words: str
+    """Such as "contact radius"."""
+    scale: Scale
+    digits: int = DIGITS
+    """Significant digits of its numbers."""
+    texts: Mapping[str, str] = field(default_factory=dict)
+    """Words for values that are texts, such as types of components."""
+
+    @property
+    def head(self) -> str:
+        """Words and unit, for an axis or a column: "contact radius [µm]"."""
+        return f"{self.words} [{self.scale.unit}]" if self.scale.unit else self.words
+
+    def number(self, value: object) -> str:
+        """Return a value in SI as text in the unit, without it."""
+        if isinstance(value, str):
+            return self.texts.get(value, value)
+        return self.scale.number(value, self.digits)
+
+    def text(self, value: object) -> str:
+        """Return words, value and unit: "surface tension 30 mN/m"."""
+        number = self.number(value)
+        return f"{self.words} {number if number == NOTHING else self.scale.with_unit(number)}"
+
+    def listing(self, values: Iterable[object]) -> str:
+        """Return several values in SI as a list with the unit; of many, some are left out."""
+        return self.scale.listing([self.number(value) for value in values])
+
+
+def wording(variable: xr.DataArray, *, si: bool = False) -> Wording:
+    """Return how a variable or a coordinate of a result or a table is shown.
+
+    Its attributes, then the table of variables, then its name give the words; its largest value the
+    prefix of its unit, which with ``si`` has none. The values of a coordinate have as many digits
+    as distinguish them, four at least; with ``si`` numbers have six.
+    """
+    name = str(variable.name)
+    words = str(variable.attrs.get(WORDS, _known_words(name)))
+    unit = str(variable.attrs.get("units", "1"))
+    if variable.dtype.kind not in "iuf":
+        return Wording(
+            words, Scale(1.0, ""), texts=json.loads(variable.attrs.get(WORDS_OF_VALUES, "{}"))
+        )
+    if si:
+        return Wording(words, Scale(1.0, "" if unit == "1" else printed(unit)), digits=_SI_DIGITS)
+    scale = axis_unit(variable.values, unit)
+    is_axis = variable.ndim == 1 and name in variable.coords
+    return Wording(words, scale, _digits(variable.values, scale) if is_axis else DIGITS)
+
+
+def wording_of(name: str, values: Sequence[float], *, si: bool = False) -> Wording:
+    """Return how values of a variable of `VARIABLES` are shown."""
+    import xarray as xr
+
+    attributes = VARIABLES[name].attributes
+    return wording(xr.DataArray(list(values), dims="row", name=name, attrs=attributes), si=si)
+
+
+def _known_words(name: str) -> str:
+    """Return words for a variable without them, as in files of earlier versions."""
+    if name in VARIABLES:
+        return VARIABLES[name].words
+    prefix, _, correction = name.partition("contact_area_")
+    return corrected_area(correction).words if correction and not prefix else words_of_name(name)
+
+
+def _digits(values: Array, scale: Scale) -> int:
+    """Return the number of digits that distinguish values, at least `DIGITS`."""
+    distinct = {*values.tolist()}
+    for digits in range(DIGITS, _ALL_DIGITS):
+        if len({scale.number(value, digits) for value in distinct}) == len(distinct):
+            return digits
+    return _ALL_DIGITS
 
 
 _DTYPES: Mapping[Type, str] = {"number": "fiu", "count": "fiu", "truth": "b", "text": "UO"}

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.components import Depth, Monitor, Search, Setting
+from pellicle.components.base import words_of_type
 from pellicle.components.calls import (
     corrected_area,
     report_of,
@@ -68,9 +69,9 @@ def _solved_step(
     report = report_of(prescription, setting, step.equilibrium)
     report |= {v.name: step.missed for v in prescription.variables if v.name not in report}
     areas = {
-        area_variable(correction.type_name): corrected_area(
-            correction, step.equilibrium.contact, run.grid
-        )
+        area_variable(
+            correction.type_name, words_of_type(type(correction), correction.type_name)
+        ): corrected_area(correction, step.equilibrium.contact, run.grid)
         for correction in run.corrections
     }
     scalars = {
@@ -120,4 +121,4 @@ def _stiffness(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> Stiffnes
     if not contact.any():
         return Stiffness(0.0, 0.0)
     response = response_of(run.solver, problem, equilibrium.state, monitor)
-    return measure_stiffness(problem, contact, response)
+    return measure_stiffness(problem, contact, response, equilibrium.attraction_slope)

@@ -12,6 +12,7 @@ from pellicle.config.run import Run
 from pellicle.numerics.problem import Equilibrium, Stiffness
 from pellicle.numerics.solution import Stop
 from pellicle.results.status import Status
+from pellicle.units import DIGITS, readable
 
 from .relaxation import least_domain
 from .target_search import Reached
@@ -77,7 +78,9 @@ def judge(run: Run, index: int, step: Reached, stiffness: Stiffness | None) -> t
     # An interaction holds a contact at any depth.
     sticks = run.interaction is not None and bool(contact.any())
     if (problem.control.value > least or sticks) and cells < min(enough, contact.size):
-        return Status.COARSE, Status.COARSE.value.format(cells=cells or "none")
+        return Status.COARSE, Status.COARSE.value.format(
+            cells=cells or "none", width=readable(run.grid.cell_size, "m", DIGITS)
+        )
     doubt = run.interaction and _doubt(run, run.interaction, equilibrium)
     if doubt:
         return doubt

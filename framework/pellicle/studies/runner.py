@@ -31,7 +31,7 @@ from pellicle.runs.progress import ProgressReporter, StudyProgress
 from pellicle.runs.relaxation import history_arrays
 
 from . import table
-from .summary import caveats, failures, progress_of
+from .summary import caveats, failures, progress_of, run_names
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -151,15 +151,16 @@ def run_study(
 def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
     """Return all runs of a study, finished or not."""
     outputs = tuple(o for o in study.points[0].run.outputs or () if o.scope == "run")
+    names = run_names(table.StudyTable(study).dataset())
     return [
         RunTask(
-            point.name,
+            name,
             point.run,
             Journal(directory / "runs" / identity[:16], identity, overwrite),
             point.position,
             outputs,
         )
-        for point in study.points
+        for name, point in zip(names, study.points, strict=True)
         for identity in (point.run.identity,)
     ]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.results.status import Status
-from pellicle.results.variables import names_of
+from pellicle.results.variables import names_of, wording
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,45 +24,73 @@ _EVENTS = (
     *("pull_off", "detach", "jump_in", "dissipated_energy"),
     *("storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation"),
 )
+_SHORT = 8
+Columns = list[tuple[str, list[str]]]
+"""Head and cells of each column."""
 _WORST_FIRST = "failed", "not run", "NOT CONVERGED"
 
 
-def rows(table: xr.Dataset) -> list[dict[str, str]]:
-    """Return a row for each run: parameters, main numbers of the last step, and verdict."""
+def columns(table: xr.Dataset, *, si: bool = False) -> Columns:
+    """Return head and cells of the table of runs: parameters, main numbers and verdict."""
     derived = json.loads(table.attrs["configuration"])["study"].get("derived", {})
-    lines = []
-    for run in runs_of(table):
-        done, planned, verdict = progress_of(run)
-        last = {
-            name: f"{run[name].values[done - 1]:.6g}" if done and name in run else ""
-            for name in (*names_of("main"), *derived)
-            if name not in run or "step" in run[name].dims
-        }
-        lines.append(
-            {
-                "run": str(run["run"].item()),
-                **_parameters(run),
-                "steps": f"{done}/{planned}",
-                **last,
-                "status": verdict,
-            }
-        )
-    return lines
+    names = [n for n in (*names_of("main"), *derived) if n in table and "step" in table[n].dims]
+    runs = list(runs_of(table))
+    progress = [progress_of(run) for run in runs]
+    last: Columns = []
+    for name in names:
+        shown = wording(table[name], si=si)
+        cells = [
+            shown.number(run[name].values[done - 1].item()) if done else ""
+            for run, (done, *_) in zip(runs, progress, strict=True)
+        ]
+        last.append((shown.head, cells))
+    return [
+        ("run", list(map(str, range(1, len(runs) + 1)))),
+        *_parameters(table, si=si),
+        ("steps", [f"{done}/{planned}" for done, planned, _ in progress]),
+        *last,
+        ("status", [verdict for *_, verdict in progress]),
+        ("file", short_files(table)),
+    ]
 
 
-def paths(table: xr.Dataset) -> list[dict[str, str]]:
-    """Return a row for each run with the main numbers of its whole path, where it has any."""
+def paths(table: xr.Dataset, *, si: bool = False) -> Columns:
+    """Return the main numbers of the whole path of each run; no columns where it has none."""
     derived = json.loads(table.attrs["configuration"])["study"].get("derived", {})
     per_run = [n for n in derived if n in table and "step" not in table[n].dims]
     names = [n for n in (*_EVENTS, *per_run) if n in table]
-    return [
-        {
-            "run": str(run["run"].item()),
-            **{name: "" if np.isnan(run[name]) else f"{run[name].item():.6g}" for name in names},
-        }
-        for run in runs_of(table)
-        if names
+    shown = {name: wording(table[name], si=si) for name in names}
+    runs = list(runs_of(table))
+    numbers = [
+        (shown[name].head, [shown[name].number(run[name].item()) for run in runs]) for name in names
     ]
+    return [("run", list(map(str, range(1, len(runs) + 1)))), *numbers] if names else []
+
+
+def _parameters(table: xr.Dataset, *, si: bool = False) -> Columns:
+    """Return the values of each run on the axes of the study."""
+    runs = list(runs_of(table))
+    shown = {name: wording(table[name], si=si) for name in table.coords if name != "step"}
+    return [
+        (axis.head, [axis.number(run[name].item()) for run in runs]) for name, axis in shown.items()
+    ]
+
+
+def run_names(table: xr.Dataset) -> list[str]:
+    """Return the values that distinguish each run, such as "surface tension 30 mN/m"."""
+    shown = {name: wording(table[name]) for name in table.coords if name != "step"}
+    return [
+        ", ".join(axis.text(run[name].item()) for name, axis in shown.items())
+        for run in runs_of(table)
+    ]
+
+
+def short_files(table: xr.Dataset) -> list[str]:
+    """Return the names of the files of runs, each cut as far as they differ, to eight letters."""
+    names = [str(run["run"].item()) for run in runs_of(table)]
+    lengths = range(_SHORT, max(map(len, names), default=_SHORT) + 1)
+    least = next((n for n in lengths if len({name[:n] for name in names}) == len({*names})), None)
+    return [f"{name[:least]}…" if least and least < len(name) else name for name in names]
 
 
 def progress_of(run: xr.Dataset) -> tuple[int, int, str]:
@@ -75,13 +103,20 @@ def progress_of(run: xr.Dataset) -> tuple[int, int, str]:
 
 
 def reasons(table: xr.Dataset) -> Iterator[str]:
-    """Yield the name of each run that failed or did not converge, with its first bad status."""
-    for run in runs_of(table):
+    """Yield the runs that failed or did not converge, with the first bad status of each.
+
+    Runs of equal status are one text, which names the first.
+    """
+    groups: dict[str, list[str]] = {}
+    names = zip(run_names(table), short_files(table), strict=True)
+    for (name, file), run in zip(names, runs_of(table), strict=True):
         statuses = _statuses(run)[0]
         bad = next((n for n, status in enumerate(statuses) if not status.converged), None)
         if bad is not None and statuses[bad] != Status.NOT_RUN:
-            where = ", ".join(f"{name} = {text}" for name, text in _parameters(run).items())
-            yield f"{run['run'].item()} ({where}): {run['status'].values[bad]}"
+            message = str(run["status"].values[bad])
+            groups.setdefault(message, []).append(f"{name} (file {file})")
+    for message, (first, *others) in groups.items():
+        yield f"{first}{f' and {len(others)} more' if others else ''}: {message}"
 
 
 def runs_of(table: xr.Dataset) -> Iterator[xr.Dataset]:
@@ -89,11 +124,6 @@ def runs_of(table: xr.Dataset) -> Iterator[xr.Dataset]:
     sizes = table["run"].sizes
     for index in np.ndindex(*sizes.values()):
         yield table.isel(dict(zip(sizes, index, strict=True)))
-
-
-def _parameters(run: xr.Dataset) -> dict[str, str]:
-    values = {str(name): value.item() for name, value in run.coords.items() if name != "step"}
-    return {n: f"{v:.6g}" if isinstance(v, float) else str(v) for n, v in values.items()}
 
 
 def failures(table: xr.Dataset) -> str:

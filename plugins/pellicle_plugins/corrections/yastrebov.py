@@ -7,6 +7,7 @@ from math import log, pi
 from typing import Literal
 
 import numpy as np
+from pydantic import ConfigDict
 
 from pellicle import hookimpl
 from pellicle.arrays import Mask
@@ -15,6 +16,8 @@ from pellicle.components import AreaCorrection
 
 class Yastrebov(AreaCorrection):
     """Correction by the length of the contact's boundary (Yastrebov, Anciaux & Molinari 2017)."""
+
+    model_config = ConfigDict(title="Yastrebov")
 
     type: Literal["yastrebov"] = "yastrebov"
 

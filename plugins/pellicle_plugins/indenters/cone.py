@@ -26,7 +26,9 @@ class Cone(Axisymmetric):
     half_angle: Annotated[
         float,
         Quantity("rad", above=0, below=pi / 2),
-        Field(description="angle between axis and side [rad], or as '70 degree'"),
+        Field(
+            title="half-angle", description="angle between axis and side [rad], or as '70 degree'"
+        ),
     ]
 
     def profile(self, x: Array, y: Array) -> Array:

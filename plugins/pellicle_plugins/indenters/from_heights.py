@@ -18,7 +18,7 @@ class FromHeights(Indenter):
 
     sha256: Annotated[
         str | None,
-        Field(description="hash of the file or array; verified if given"),
+        Field(title="hash", description="hash of the file or array; verified if given"),
     ] = None
     _heights: Array = PrivateAttr()
     _digest: str = PrivateAttr()

@@ -36,10 +36,18 @@ class Heights(FromHeights):
     type: Literal["heights"] = "heights"
     path: Annotated[
         InputPath | None,
-        Field(description="file with a 2-D array: .npy, text (.txt, .csv, .dat) or .h5"),
+        Field(
+            title="file",
+            examples=["heights.txt"],
+            description="file with a 2-D array: .npy, text (.txt, .csv, .dat) or .h5",
+        ),
     ] = None
     unit: Annotated[
-        Length, Field(description="length that a height of 1 in the data stands for [m]: '1 um'")
+        Length,
+        Field(
+            examples=["1 um"],
+            description="length that a height of 1 in the data stands for [m]: '1 um'",
+        ),
     ]
     dataset: Annotated[
         str | None, Field(description="name of the array in an HDF5 file that holds several")

@@ -17,8 +17,14 @@ class Quadric(Indenter):
     """Paraboloid with different radii of curvature along x and y."""
 
     type: Literal["quadric"] = "quadric"
-    radius_x: Annotated[Length, Field(description="radius of curvature in the x–z plane [m]")]
-    radius_y: Annotated[Length, Field(description="radius of curvature in the y–z plane [m]")]
+    radius_x: Annotated[
+        Length,
+        Field(title="radius along x", description="radius of curvature in the x–z plane [m]"),
+    ]
+    radius_y: Annotated[
+        Length,
+        Field(title="radius along y", description="radius of curvature in the y–z plane [m]"),
+    ]
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return −(x²/2R_x + y²/2R_y) [m]."""

@@ -21,7 +21,9 @@ class Scaled(Transformed):
 
     type: Literal["scaled"] = "scaled"
     factor: Annotated[
-        float, Quantity("1", at_least=0), Field(description="factor of the heights; 0 is flat")
+        float,
+        Quantity("1", at_least=0),
+        Field(title="height factor", description="factor of the heights; 0 is flat"),
     ]
 
     def profile(self, x: Array, y: Array) -> Array:

@@ -33,14 +33,23 @@ class SelfAffine(Indenter):
 
     footprint: ClassVar[Footprint] = "domain"
     type: Literal["self_affine"] = "self_affine"
-    rms_height: Annotated[Length, Field(description="root mean square of the heights [m]")]
-    hurst: Annotated[
-        float, Quantity("1", at_least=0, at_most=1), Field(description="Hurst exponent H")
+    rms_height: Annotated[
+        Length, Field(examples=["100 nm"], description="root mean square of the heights [m]")
     ]
-    cutoff_wavelength: Annotated[Length, Field(description="shortest wavelength 2π/q_s [m]")]
+    hurst: Annotated[
+        float,
+        Quantity("1", at_least=0, at_most=1),
+        Field(title="Hurst exponent", description="Hurst exponent H"),
+    ]
+    cutoff_wavelength: Annotated[
+        Length, Field(title="cut-off wavelength", description="shortest wavelength 2π/q_s [m]")
+    ]
     roll_off_wavelength: Annotated[
         Length | None,
-        Field(description="longest wavelength 2π/q₀ [m]; the longer edge of the domain if absent"),
+        Field(
+            title="roll-off wavelength",
+            description="longest wavelength 2π/q₀ [m]; the longer edge of the domain if absent",
+        ),
     ] = None
     seed: Annotated[int, Field(ge=0, description="seed of the random phases")] = 0
 

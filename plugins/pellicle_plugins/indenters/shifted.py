@@ -19,8 +19,12 @@ class Shifted(RigidMotion):
     """Another indenter moved sideways, off the centre of the domain."""
 
     type: Literal["shifted"] = "shifted"
-    x: Annotated[float, Quantity("m"), Field(description="shift along x [m]")] = 0.0
-    y: Annotated[float, Quantity("m"), Field(description="shift along y [m]")] = 0.0
+    x: Annotated[
+        float, Quantity("m"), Field(title="shift along x", description="shift along x [m]")
+    ] = 0.0
+    y: Annotated[
+        float, Quantity("m"), Field(title="shift along y", description="shift along y [m]")
+    ] = 0.0
 
     def profile(self, x: Array, y: Array) -> Array:
         """Return f(x − x₀, y − y₀) [m]."""

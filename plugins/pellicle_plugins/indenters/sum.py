@@ -28,7 +28,16 @@ class Sum(Indenter):
     type: Literal["sum"] = "sum"
     parts: Annotated[
         tuple[Annotated[Indenter, FromRegistry()], ...],
-        Field(min_length=1, description="the indenters to add: tables with type"),
+        Field(
+            min_length=1,
+            examples=[
+                [
+                    {"type": "paraboloid", "radius": "1 mm"},
+                    {"type": "cone", "half_angle": "85 degree"},
+                ]
+            ],
+            description="the indenters to add: tables with type",
+        ),
     ]
 
     @property

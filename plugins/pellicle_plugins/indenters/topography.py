@@ -45,7 +45,12 @@ class Topography(FromHeights):
     libraries: ClassVar[tuple[str, ...]] = ("SurfaceTopography",)
 
     type: Literal["topography"] = "topography"
-    path: Annotated[InputPath, Field(description="file that SurfaceTopography can read")]
+    path: Annotated[
+        InputPath,
+        Field(
+            title="file", examples=["scan.x3p"], description="file that SurfaceTopography can read"
+        ),
+    ]
     channel: Annotated[
         str | None, Field(description="name of the data set in a file that holds several")
     ] = None

@@ -16,7 +16,12 @@ class Transformed(Indenter):
     """An indenter that transforms one other."""
 
     part: Annotated[
-        Indenter, FromRegistry(), Field(description="the indenter to change: a table with type")
+        Indenter,
+        FromRegistry(),
+        Field(
+            examples=[{"type": "sphere", "radius": "10 um"}],
+            description="the indenter to change: a table with type",
+        ),
     ]
 
     @property

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
+from pydantic import ConfigDict
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
@@ -33,6 +34,8 @@ class Dugdale(Adhesive):
     cell there: whole cells that switch off at once would be pinned by up to 0.2 πwR. Strength and
     work of adhesion are kept.
     """
+
+    model_config = ConfigDict(title="Dugdale")
 
     _SHAPE: ClassVar[float] = 1.0
 

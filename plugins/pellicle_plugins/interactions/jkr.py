@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, PrivateAttr
+from pydantic import ConfigDict, Field, PrivateAttr
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
@@ -30,6 +30,8 @@ class JKR(Interaction):
     are joined to a contact, and a new contact begins where the gap closes, because the range of
     the grid would attract too soon. The wall pressure depends on the grid.
     """
+
+    model_config = ConfigDict(title="JKR")
 
     needs_contact: ClassVar[bool] = True
     least_cells: ClassVar[float] = 1.25

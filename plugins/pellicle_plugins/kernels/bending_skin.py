@@ -25,7 +25,11 @@ class BendingSkin(Skin, ElasticSolid):
 
     type: Literal["bending_skin"] = "bending_skin"
     bending: Annotated[
-        BendingStiffness, Field(description="bending stiffness B of the skin [N*m], 0 for none")
+        BendingStiffness,
+        Field(
+            title="bending stiffness",
+            description="bending stiffness B of the skin [N*m], 0 for none",
+        ),
     ]
 
     def compliance(self, q: Array) -> Array:

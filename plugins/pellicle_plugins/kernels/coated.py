@@ -27,7 +27,12 @@ class Coated(Skin):
 
     type: Literal["coated"] = "coated"
     substrate: Annotated[
-        Kernel, FromRegistry(), Field(description="the kernel under the skin: a table with type")
+        Kernel,
+        FromRegistry(),
+        Field(
+            examples=[{"type": "half_space", "reduced_modulus": "10 kPa"}],
+            description="the kernel under the skin: a table with type",
+        ),
     ]
 
     def compliance(self, q: Array) -> Array:

@@ -22,7 +22,12 @@ class ElasticConstants(ElasticModulus):
     )
 
     poissons_ratio: Annotated[
-        PoissonsRatio, Field(description="Poisson's ratio ν, −1 < ν ≤ 0.5; 0.5 is incompressible")
+        PoissonsRatio,
+        Field(
+            title="Poisson's ratio",
+            examples=[0.45],
+            description="Poisson's ratio ν, −1 < ν ≤ 0.5; 0.5 is incompressible",
+        ),
     ]
 
     @property

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
@@ -24,6 +24,8 @@ class GurtinMurdoch(Skin, IsotropicSolid):
     stiffness hinders. For ν = ½, without sideways displacement, and for κ_s = 0 this is
     `tensed_membrane`.
     """
+
+    model_config = ConfigDict(title="Gurtin–Murdoch surface")
 
     type: Literal["gurtin_murdoch"] = "gurtin_murdoch"
     surface_stiffness: Annotated[

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
+from pydantic import ConfigDict
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
@@ -16,6 +17,8 @@ from .reduced_modulus import ElasticSolid
 
 class HalfSpace(ElasticSolid):
     """Elastic half-space without surface tension (Boussinesq 1885)."""
+
+    model_config = ConfigDict(title="half-space")
 
     type: Literal["half_space"] = "half_space"
 

@@ -28,10 +28,12 @@ class ElasticModulus(Model):
         Field(description="reduced modulus E* [Pa]; or youngs_modulus and poissons_ratio"),
     ] = None
     youngs_modulus: Annotated[
-        Modulus | None, Field(description="Young's modulus E [Pa], with poissons_ratio")
+        Modulus | None,
+        Field(title="Young's modulus", description="Young's modulus E [Pa], with poissons_ratio"),
     ] = None
     poissons_ratio: Annotated[
-        PoissonsRatio | None, Field(description="Poisson's ratio ν, −1 < ν ≤ 0.5")
+        PoissonsRatio | None,
+        Field(title="Poisson's ratio", description="Poisson's ratio ν, −1 < ν ≤ 0.5"),
     ] = None
 
     @property

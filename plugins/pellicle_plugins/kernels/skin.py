@@ -14,10 +14,16 @@ from pellicle.units import BendingStiffness, Tension
 class Skin(Kernel):
     """A kernel whose surface is a skin under tension that may resist bending."""
 
-    tension: Annotated[Tension, Field(description="tension τ₀ of the skin [N/m], 0 for none")] = 0.0
+    tension: Annotated[
+        Tension,
+        Field(title="surface tension", description="tension τ₀ of the skin [N/m], 0 for none"),
+    ] = 0.0
     bending: Annotated[
         BendingStiffness,
-        Field(description="bending stiffness B of the skin [N*m], 0 for none"),
+        Field(
+            title="bending stiffness",
+            description="bending stiffness B of the skin [N*m], 0 for none",
+        ),
     ] = 0.0
 
     def skin_stiffness(self, q: Array) -> Array:

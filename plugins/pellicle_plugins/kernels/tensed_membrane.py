@@ -21,7 +21,10 @@ class TensedMembrane(ElasticSolid):
     """Elastic half-space under a skin of constant equi-biaxial tension (Hajji 1978)."""
 
     type: Literal["tensed_membrane"] = "tensed_membrane"
-    tension: Annotated[Tension, Field(description="tension τ₀ of the surface [N/m], 0 for none")]
+    tension: Annotated[
+        Tension,
+        Field(title="surface tension", description="tension τ₀ of the surface [N/m], 0 for none"),
+    ]
 
     @property
     def elastocapillary_length(self) -> float:

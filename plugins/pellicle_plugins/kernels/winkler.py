@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from pellicle import hookimpl
 from pellicle.arrays import Array
@@ -17,9 +17,14 @@ from pellicle.units import FoundationStiffness
 class Winkler(Kernel):
     """Bed of independent springs: the surface yields only where it is pressed (Winkler 1867)."""
 
+    model_config = ConfigDict(title="Winkler foundation")
+
     type: Literal["winkler"] = "winkler"
     foundation: Annotated[
-        FoundationStiffness, Field(description="stiffness k of the springs per area [Pa/m]")
+        FoundationStiffness,
+        Field(
+            title="foundation stiffness", description="stiffness k of the springs per area [Pa/m]"
+        ),
     ]
 
     def compliance(self, q: Array) -> Array:

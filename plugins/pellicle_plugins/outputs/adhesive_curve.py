@@ -20,7 +20,7 @@ from pellicle.results.result import Result
 from pellicle.units import Quantity, axis_unit
 from pellicle_plugins.analytic.adhesive_path import curve_of, steepest_slopes
 
-from .base import TableFigure, set_scales, write_csv
+from .base import Label, TableFigure, set_scales, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,7 +53,7 @@ _MARKERS = {"pull-off": "o", "no load": "s", "last at fixed depth": "v"}
 class _Drawn:
     """The path of a run and its adhesive curve."""
 
-    name: str
+    name: Label
     colour: str
     path: xr.Dataset
     curve: analysis.AdhesiveCurve | None
@@ -112,7 +112,7 @@ class AdhesiveCurve(TableFigure):
             write_csv(summary, [self._summary(one) for one in drawn], _SUMMARY_HEADS),
         )
 
-    def _paths(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
+    def _paths(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
         """Yield the name of each curve and its run, if its file exists."""
         for name, point in self.picked(runs.table):
             try:
@@ -121,7 +121,7 @@ class AdhesiveCurve(TableFigure):
                 continue
             yield name, run
 
-    def _drawn(self, name: str, colour: str, run: xr.Dataset) -> _Drawn:
+    def _drawn(self, name: Label, colour: str, run: xr.Dataset) -> _Drawn:
         _refuse(run)
         path = run.isel(step=run["converged"].values & (run["contact_area"].values > 0))
         try:
@@ -134,7 +134,7 @@ class AdhesiveCurve(TableFigure):
     def _summary(self, drawn: _Drawn) -> dict[str, object]:
         pull_off, zero_load, fixed_depth = drawn.points().values()
         values = (
-            drawn.name,
+            drawn.name.key,
             self.work_of_adhesion,
             pull_off.force,
             pull_off.contact_radius,
@@ -164,7 +164,7 @@ class AdhesiveCurve(TableFigure):
             stable = ~(curve.contact_radius < end)
             for part, style in ((stable, "-"), (~stable, ":")):
                 x, y = curve.depth[part] * length, curve.force[part] * newton
-                name = one.name if style == "-" else ""
+                name = one.name.words if style == "-" else ""
                 axes.plot(x, y, style, color=one.colour, linewidth=1.4, label=name or None)
             for what, contact in points.items():
                 x, y = contact.depth * length, contact.force * newton
@@ -248,7 +248,7 @@ def _rows(drawn: _Drawn) -> Iterator[dict[str, object]]:
         return
     columns = drawn.curve.contact_radius, drawn.curve.depth, drawn.curve.force
     for values in zip(*columns, strict=True):
-        yield dict(zip(_HEADS, (drawn.name, *values), strict=True))
+        yield dict(zip(_HEADS, (drawn.name.key, *values), strict=True))
 
 
 def _refuse(run: xr.Dataset) -> None:

@@ -6,22 +6,25 @@ import csv
 import json
 import re
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
 from pellicle.components import Output, Runs
+from pellicle.config.run import Run
+from pellicle.config.wording import words_at
 from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
-from pellicle.model.expression import evaluate
+from pellicle.model.expression import evaluate, formula
 from pellicle.model.messages import nearest
 from pellicle.report.plotting import save_figure, without_round_off
-from pellicle.results.derived import names
+from pellicle.results.derived import FIRST_RUN, names
 from pellicle.results.result import Result
-from pellicle.units import axis_unit, readable
+from pellicle.results.variables import wording, words_of_name
+from pellicle.units import DIGITS, readable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -68,7 +71,7 @@ class TableFigure(Output):
         """Suffixes of the figure and of its numbers."""
         return tuple(f".{kind}" for kind in (*self.formats, *["csv"] * self.numbers))
 
-    def picked(self, table: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
+    def picked(self, table: xr.Dataset) -> Iterator[tuple[Label, xr.Dataset]]:
         """Yield the name of each curve or panel and the point of the table that it shows.
 
         Other axes are at their first value, steps at the last of the table.
@@ -77,9 +80,9 @@ class TableFigure(Output):
         first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
         for index in along(table, self.by):
             point = table.isel({**first, **index})
-            yield label(self.label, point, self.by), point
+            yield label(self.label, point, self.by, table), point
 
-    def steps(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset]]:
+    def steps(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
         """Yield the name of each curve or panel and the last load step of its run, if finished."""
         for name, point in self.picked(runs.table):
             try:
@@ -122,37 +125,83 @@ def along(table: xr.Dataset, dim: str | None) -> list[dict[str, int]]:
     return [{dim: index} for index in range(table.sizes[dim])] if dim else [{}]
 
 
-def label(template: str | None, data: xr.Dataset, dim: str | None) -> str:
+class Label(NamedTuple):
+    """The name of a curve or a panel."""
+
+    words: str
+    """For the figure, such as "surface tension 30 mN/m"."""
+    key: str
+    """For the column ``curve`` of its numbers, such as "kernel.tension = 30 mN/m"."""
+
+
+def label(template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dataset) -> Label:
     """Return the name of a curve or a panel.
 
-    ``{…}`` in the template is an expression, replaced by its mean over ``data``. Without a template
-    the name is the value of the dimension ``dim``; without that, the values of all axes of the
-    study for which ``data`` has only one.
+    ``{…}`` in the template is an expression, replaced by its mean over ``data``, the part of the
+    table ``whole`` that is shown. Without a template the name is the value of the dimension
+    ``dim``; without that, the values of all axes of the study for which ``data`` has only one. The
+    words have values in one unit for all parts.
     """
     if template is not None:
         variables = names(data)
-        return _PLACEHOLDER.sub(
+        text = _PLACEHOLDER.sub(
             lambda match: f"{np.nanmean(np.asarray(evaluate(match[1], variables))):.3g}", template
         )
+        return Label(text, text)
     axes = [dim] if dim else json.loads(data.attrs.get("axes", "[]"))
-    return ", ".join(_value(data[axis]) for axis in axes if data[axis].ndim == 0)
+    values = [data[axis] for axis in axes if data[axis].ndim == 0]
+    words = [wording(whole[value.name]).text(value.item()) for value in values]
+    return Label(", ".join(words), ", ".join(map(_assignment, values)))
 
 
-def _value(value: xr.DataArray) -> str:
+def _assignment(value: xr.DataArray) -> str:
     unit = value.attrs.get("units", "1")
-    text = readable(value.item(), unit, digits=4) if unit != "1" else str(value.item())
+    text = readable(value.item(), unit, DIGITS) if unit != "1" else str(value.item())
     return f"{value.name} = {text}"
 
 
-def scaled(text: str, values: xr.DataArray, axis_label: str | None) -> tuple[float, str]:
-    """Return the factor and the label of an axis that shows the expression ``text``.
+def scaled(
+    text: str, values: Sequence[xr.DataArray], axis_label: str | None, data: xr.Dataset
+) -> tuple[float, str]:
+    """Return the factor and the label of an axis that shows the expression ``text`` over ``data``.
 
-    A bare variable is converted to a unit with a prefix, unless ``axis_label`` is given.
+    ``values`` are those of all curves along the axis. A bare variable is converted to a unit with a
+    prefix, unless ``axis_label`` is given. Other expressions are in SI, since their unit is not
+    known.
     """
     if axis_label is not None:
         return 1.0, axis_label
-    factor, name = axis_unit(values.values, values.attrs.get("units", "1"))
-    return factor, f"{text} [{name}]" if name else text
+    name = text.strip()
+    if name not in data.variables:
+        return 1.0, in_words(text, data)
+    # xarray keeps the unit of one operand, so that only the bare variable has its own.
+    shown = wording(joined(name, values))
+    return shown.scale.factor, shown.head
+
+
+def joined(name: str, arrays: Sequence[xr.DataArray]) -> xr.DataArray:
+    """Return the values of a variable in several runs in one array, with its attributes."""
+    import xarray as xr
+
+    values = np.concatenate([array.values.ravel() for array in arrays])
+    return xr.DataArray(values, dims="value", name=name, attrs=arrays[0].attrs)
+
+
+def in_words(text: str, data: xr.Dataset, further: Mapping[str, str] | None = None) -> str:
+    """Return an expression over a result or a table with words in place of its names.
+
+    ``further`` has the words of names that are in neither.
+    """
+    configuration = json.loads(data.attrs.get(FIRST_RUN, data.attrs.get("configuration", "{}")))
+
+    def words(name: str) -> str:
+        if further and name in further:
+            return further[name]
+        if name in data.variables:
+            return wording(data[name]).words
+        return words_at(configuration, Run, name) if "." in name else words_of_name(name)
+
+    return formula(text, words)
 
 
 def set_scales(axes: Axes, log: Sequence[str], *, signed: bool = False) -> None:

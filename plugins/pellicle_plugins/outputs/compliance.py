@@ -16,13 +16,14 @@ from pellicle.errors import StorageError
 from pellicle.model.expression import evaluate
 from pellicle.results.derived import names
 
-from .base import XYFigure, set_scales
+from .base import XYFigure, in_words, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
 _MARKERS = 40
+_WORDS = {"q": "wavenumber q"}
 
 
 class Compliance(XYFigure):
@@ -63,14 +64,20 @@ class Compliance(XYFigure):
                     markerfacecolor="white",
                     markevery=list(shown) if style == "o" else None,
                     linewidth=1.0,
-                    label=(name or series) if style == "o" else None,
+                    label=(name.words or series) if style == "o" else None,
                 )
                 for px, py in zip(x, y, strict=True):
-                    yield {"curve": name, "series": series, "x": px, "y": py}
+                    yield {"curve": name.key, "series": series, "x": px, "y": py}
         axes.plot([], [], color="0.4", linewidth=1.0, label="symbol")
         axes.set(
-            xlabel=self.x_label or (f"{self.x} [rad/m]" if self.x == "q" else self.x),
-            ylabel=self.y_label or (f"{self.y} [m/Pa]" if self.y == "compliance" else self.y),
+            xlabel=self.x_label
+            or ("wavenumber q [rad/m]" if self.x == "q" else in_words(self.x, runs.table, _WORDS)),
+            ylabel=self.y_label
+            or (
+                "compliance [m/Pa]"
+                if self.y == "compliance"
+                else in_words(self.y, runs.table, _WORDS)
+            ),
             title=self.title,
         )
         set_scales(axes, ("x", "y"))

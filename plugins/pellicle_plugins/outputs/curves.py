@@ -19,7 +19,8 @@ from pellicle.model.base import Model
 from pellicle.model.expression import names_in
 from pellicle.report.plotting import MOST_LEGS, RETRACTION, draw_legs
 from pellicle.results.path import has_interaction, has_path, has_times
-from pellicle.results.variables import FIELDS, WALL_PRESSURE
+from pellicle.results.variables import FIELDS, WALL_PRESSURE, wording
+from pellicle.units import printed
 from pellicle_plugins.analytic.reference import exact
 
 from .base import (
@@ -27,6 +28,8 @@ from .base import (
     Reference,
     XYFigure,
     along,
+    in_words,
+    joined,
     label,
     one_axis,
     scaled,
@@ -144,13 +147,12 @@ class Curves(XYFigure):
         one_axis(runs.table.sizes, self.by, "by")
         one_axis(runs.table.sizes, self.over, "over")
         x, *ys = (runs.column(text) for text in (self.x, *self.y))
-        factor_x, x_label = scaled(self.x, x, self.x_label)
-        factor_y, y_label = scaled(self.y[0], ys[0], self.y_label)
+        factor_x, x_label = scaled(self.x, [x], self.x_label, runs.table)
+        factor_y, y_label = self._scaled_y(ys, runs.table)
         lines = list(self._lines(runs, x, ys))
         for line in lines:
             line.draw(axes, factor_x, factor_y, bool(self.log))
         published = list(self._draw_published(axes))
-        y_label = y_label if len(ys) == 1 else self.y_label or ""
         axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
         set_scales(axes, self.log, signed=has_interaction(runs.table))
         if axes.get_legend_handles_labels()[1]:
@@ -158,6 +160,31 @@ class Curves(XYFigure):
         for line in lines:
             yield from line.rows()
         yield from published
+
+    def _scaled_y(self, ys: Sequence[xr.DataArray], table: xr.Dataset) -> tuple[float, str]:
+        """Return the factor and the label of the vertical axis; several y have but a common unit.
+
+        Without one they are in SI, with their units in the legend.
+        """
+        if len(ys) == 1 or self.y_label is not None:
+            return scaled(self.y[0], ys, self.y_label, table)
+        units = {self._unit(text, table) for text in self.y}
+        if len(units) > 1 or "" in units:
+            return 1.0, ""
+        scale = wording(joined("", ys)).scale
+        return scale.factor, f"[{scale.unit}]"
+
+    def _named(self, text: str, table: xr.Dataset) -> str:
+        """Return one of several y in words, with its unit if the axis has none."""
+        alike = len({self._unit(other, table) for other in self.y}) == 1
+        unit = "" if alike else self._unit(text, table)
+        return f"{in_words(text, table)} [{printed(unit)}]" if unit else in_words(text, table)
+
+    @staticmethod
+    def _unit(text: str, table: xr.Dataset) -> str:
+        """Return the SI unit of a bare variable; empty for other expressions."""
+        unit = table[text.strip()].attrs.get("units", "") if text.strip() in table else ""
+        return "" if unit == "1" else unit
 
     def _lines(
         self, runs: Runs, x: xr.DataArray, ys: Sequence[xr.DataArray]
@@ -167,31 +194,32 @@ class Curves(XYFigure):
         directions: set[str] = set()
         for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
             series = self.series[number] if self.series else text
+            named = self.series[number] if self.series else self._named(text, runs.table)
             exact_x, exact_y = (
                 (reference.column(self.x), reference.column(text)) if reference else (x, y)
             )
             for index, point in enumerate(along(runs.table, self.by)):
                 part = runs.table.isel(point)
-                name = label(self.label, part, self.by)
+                name = label(self.label, part, self.by, runs.table)
                 # Colours distinguish the values of `by`, markers those of `y`.
                 style = _Style(f"C{index if self.by else number}", number, reference is not None)
-                legend = "" if number else name
+                legend = "" if number else name.words
                 if not self.by and (self.series or len(ys) > 1):
-                    legend = series
+                    legend = named
                 points, path = self._points(part, _at(x, point), _at(y, point))
                 directions |= {leg.direction for leg in path}
-                yield _Line(points, style, legend, name, series, path)
+                yield _Line(points, style, legend, name.key, series, path)
                 if self.extrapolate:
                     _require_grids(_at(x, point))
                     # An interrupted study may lack some of them.
                     if np.unique(points.x).size >= _GRIDS:
-                        yield _Limit(points, style, name, f"{series}, extrapolated")
+                        yield _Limit(points, style, name.key, f"{series}, extrapolated")
                 if reference:
                     points, _ = self._points(part, _at(exact_x, point), _at(exact_y, point))
                     thin = _Style(style.colour, None)
-                    yield _Line(points.ordered(), thin, "", name, f"{series}, semi-analytic")
+                    yield _Line(points.ordered(), thin, "", name.key, f"{series}, semi-analytic")
             if self.by and len(ys) > 1:
-                yield _Line(_NO_POINTS, _Style("0.4", number, reference is not None), series)
+                yield _Line(_NO_POINTS, _Style("0.4", number, reference is not None), named)
         if reference:
             yield _Line(_NO_POINTS, _Style("0.4", None), "semi-analytic")
         if len(directions) > 1:

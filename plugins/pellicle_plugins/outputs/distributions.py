@@ -15,7 +15,7 @@ from pellicle.report.plotting import save_figure
 from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit
 
-from .base import Log, TableFigure, set_scales, write_csv
+from .base import Label, Log, TableFigure, set_scales, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _SIZE = 10.0, 4.2
 _HEADS = "curve", "series", "lower", "upper", "mean", "density"
 _FIELDS = {"pressure": "Pa", "gap": "m"}
-_Curves = list[tuple[str, dict[str, analysis.Distribution]]]
+_Curves = list[tuple[Label, dict[str, analysis.Distribution]]]
 
 
 class Distributions(TableFigure):
@@ -62,7 +62,7 @@ class Distributions(TableFigure):
             factor, name = axis_unit(np.concatenate([*edges, np.zeros(1)]), unit)
             for curve, densities in curves:
                 density = densities[field].density / factor
-                axes.stairs(density, densities[field].edges * factor, label=curve or None)
+                axes.stairs(density, densities[field].edges * factor, label=curve.words or None)
             axes.set(xlabel=f"{field} [{name}]", ylabel=f"probability density [1/{name}]")
             set_scales(axes, self.log if any(bins.size > 1 for bins in edges) else ())
             if axes.get_legend_handles_labels()[1]:
@@ -74,7 +74,7 @@ def _rows(curves: _Curves) -> Iterator[dict[str, object]]:
     for name, densities in curves:
         for field, bins in densities.items():
             for row in zip(bins.edges, bins.edges[1:], bins.mean, bins.density, strict=False):
-                yield dict(zip(_HEADS, (name, field, *row), strict=True))
+                yield dict(zip(_HEADS, (name.key, field, *row), strict=True))
 
 
 @hookimpl

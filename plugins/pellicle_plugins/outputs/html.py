@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -50,9 +51,24 @@ from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result, first_message
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
-from pellicle.results.variables import VARIABLES, WALL_PRESSURE, names_of
-from pellicle.studies.summary import caveats, failures, progress_of, reasons, runs_of
-from pellicle.units import axis_unit, readable
+from pellicle.results.variables import (
+    VARIABLES,
+    WALL_PRESSURE,
+    Wording,
+    names_of,
+    wording,
+    wording_of,
+)
+from pellicle.studies.summary import (
+    caveats,
+    failures,
+    progress_of,
+    reasons,
+    run_names,
+    runs_of,
+    short_files,
+)
+from pellicle.units import DIGITS, readable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -149,15 +165,15 @@ class Html(Output):
         data = result.dataset
         steps = data.sizes["step"]
         chosen = self._chosen(steps)
-        factor, unit = axis_unit(data["depth"].values, "m")
+        depth = wording(data["depth"])
         mapped = _mapped(data)
         points = side(self.points, len(chosen) * len(mapped))
         frames = []
         for index in chosen:
             step = without_round_off(data.isel(step=index))
-            label = f"depth {step['depth'].item() * factor:.4g} {unit}"
+            label = depth.text(step["depth"].item())
             if has_times(step):
-                label = f"{readable(step['time'].item(), 's', digits=4)}, {label}"
+                label = f"{readable(step['time'].item(), 's', DIGITS)}, {label}"
             label = f"{index + 1}: {label}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
             frames.append(_frame(label, grid, step, mapped, points))
@@ -174,7 +190,7 @@ class Html(Output):
         """Yield the maps of a step of runs, by their index among all."""
         import xarray as xr
 
-        mapped = _mapped(table)
+        mapped, names_of_runs = _mapped(table), run_names(table)
         solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
         chosen = self._chosen(len(solved))
         points = side(self.points, len(chosen) * len(mapped))
@@ -197,7 +213,7 @@ class Html(Output):
             ).assign(depth=row["depth"][shown])
             if not sticks:
                 step = step.assign({WALL_PRESSURE: step["pressure"]})
-            yield index, _frame(_named(row), grid, without_round_off(step), mapped, points)
+            yield index, _frame(names_of_runs[index], grid, without_round_off(step), mapped, points)
 
     def _chosen(self, count: int) -> list[int]:
         """Return the indices that are mapped: all, or evenly spaced ones up to the last."""
@@ -262,21 +278,21 @@ def _status_of_study(table: xr.Dataset, count: int) -> Notice:
     return Notice(f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings])
 
 
-def _column(name: str, variable: xr.DataArray) -> tuple[Column, float]:
-    """Return the head of a variable's column, and the factor to its unit."""
-    unit = variable.attrs.get("units", "1")
-    factor, unit = axis_unit(variable.values, unit)
-    head = name if "." in name else name.replace("_", " ")
+def _column(variable: xr.DataArray) -> tuple[Column, Wording]:
+    """Return the head of a variable's column, and how its values are shown."""
+    shown = wording(variable)
     is_text = variable.dtype.kind not in "if"
-    return Column(head, unit, variable.attrs.get("long_name", ""), is_text), factor
+    meaning = variable.attrs.get("long_name", "")
+    return Column(shown.words, shown.scale.unit, meaning, is_text), shown
 
 
 def _path(result: Result) -> list[Table]:
     """Return the numbers of the whole path, where there is an interaction."""
     rows: list[list[str | Cell]] = [
-        [name.replace("_", " "), _shown(value, VARIABLES[name].unit), VARIABLES[name].meaning]
+        [known.words, readable(value, known.unit, DIGITS), known.meaning]
         for name, value in result.path_summary.items()
         if name in names_of("path")
+        for known in (VARIABLES[name],)
     ]
     columns = [Column(head, words=True) for head in ("path", "value", "meaning")]
     caption = "Events on the path, to a step, and its work."
@@ -285,15 +301,13 @@ def _path(result: Result) -> list[Table]:
 
 def _oscillations(result: Result) -> list[Table]:
     """Return the numbers of each oscillation, where a leg oscillates."""
-    names = names_of("oscillation")
-    columns = [
-        Column(name.replace("_", " "), meaning=VARIABLES[name].meaning, words=True)
-        for name in names
-    ]
-    rows: list[list[str | Cell]] = [
-        [_shown(getattr(oscillation, name), VARIABLES[name].unit) for name in names]
-        for oscillation in result.oscillations
-    ]
+    oscillations, columns, cells = result.oscillations, [], []
+    for name in names_of("oscillation"):
+        values = [getattr(oscillation, name) for oscillation in oscillations]
+        shown = wording_of(name, values)
+        columns.append(Column(shown.words, shown.scale.unit, VARIABLES[name].meaning))
+        cells.append([shown.number(value) for value in values])
+    rows: list[list[str | Cell]] = [list(row) for row in zip(*cells, strict=True)]
     caption = "Response over the last whole cycle of each oscillation."
     return [Table(caption, columns, rows)] if rows else []
 
@@ -308,19 +322,14 @@ def _paths(table: xr.Dataset, runs: list[xr.Dataset]) -> list[Table]:
     if not names:
         return []
     axes = [str(name) for name in table.coords if name != "step"]
-    columns = [(name, *_column(name, table[name])) for name in (*axes, *names)]
-    rows: list[list[str | Cell]] = []
-    for run in runs:
-        values = ((run[name].item(), factor) for name, _, factor in columns)
-        texts = ["" if v != v else _text(v, factor) for v, factor in values]
-        rows.append([str(run["run"].item()), *texts])
-    heads = [Column("run", words=True), *(column for _, column, _ in columns)]
+    columns = [(name, *_column(table[name])) for name in (*axes, *names)]
+    rows: list[list[str | Cell]] = [
+        [str(number), *(shown.number(run[name].item()) for name, _, shown in columns)]
+        for number, run in enumerate(runs, start=1)
+    ]
+    heads = [Column("run"), *(column for _, column, _ in columns)]
     caption = "The path of each run: events, to a step, and work; the last oscillation."
     return [Table(caption, heads, rows)]
-
-
-def _shown(value: float, unit: str) -> str:
-    return "none" if np.isnan(value) else readable(value, unit)
 
 
 def _numbers(data: xr.Dataset) -> list[str]:
@@ -352,22 +361,16 @@ def _steps(data: xr.Dataset) -> list[Table]:
 def _table_of_steps(data: xr.Dataset, names: list[str], caption: str) -> Table:
     columns, texts = [Column("step")], [list(map(str, data["step"].values))]
     for name in names:
-        column, factor = _column(name, data[name])
+        column, shown = _column(data[name])
         columns.append(column)
-        style = ".1e" if name.startswith("residual_") else ".6g"
-        texts.append([_text(value, factor, style) for value in data[name].values.tolist()])
+        if name.startswith("residual_"):
+            shown = replace(shown, digits=2)
+        texts.append([shown.number(value) for value in data[name].values.tolist()])
     rows = [
         [*cells, _verdict(Status[code].verdict)]
         for *cells, code in zip(*texts, data["status_code"].values, strict=True)
     ]
     return Table(caption, [*columns, Column("status", words=True)], rows)
-
-
-def _text(value: Any, factor: float, style: str = ".6g") -> str:
-    """Return a float in its unit, and counts and texts unchanged."""
-    return (
-        format(value * factor, style if value else "g") if isinstance(value, float) else str(value)
-    )
 
 
 def _verdict(word: str) -> Cell:
@@ -381,39 +384,31 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
     """
     axes = [str(name) for name in table.coords if name != "step"]
     names = [n for n in _numbers(table) if not _is_effort(n)]
-    varied = [_column(name, table[name]) for name in axes]
-    numbers = [_column(name, table[name]) for name in names]
+    varied = [_column(table[name]) for name in axes]
+    numbers = [_column(table[name]) for name in names]
     rows: list[list[str | Cell]] = []
-    for index, row in enumerate(runs):
+    for index, (row, file) in enumerate(zip(runs, short_files(table), strict=True)):
         done, total, word = progress_of(row)
         point = [
-            _text(row[name].item(), factor) for name, (_, factor) in zip(axes, varied, strict=True)
+            shown.number(row[name].item()) for name, (_, shown) in zip(axes, varied, strict=True)
         ]
         last = [
-            _text(row[name].values[done - 1].item(), factor) if done else ""
-            for name, (_, factor) in zip(names, numbers, strict=True)
+            shown.number(row[name].values[done - 1].item()) if done else ""
+            for name, (_, shown) in zip(names, numbers, strict=True)
         ]
-        shown = mapped.index(index) if index in mapped else None
-        run = Cell(str(row["run"].item()), frame=shown)
-        rows.append([run, *point, f"{done}/{total}", *last, _verdict(word)])
+        frame_of_run = mapped.index(index) if index in mapped else None
+        run = Cell(str(index + 1), frame=frame_of_run)
+        rows.append([run, *point, f"{done}/{total}", *last, _verdict(word), file])
     columns = [
-        Column("run", meaning="name of its file in the folder runs", words=True),
+        Column("run", meaning="number of the run, the last axis varying fastest"),
         *(column for column, _ in varied),
         Column("steps", meaning="finished load steps, of those planned"),
         *(column for column, _ in numbers),
         Column("status", words=True),
+        Column("file", meaning="beginning of the name of its file in the folder runs", words=True),
     ]
     caption = "The last load step of each run; a click on a run shows its map."
     return Table(caption, columns, rows)
-
-
-def _named(row: xr.Dataset) -> str:
-    """Return the values that distinguish a run from the others."""
-    return ", ".join(
-        f"{name} = {readable(value.item(), value.attrs.get('units', '1'))}"
-        for name, value in row.coords.items()
-        if name != "step"
-    )
 
 
 def _pictures_of(result: Result) -> list[Picture]:
@@ -432,7 +427,7 @@ def _pictures_of_study(table: xr.Dataset) -> list[Picture]:
 
     names = STUDY_FIGURES if "force" in table else ()
     return [
-        _picture(partial(fill, name), f"{name.replace('_', ' ').capitalize()} over the study.")
+        _picture(partial(fill, name), f"{wording(table[name]).words.capitalize()} over the study.")
         for name in names
     ]
 
@@ -448,9 +443,9 @@ def _picture(fill: Callable[[Figure], None], caption: str) -> Picture:
 
 
 def _inputs(fields: list[Input]) -> Table:
-    columns = [Column(head, words=True) for head in ("field", "value", "meaning")]
+    columns = [Column(head, words=True) for head in ("of", "input", "value", "meaning")]
     rows = [
-        [i.name, i.value, i.meaning]
+        [i.part, "type" if i.words == i.part else i.words, i.value, i.meaning]
         for i in fields
         if i.name != "title" and not i.name.startswith("outputs.")
     ]
@@ -462,11 +457,14 @@ def _varied(table: xr.Dataset, fields: list[Input]) -> list[Input]:
     axes = [
         Input(
             str(name),
-            readable(axis.values.tolist(), axis.attrs.get("units", "1")),
+            "study",
+            shown.words,
+            shown.listing(axis.values.tolist()),
             f"varied, {axis.size} values",
         )
         for name, axis in table.coords.items()
         if name != "step"
+        for shown in (wording(axis),)
     ]
     names = tuple(f"{axis.name}." for axis in axes)
     fixed = [field for field in fields if not f"{field.name}.".startswith(names)]
@@ -482,7 +480,7 @@ def _origin(attributes: dict[str, str], configuration: dict[str, Any]) -> Iterat
     heads = [Column("what", words=True), Column("value", words=True)]
     yield Table("Versions, date and identity.", heads, [list(fact) for fact in facts if fact[1]])
     rows = [
-        [i.name, i.value, i.origin.distribution, i.origin.version, i.origin.entry_point]
+        [i.words, i.value, i.origin.distribution, i.origin.version, i.origin.entry_point]
         for i in inputs(configuration)
         if i.origin
     ]

@@ -18,7 +18,7 @@ from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit
 
-from .base import TableFigure, scaled
+from .base import Label, TableFigure, scaled
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,7 +66,7 @@ class Maps(TableFigure):
     def _fill(
         self,
         figure: Figure,
-        panels: list[tuple[str, xr.Dataset, xr.DataArray]],
+        panels: list[tuple[Label, xr.Dataset, xr.DataArray]],
         down: int,
         across: int,
     ) -> None:
@@ -77,7 +77,10 @@ class Maps(TableFigure):
             return
         values = np.concatenate([field.values.ravel() for *_, field in panels])
         is_bool = panels[0][2].dtype == bool
-        factor, name = (1.0, "") if is_bool else scaled(self.field, panels[0][2], self.field_label)
+        factor, name = 1.0, ""
+        if not is_bool:
+            fields = [field for *_, field in panels]
+            factor, name = scaled(self.field, fields, self.field_label, panels[0][1])
         values = values[np.isfinite(values)] * factor
         low, high = (values.min(), values.max()) if values.size and not is_bool else (0.0, 1.0)
         if low == high:
@@ -101,7 +104,7 @@ class Maps(TableFigure):
             if pulls:
                 outline_contact(run, axes, length)
             axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
-            axes.set_title(title, fontsize="medium")
+            axes.set_title(title.words, fontsize="medium")
             axes.label_outer()
         if not is_bool:
             figure.colorbar(image, ax=list(all_axes), label=name, shrink=0.85)

@@ -15,7 +15,7 @@ from pellicle.report.plotting import extent, save_figure
 from pellicle.results.result import Result
 from pellicle.units import axis_unit
 
-from .base import TableFigure, write_csv
+from .base import Label, TableFigure, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,7 +55,9 @@ class Patches(TableFigure):
     def _patches(self, step: xr.Dataset) -> analysis.Patches:
         return analysis.patches(step["contact"], Result(step).grid, self.connectivity)
 
-    def _fill(self, figure: Figure, curves: list[tuple[str, xr.Dataset, analysis.Patches]]) -> None:
+    def _fill(
+        self, figure: Figure, curves: list[tuple[Label, xr.Dataset, analysis.Patches]]
+    ) -> None:
         left, right = figure.subplots(1, 2)
         if curves:
             _map(left, *curves[-1])
@@ -63,7 +65,9 @@ class Patches(TableFigure):
         factor, unit = axis_unit(np.array(largest), "m2")
         for name, _, patches in curves:
             rank = np.arange(1, patches.count + 1)
-            right.step(patches.area * factor, rank, where="post", marker=".", label=name or None)
+            right.step(
+                patches.area * factor, rank, where="post", marker=".", label=name.words or None
+            )
         right.set(xlabel=f"area of a patch [{unit}]", ylabel="patches at least as large")
         if largest:
             right.set(xscale="log", yscale="log")
@@ -73,7 +77,7 @@ class Patches(TableFigure):
         figure.suptitle(self.title)
 
 
-def _map(axes: Axes, name: str, step: xr.Dataset, patches: analysis.Patches) -> None:
+def _map(axes: Axes, name: Label, step: xr.Dataset, patches: analysis.Patches) -> None:
     """Draw the patches in 20 colours, used in turn."""
     length, unit = axis_unit(np.append(step["x"].values, step["y"].values), "m")
     axes.imshow(
@@ -85,16 +89,16 @@ def _map(axes: Axes, name: str, step: xr.Dataset, patches: analysis.Patches) -> 
         interpolation_stage="data",
     )
     axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
-    axes.set_title(f"{name}\n{patches.count} patches".lstrip(), fontsize="medium")
+    axes.set_title(f"{name.words}\n{patches.count} patches".lstrip(), fontsize="medium")
 
 
-def _rows(name: str, step: xr.Dataset, patches: analysis.Patches) -> Iterator[dict[str, object]]:
+def _rows(name: Label, step: xr.Dataset, patches: analysis.Patches) -> Iterator[dict[str, object]]:
     grid = Result(step).grid
     pressure = step["pressure"].values.ravel()
     force = np.bincount(patches.labels.ravel(), pressure)[1:] * grid.cell_area
     neighbours = analysis.coordination(patches.labels, grid)
     for index, values in enumerate(zip(patches.area, force, neighbours, strict=True)):
-        yield dict(zip(_HEADS, (name, step["step"].item(), index + 1, *values), strict=True))
+        yield dict(zip(_HEADS, (name.key, step["step"].item(), index + 1, *values), strict=True))
 
 
 @hookimpl

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
@@ -12,7 +12,7 @@ from pellicle.components import Output, Runs
 from pellicle.results.derived import as_array
 from pellicle_plugins.analytic.reference import exact_line
 
-from .base import Reference, XYFigure, scaled, set_scales
+from .base import Label, Reference, XYFigure, scaled, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,15 +40,11 @@ class Profiles(XYFigure):
 
     def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
         """Draw the curves, and yield the rows of the numbers drawn."""
-        factors: tuple[float, float] | None = None
-        for number, (name, run) in enumerate(self.steps(runs)):
-            line = run.isel({_ACROSS[self.along]: run.sizes[_ACROSS[self.along]] // 2})
-            x, y = self._columns(line)
-            if factors is None:
-                factor_x, x_label = scaled(self.x or self.along, x, self.x_label)
-                factor_y, y_label = scaled(self.y, y, self.y_label)
-                factors = factor_x, factor_y
-                axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
+        across = _ACROSS[self.along]
+        lines = [(n, run.isel({across: run.sizes[across] // 2})) for n, run in self.steps(runs)]
+        curves = [(name, line, *self._columns(line)) for name, line in lines]
+        factors = self._name_axes(axes, curves) if curves else (1.0, 1.0)
+        for number, (name, line, x, y) in enumerate(curves):
             axes.plot(
                 x.values * factors[0],
                 y.values * factors[1],
@@ -58,9 +54,9 @@ class Profiles(XYFigure):
                 markerfacecolor="white",
                 markevery=max(1, x.size // _MARKERS) if self.reference else None,
                 linewidth=1.2,
-                label=name or None,
+                label=name.words or None,
             )
-            yield from _rows(name, "run", x, y)
+            yield from _rows(name.key, "run", x, y)
             if self.reference:
                 x, y = self._columns(exact_line(line))
                 axes.plot(
@@ -70,12 +66,24 @@ class Profiles(XYFigure):
                     linewidth=1.0,
                     zorder=1,
                 )
-                yield from _rows(name, "semi-analytic", x, y)
+                yield from _rows(name.key, "semi-analytic", x, y)
         if self.reference:
             axes.plot([], [], color="0.4", linewidth=1.0, label="semi-analytic")
         set_scales(axes, ())
         if axes.get_legend_handles_labels()[1]:
             axes.legend(frameon=False, fontsize="small")
+
+    def _name_axes(
+        self,
+        axes: Axes,
+        curves: Sequence[tuple[Label, xr.Dataset, xr.DataArray, xr.DataArray]],
+    ) -> tuple[float, float]:
+        """Label the axes, in units that suit all curves, and return the factors to them."""
+        line = curves[0][1]
+        factor_x, x_label = scaled(self.x or self.along, [c[2] for c in curves], self.x_label, line)
+        factor_y, y_label = scaled(self.y, [c[3] for c in curves], self.y_label, line)
+        axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
+        return factor_x, factor_y
 
     def _columns(self, line: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
         """Return x and y along a line, each with a value for every point."""

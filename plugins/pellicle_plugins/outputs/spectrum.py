@@ -13,7 +13,7 @@ from pellicle.components import Output, Runs
 from pellicle.report.plotting import save_figure
 from pellicle.results.result import Result
 
-from .base import TableFigure, write_csv
+from .base import Label, TableFigure, write_csv
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _STYLES = {"indenter": "--", "displacement": "-"}
 _HEADS = "curve", "series", "wavenumber [rad/m]", "density [m4]", "wave_vectors"
 _ROUND_OFF = 1e-24
-_Curves = list[tuple[str, dict[str, analysis.Spectrum]]]
+_Curves = list[tuple[Label, dict[str, analysis.Spectrum]]]
 
 
 class Spectrum(TableFigure):
@@ -59,7 +59,7 @@ class Spectrum(TableFigure):
                     _STYLES[surface],
                     color=f"C{number}",
                     linewidth=1.2,
-                    label=name if name and surface == "displacement" else None,
+                    label=name.words or None if surface == "displacement" else None,
                 )
         for surface, style in _STYLES.items():
             axes.plot([], [], style, color="0.4", linewidth=1.2, label=surface)
@@ -93,7 +93,7 @@ def _rows(curves: _Curves) -> Iterator[dict[str, object]]:
         for surface, spectrum in spectra.items():
             columns = spectrum.wavenumber, spectrum.density, spectrum.count
             for row in zip(*columns, strict=True):
-                yield dict(zip(_HEADS, (name, surface, *row), strict=True))
+                yield dict(zip(_HEADS, (name.key, surface, *row), strict=True))
 
 
 @hookimpl

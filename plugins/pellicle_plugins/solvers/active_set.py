@@ -11,12 +11,14 @@ import numpy as np
 from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor, Solver
+from pellicle.numerics.gap_law import attraction_slope
 from pellicle.numerics.grid_transfer import highest
 from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.problem import Depth, Problem
 from pellicle.numerics.solution import Progress, Solution, State, Stop
 
 from .adhesion import AdhesionSolver
+from .adhesive_response import with_zone
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
 from .nested_grids import coarse_solution, coarser, prolonged
 from .preconditioner import OnContact, Preconditioner
@@ -204,11 +206,25 @@ class ActiveSet(ScaledSolver):
         contact = state.contact
         unit = 1 / problem.operator.unit
         operator = problem.operator.scaled(unit)
-        profile = np.where(contact, 0.0, -np.inf)
-        punch = Problem(problem.grid, operator, profile, Depth(1.0))
         on_contact = Preconditioner(operator).on(contact)
+
+        def closing(lifted: Array) -> Array:
+            """Return the pressure that moves the contact from the displacement ``lifted`` to 1."""
+            profile = np.where(contact, -lifted, -np.inf)
+            punch = Problem(problem.grid, operator, profile, Depth(1.0))
+            return self._punched(punch, on_contact, monitor)
+
+        if not problem.law:
+            return closing(np.zeros(contact.shape)) * unit
+        gap = problem.operator(state.pressure) - problem.profile - state.depth
+        slope = attraction_slope(problem.law, gap, contact, problem.grid.boundary) / unit
+        return with_zone(operator, slope, closing, self.tolerance / 2) * unit
+
+    def _punched(self, punch: Problem, on_contact: OnContact, monitor: Monitor) -> Array:
+        """Return the pressure of either sign with which the contact has no gap to `tolerance`."""
+        contact = on_contact.contact
         goal = self.tolerance / 2
-        pressure, displacement = np.zeros(problem.grid.shape), np.zeros(problem.grid.shape)
+        pressure, displacement = np.zeros(contact.shape), np.zeros(contact.shape)
         error, before, iteration = 1.0, np.inf, 0
         # Each solve leaves a gap that single precision cannot resolve, so it is repeated.
         while goal < error < before / 2:
@@ -217,9 +233,10 @@ class ActiveSet(ScaledSolver):
                 punch, on_contact, pressure, displacement, goal, certainty=np.inf
             ).pressure
             displacement = punch.operator(pressure)
-            error, before = float(np.abs(1.0 - displacement[contact]).max()), error
+            missed = punch.profile[contact] + 1.0 - displacement[contact]
+            error, before = float(np.abs(missed).max()), error
             iteration += 1
-        return pressure * unit
+        return pressure
 
     def _prolonged(self, problem: Problem) -> Array | None:
         """Return the pressure [Pa] prolonged from a coarser grid, or None without a solution."""

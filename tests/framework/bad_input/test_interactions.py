@@ -34,11 +34,11 @@ VALUES = {
     ),
     "force for work": (
         "{type='jkr', work_of_adhesion='50 mN'}",
-        ["interaction.work_of_adhesion: '50 mN' measures", "'50 mJ/m^2'"],
+        ["interaction.work_of_adhesion: '50 mN' is a force, not an energy per area", "'50 mJ/m^2'"],
     ),
     "work for strength": (
         "{type='linear', work_of_adhesion='50 mJ/m^2', strength='50 mJ/m^2'}",
-        ["interaction.strength: '50 mJ/m^2' measures", "'10 kPa'"],
+        ["interaction.strength: '50 mJ/m^2' is a force per length, not a pressure", "'10 kPa'"],
     ),
     "work without a unit": (
         "{type='jkr', work_of_adhesion='50'}",

@@ -51,7 +51,7 @@ LOADINGS = {
     ),
     "area in another unit": (
         "loading={contact_area='1 mm'}",
-        ["loading.contact_area: '1 mm' measures", "'0.01 mm**2'"],
+        ["loading.contact_area: '1 mm' is a length, not an area", "'0.01 mm**2'"],
     ),
     "mean plane of an endless indenter": (
         "loading={mean_plane_depth='1 um'}",
@@ -59,7 +59,7 @@ LOADINGS = {
     ),
     "ramp in another unit": (
         "loading.depth={start='1 um', stop='1 N', num=3}",
-        ["loading.depth.stop: '1 N' measures", "not [length]"],
+        ["loading.depth.stop: '1 N' is a force, not a length"],
     ),
     "mean pressure on a free boundary": (
         "loading={mean_pressure='1 kPa'}",

@@ -77,8 +77,8 @@ class Returning(Executor):
 
 
 EXECUTORS = {
-    Twice: "yields kernel.reduced_modulus = 10000 twice; it has to yield each task once",
-    Never: "map() ended without 2 of 2 tasks, such as kernel.reduced_modulus = 10000",
+    Twice: "yields reduced modulus 10 kPa twice; it has to yield each task once",
+    Never: "map() ended without 2 of 2 tasks, such as reduced modulus 10 kPa",
     Copies: "it has to yield each of the tasks that it was given, the object itself",
     OutcomeOnly: "it has to yield each of the tasks that it was given, the object itself",
     NoOutcome: "with None; it has to yield it with what its work returned or raised",

@@ -164,7 +164,10 @@ def test_schema() -> None:
         (f"{BODY}baselin = 1\n", "baselin: is not a field here; did you mean 'baseline'?"),
         (BODY, "indenter: is missing"),
         ('[indenter]\ntype = "ball"', "indenter.type: 'ball' is not an indenter"),
-        ('[indenter]\ntype = "sphere"\nradius = "5 N"', "indenter.radius: '5 N' measures"),
+        (
+            '[indenter]\ntype = "sphere"\nradius = "5 N"',
+            "indenter.radius: '5 N' is a force, not a length",
+        ),
         ('[indenter]\ntype = "sphere"\nradios = 1', "indenter.radios: is not a field here"),
         ('curves = ["*.csv"]\nindenter = "sphere"', "*.csv: matches no file"),
         ('curves = ["**.csv"]\nindenter = "sphere"', "**.csv: matches no file"),

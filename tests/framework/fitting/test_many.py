@@ -276,7 +276,7 @@ def test_radius_of_each(cli: Cli, listed: bool) -> None:
         (("a.csv", "b.csv", "-i", "ball", "--radius", "1 um"), "'ball' is not an indenter"),
         (("a.csv", "b.csv", "-i", "paraboloid"), "a.csv: indenter.radius: is missing"),
         (("a.csv", "b.csv", *OPTIONS, "--executor", "abacus"), "'abacus' is not an executor"),
-        (("a.csv", "b.csv", *OPTIONS, "--fix", "tension=1 V"), "[mass]"),
+        (("a.csv", "b.csv", *OPTIONS, "--fix", "tension=1 V"), "is a voltage, not a tension"),
         (("list.csv", *OPTIONS), "has a row without a file"),
         (("a.csv", *OPTIONS, "--spring-constant", "1 m"), "spring_constant"),
         (("a.csv", *OPTIONS, "--pool"), "a pool needs two"),

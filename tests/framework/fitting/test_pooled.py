@@ -284,7 +284,7 @@ def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Re
     arguments = ("0.csv", "1.csv", "-i", "paraboloid", *radii, "--pool", "-o", "out", "--report")
     shown = cli(*arguments, "--contact-points").stdout
     assert "the curves agree" in shown
-    assert "95 % of contact_point" in shown
+    assert "95 % of contact point" in shown
     entries = json.loads(Path("out/pool.json").read_text(encoding="utf-8"))
     assert entries["reduced_modulus"]["low"] < TRUE_MODULUS < entries["reduced_modulus"]["high"]
     # The curves, their residuals, and what each parameter costs.

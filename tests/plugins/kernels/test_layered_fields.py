@@ -68,7 +68,10 @@ def test_nested_fields_can_be_set(file: Path) -> None:
     [
         ("layers.1.thickness=0", "kernel.layers.1.thickness: 0 is not allowed; give a value > 0 m"),
         ("layers.0.thickness='-1 um'", "kernel.layers.0.thickness: '-1 um' is not allowed"),
-        ("layers.0.thickness='1 kPa'", "kernel.layers.0.thickness: '1 kPa' measures"),
+        (
+            "layers.0.thickness='1 kPa'",
+            "kernel.layers.0.thickness: '1 kPa' is a pressure, not a length",
+        ),
         ("layers.0.thickness=inf", "kernel.layers.0.thickness: inf is not finite"),
         ("layers.0.youngs_modulus='inf Pa'", "kernel.layers.0.youngs_modulus: 'inf Pa' is not"),
         ("layers.0.youngs_modulus=nan", "kernel.layers.0.youngs_modulus: nan is not finite"),

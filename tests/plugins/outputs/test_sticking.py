@@ -111,9 +111,9 @@ def test_the_path_is_summarised_where_the_result_is(bead: tuple[Path, pl.Result]
     shown = CliRunner().invoke(app, ["show", str(folder / "run.h5")]).output
     page = unescape((folder / "run.html").read_text(encoding="utf-8"))
     for name, value in summary.items():
-        text = readable(value, VARIABLES[name].unit)
-        assert re.search(rf"^{name} +{re.escape(text)} ", shown, re.MULTILINE), name
-        assert f">{name.replace('_', ' ')}</td>" in page
+        text, words = readable(value, VARIABLES[name].unit, 4), VARIABLES[name].words
+        assert re.search(rf"^{words} +{re.escape(text)} ", shown, re.MULTILINE), name
+        assert f">{words}</td>" in page
         assert f">{text}</td>" in page
 
 
@@ -186,7 +186,7 @@ def test_a_path_that_never_touches_is_drawn(tmp_path: Path) -> None:
     assert np.isnan(result.path_summary["pull_off"])
     shown = CliRunner().invoke(app, ["show", str(tmp_path / "run.h5")])
     assert shown.exit_code == 0, shown.output
-    assert re.search(r"^pull_off +none ", shown.output, re.MULTILINE)
+    assert re.search(r"^pull-off force +none ", shown.output, re.MULTILINE)
     assert "<td" in (tmp_path / "run.html").read_text(encoding="utf-8")
 
 
@@ -206,7 +206,7 @@ def test_a_study_has_one_path_for_each_run(study: tuple[Path, xr.Dataset]) -> No
     assert {float(row["pull_off [N]"]) for row in by_step} == {*table["pull_off"].values}
     shown = CliRunner().invoke(app, ["show", str(folder)]).output.partition("path:")[2]
     assert [line.split()[1] for line in shown.splitlines()[2:4]] == [
-        f"{value:.6g}" for value in table["pull_off"].values
+        f"{value:.4g}" for value in table["pull_off"].values
     ]
     page = (folder / "study.html").read_text(encoding="utf-8")
     assert "The path of each run" in page

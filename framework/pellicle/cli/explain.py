@@ -1,0 +1,62 @@
+"""``pellicle explain``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from .printing import echo, print_columns, print_json
+
+_FIT = """\
+curves = ["beads/*.csv"]
+indenter = { type = "sphere", radius = "5 um" }
+poissons_ratio = 0.5"""
+
+
+def explain(
+    type_: Annotated[
+        str,
+        typer.Argument(
+            metavar="TYPE",
+            help="Type of a component, such as tensed_membrane; a family, such as kernel; or a "
+            "table: grid, loading, study, run, fit.",
+        ),
+    ],
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Print the fields of a component or of a table, with unit, default, meaning and an example."""
+    from pellicle.config.explain import explanations
+    from pellicle.fitting.config import FitConfig
+
+    found = explanations(type_, {"fit": FitConfig})
+    found = [
+        e._replace(example=_FIT) if e.name == "fit" and e.kind == "table" else e for e in found
+    ]
+    if json:
+        print_json([e._asdict() | {"fields": [row._asdict() for row in e.fields]} for e in found])
+        return
+    for number, explanation in enumerate(found):
+        if number:
+            echo("")
+        origin = f", from {explanation.origin}" if explanation.origin else ""
+        echo(f"{explanation.name} ({explanation.kind}{origin})")
+        echo("")
+        echo(explanation.text)
+        rows = explanation.fields
+        if rows:
+            echo("")
+            columns = [("field", [row.name for row in rows])]
+            if explanation.kind == "family":
+                columns = [("type", [row.name for row in rows])]
+            else:
+                columns += [
+                    ("unit", [row.unit for row in rows]),
+                    ("default", [row.default for row in rows]),
+                ]
+            print_columns([*columns, ("meaning", [row.meaning for row in rows])])
+        if explanation.example:
+            echo("")
+            echo("example:")
+            echo("")
+            echo(explanation.example)

@@ -1,0 +1,277 @@
+"""What a component or a table of a run file is: its fields, and an example."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import NoneType
+from typing import Any, Literal, NamedTuple, get_args, get_origin
+
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from pellicle.components import FAMILIES, Component, Prescription
+from pellicle.errors import ConfigError, shown
+from pellicle.grid import Grid
+from pellicle.model.messages import similar
+from pellicle.plugins import Registered, registry
+from pellicle.units import example, quantity_of, readable
+
+from .loading import Loading, loading_model
+from .run import Run
+from .study import Study
+from .wording import model_in
+
+_EXAMPLES: Mapping[type[BaseModel], Mapping[str, Any]] = {
+    Grid: {"grid": {"points": 256, "size": "0.4 mm", "boundary": "free"}},
+    Loading: {"loading": {"depth": {"start": "1 um", "stop": "5 um", "num": 5}}},
+    Study: {"study": {"vary": {"kernel.tension": ["0 mN/m", "10 mN/m", "50 mN/m"]}}},
+}
+_IN_LISTS = {"corrections", "outputs"}
+_KINDS: Mapping[type, str] = {bool: "true or false", int: "whole number", float: "number"}
+_KINDS_OF_TEXT = (str, Path)
+
+
+class FieldRow(NamedTuple):
+    """A field of a table."""
+
+    name: str
+    """Key, with those of the tables that it is in; ``[]`` stands for an entry of a list."""
+    unit: str
+    """SI unit, or the kind of value."""
+    default: str
+    meaning: str
+
+
+class Explanation(NamedTuple):
+    """A component or a table of a run file."""
+
+    name: str
+    kind: str
+    """Its family, or "table"."""
+    origin: str
+    """Distribution and version of a component; empty for a table."""
+    text: str
+    """What it is."""
+    fields: list[FieldRow]
+    example: str
+    """TOML."""
+
+
+def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Explanation]:
+    """Return what is known of a type, of a family or of a table.
+
+    Parameters
+    ----------
+    word
+        A type such as ``half_space``, also with its family as in ``kernel.half_space``.
+    tables
+        Further tables that have fields, by name.
+
+    Raises
+    ------
+    ConfigError
+        There is nothing of that name; the message names similar ones.
+    """
+    known: dict[str, type[BaseModel]] = {
+        "grid": Grid,
+        "loading": Loading,
+        "study": Study,
+        "run": Run,
+        **tables,
+    }
+    name = re.sub(r"[\s-]+", "_", word.strip().strip("[]").lower())
+    families = registry().components
+    if name in known:
+        return [_of_table(name, known[name])]
+    singular = name.removesuffix("s")
+    if singular in FAMILIES:
+        return [_of_family(singular)]
+    family, _, type_ = name.rpartition(".")
+    matches = [
+        members[type_]
+        for one, members in families.items()
+        if type_ in members and family.removesuffix("s") in ("", one)
+    ]
+    if not matches:
+        types = {type_ for members in families.values() for type_ in members}
+        hint = similar(name, types | {*known, *FAMILIES}) or "see `pellicle plugins`"
+        raise ConfigError(f"{shown(word)} is neither a type nor a table; {hint}", "TYPE")
+    return [_of_component(match) for match in matches]
+
+
+def _of_table(name: str, model: type[BaseModel]) -> Explanation:
+    rows = [
+        row for row in fields_of(model) if (model, row.name.partition(".")[0]) != (Study, "run")
+    ]
+    if model is Loading:
+        prescriptions = registry().components["prescription"]
+        rows = [
+            *(row for type_ in prescriptions for row in fields_of(loading_model(type_))[:1]),
+            *rows,
+        ]
+    table = _EXAMPLES.get(model, {})
+    return Explanation(name, "table", "", _documentation(model), rows, _toml(table))
+
+
+def _of_family(family: str) -> Explanation:
+    """Return a family as a table of its types."""
+    rows = [
+        FieldRow(type_, "", "", known.summary)
+        for type_, known in registry().components[family].items()
+    ]
+    return Explanation(family, "family", "", _documentation(FAMILIES[family]), rows, "")
+
+
+def _of_component(known: Registered) -> Explanation:
+    model: type[BaseModel] = known.component
+    family = known.component.family
+    if family == "prescription":
+        model = loading_model(known.type)
+    origin = f"{known.origin.distribution} {known.origin.version}"
+    return Explanation(
+        known.type,
+        family,
+        origin,
+        _documentation(known.component),
+        fields_of(model),
+        _toml(example_table(known)),
+    )
+
+
+def _documentation(model: type[BaseModel]) -> str:
+    """Return the documentation of a class without the marks of its markup."""
+    return (inspect.getdoc(model) or "").replace("``", "").replace("`", "")
+
+
+def fields_of(model: type[BaseModel], prefix: str = "") -> list[FieldRow]:
+    """Return the fields of a model and of the tables in it, without those of components."""
+    rows = []
+    for name, info in model.model_fields.items():
+        if name == "type":
+            continue
+        quantity = quantity_of(info)
+        if info.is_required():
+            default = "required"
+        else:
+            value = info.get_default(call_default_factory=True, validated_data={})
+            default = _default(value, quantity.unit if quantity else "1")
+        unit = quantity.unit if quantity and quantity.unit != "1" else _kind(info.annotation)
+        rows.append(FieldRow(f"{prefix}{name}", unit, default, info.description or ""))
+        inner = model_in(info.annotation)
+        if inner is not None and not issubclass(inner, (Component, Grid, Loading)):
+            mark = "[]" if _is_list(info.annotation) else ""
+            rows += fields_of(inner, f"{prefix}{name}{mark}.")
+    return rows
+
+
+def _default(value: Any, unit: str) -> str:
+    if value is None or value in ((), "", {}):
+        return "none"
+    if isinstance(value, Component):
+        return value.type_name
+    if isinstance(value, bool):
+        return str(value).lower()
+    return readable(value, unit) if not isinstance(value, dict) else str(value)
+
+
+def _is_list(annotation: Any) -> bool:
+    return get_origin(annotation) in (tuple, list) or any(map(_is_list, get_args(annotation)))
+
+
+def _kind(annotation: Any) -> str:
+    """Return the kind of value of a field without a unit, in words."""
+    if get_origin(annotation) is Literal:
+        return " or ".join(map(str, get_args(annotation)))
+    if isinstance(annotation, type):
+        if issubclass(annotation, BaseModel):
+            return "table"
+        if issubclass(annotation, _KINDS_OF_TEXT):
+            return "text"
+        return _KINDS.get(annotation, "table" if issubclass(annotation, dict) else "")
+    if get_origin(annotation) is dict:
+        return "table"
+    inner = [a for a in get_args(annotation) if a is not NoneType and a is not ...]
+    kinds = list(dict.fromkeys(filter(None, map(_kind, inner))))
+    if get_origin(annotation) in (tuple, list):
+        return f"list of {kinds[0]}s" if kinds in (["table"], ["text"], ["number"]) else "list"
+    return " or ".join(kinds)
+
+
+def example_table(known: Registered) -> Mapping[str, Any]:
+    """Return a table of a run file that uses a component, with its required fields only."""
+    component = known.component
+    values = dict(example_values(component))
+    if issubclass(component, Prescription):
+        return {"loading": {known.type: [example(component.unit)], **values}}
+    table = {"type": known.type, **values}
+    if component.family == "executor":
+        return {"study": {"executor": table}}
+    plural = f"{component.family}s"
+    return {plural: [table]} if plural in _IN_LISTS else {component.family: table}
+
+
+def _toml(tables: Mapping[str, Any], path: str = "") -> str:
+    """Return tables as TOML, with a line for each key and inner tables on one line."""
+    parts = []
+    for name, value in tables.items():
+        head = f"[[{path}{name}]]" if isinstance(value, list) else f"[{path}{name}]"
+        table = value[0] if isinstance(value, list) else value
+        if all(isinstance(inner, Mapping) for inner in table.values()) and name == "study":
+            parts.append(_toml(table, f"{name}."))
+        else:
+            parts.append(
+                "\n".join([head, *(f"{_key(key)} = {_inline(v)}" for key, v in table.items())])
+            )
+    return "\n".join(parts)
+
+
+def _inline(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{_key(key)} = {_inline(v)}' for key, v in value.items())} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_inline, value))}]"
+    # JSON writes texts, numbers and truth values as TOML does.
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[\w-]+", name) else json.dumps(name)
+
+
+def example_values(model: type[BaseModel]) -> Iterator[tuple[str, Any]]:
+    """Yield the fields of a model that are required or have ``examples``, with an example.
+
+    It is the first of the ``examples`` of the field; without any, its unit or its kind gives one.
+    Of alternatives in ``json_schema_extra`` the first is taken.
+    """
+    extra = model.model_config.get("json_schema_extra")
+    alternatives = extra if isinstance(extra, dict) else {}
+    wanted: set[str] = set()
+    for key in ("anyOf", "oneOf"):
+        choices: Any = alternatives.get(key, [])
+        wanted |= {name for choice in choices[:1] for name in choice.get("required", ())}
+    for name, info in model.model_fields.items():
+        if name != "type" and (info.is_required() or info.examples or name in wanted):
+            yield name, _example(name, info)
+
+
+def _example(name: str, info: FieldInfo) -> Any:
+    if info.examples:
+        return info.examples[0]
+    inner = model_in(info.annotation)
+    value: Any
+    if (quantity := quantity_of(info)) is not None:
+        value = quantity.example
+    elif inner is not None and not issubclass(inner, Component):
+        value = dict(example_values(inner))
+    elif inner is not None:
+        types = registry().components[inner.family].values()
+        simplest = min(types, key=lambda known: (len(known.component.model_fields), known.type))
+        value = {"type": simplest.type, **dict(example_values(simplest.component))}
+    else:
+        value = {"true or false": True, "whole number": 1}.get(_kind(info.annotation), name)
+    return [value] if _is_list(info.annotation) else value

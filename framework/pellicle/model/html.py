@@ -1,0 +1,51 @@
+"""Short HTML for notebooks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+
+
+def summary(
+    title: str,
+    sentence: str,
+    columns: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    *,
+    picture: bytes = b"",
+    details: str = "",
+) -> str:
+    """Return a title, a sentence and a table as HTML that loads nothing.
+
+    Parameters
+    ----------
+    title, sentence, columns, rows
+        Texts, which are escaped.
+    picture
+        PNG file to show beside the table.
+    details
+        HTML that is folded away.
+    """
+    head = _row("th", columns)
+    body = "".join(_row("td", row) for row in rows)
+    parts = [
+        f"<strong>{escape(title)}</strong><br>{escape(sentence)}",
+        "<div style='display:flex;flex-wrap:wrap;gap:1em;align-items:flex-start'>",
+        f"<table><thead>{head}</thead><tbody>{body}</tbody></table>",
+        _image(picture, title) if picture else "",
+        "</div>",
+        f"<details><summary>all variables</summary>{details}</details>" if details else "",
+    ]
+    return f"<div>{''.join(parts)}</div>"
+
+
+def _row(tag: str, cells: Sequence[str]) -> str:
+    inner = "".join(f"<{tag} style='text-align:left'>{escape(cell)}</{tag}>" for cell in cells)
+    return f"<tr>{inner}</tr>"
+
+
+def _image(png: bytes, text: str) -> str:
+    from base64 import b64encode
+
+    source = b64encode(png).decode("ascii")
+    return f"<img alt='{escape(text, quote=True)}' src='data:image/png;base64,{source}'>"

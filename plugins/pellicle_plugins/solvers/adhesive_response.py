@@ -1,0 +1,51 @@
+"""The response of a contact and of the zone around it to a change of the depth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator, gmres
+
+from pellicle.arrays import Array
+from pellicle.numerics.operators import Operator
+
+# Iterations between restarts; 7 to 20 suffice for zones of some cells.
+_RESTART = 60
+
+
+def with_zone(
+    operator: Operator, slope: Array, closing: Callable[[Array], Array], tolerance: float
+) -> Array:
+    """Return dp/dδ on contact and zone, with the contact fixed and the zone following its law.
+
+    ``slope`` is dσ/dg on each cell off the contact, ``closing`` returns the pressure on the contact
+    that displaces it by 1, given the displacement by other tractions. The traction of the zone
+    obeys v = dσ/dg (u − 1), u being the displacement by v and by the pressure that keeps the
+    contact closed: a linear system on the zone, solved by GMRES (Saad & Schultz 1986).
+    """
+    cells = np.flatnonzero(slope)
+    at_rest = closing(np.zeros(slope.shape))
+    if not cells.size:
+        return at_rest
+
+    def traction(values: Array) -> Array:
+        field = np.zeros(slope.shape)
+        field.ravel()[cells] = values
+        return field
+
+    def responses(values: Array) -> tuple[Array, Array]:
+        """Return pressure on contact and zone, and the traction that the law gives the zone."""
+        field = traction(values)
+        pressure = field + closing(operator(field))
+        return pressure, (slope * (operator(pressure) - 1.0)).ravel()[cells]
+
+    constant = (slope * (operator(at_rest) - 1.0)).ravel()[cells]
+
+    def residual(values: Array) -> Array:
+        _, following = responses(values)
+        return values - (following - constant)
+
+    matrix = LinearOperator((cells.size, cells.size), matvec=residual, dtype=np.float64)
+    values, _ = gmres(matrix, constant, rtol=tolerance, atol=0.0, restart=_RESTART, maxiter=2)
+    return responses(values)[0]

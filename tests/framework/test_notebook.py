@@ -1,0 +1,76 @@
+"""What a notebook shows of runs, studies and results."""
+
+from __future__ import annotations
+
+import base64
+import re
+from io import BytesIO
+from typing import Any
+
+import pytest
+from matplotlib.figure import Figure
+
+import pellicle as pl
+from tests.pictures import colourfulness
+
+TITLE = "<b>Bead</b> & tip"
+RUN: dict[str, Any] = {
+    "title": TITLE,
+    "grid": {"points": [24, 18], "size": ["0.4 mm", "0.3 mm"]},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "0.1 N/m"},
+    "indenter": {"type": "paraboloid", "radius": "1 mm"},
+    "loading": {"depth": ["5 um", "10 um"]},
+}
+
+
+@pytest.fixture(scope="module")
+def result() -> pl.Result:
+    """Return a small result."""
+    return pl.run(RUN, progress=False)
+
+
+def words(html: str) -> str:
+    """Return the text of HTML without its folded part and pictures."""
+    return re.sub(r"<[^>]*>", " ", html.partition("<details>")[0])
+
+
+def test_a_result_shows_numbers_and_a_picture(result: pl.Result) -> None:
+    """Its title is escaped; steps have units; the picture is a coloured PNG inside the HTML."""
+    html = result._repr_html_()
+    assert TITLE not in html
+    assert "&lt;b&gt;Bead&lt;/b&gt; &amp; tip" in html
+    text = words(html)
+    assert "2 steps, all converged" in text
+    assert "10 µm" in text
+    (source,) = re.findall(r"src='data:image/png;base64,([^']+)'", html)
+    assert (colourfulness(BytesIO(base64.b64decode(source))) > 0.2).mean() > 0.05
+    assert "http" not in html.partition("<details>")[0]
+
+
+def test_failures_and_missing_steps_are_said(result: pl.Result) -> None:
+    """The sentence counts steps that are missing or did not converge."""
+    marked = result.dataset.copy(deep=True).isel(step=[0])
+    marked["converged"][0] = False
+    assert "1 of 2 steps, 1 did not converge" in words(pl.Result(marked)._repr_html_())
+
+
+def test_a_plot_is_upright(result: pl.Result) -> None:
+    """X runs to the right: a domain wider than high gives a picture wider than high."""
+    axes = Figure().subplots()
+    mesh = result.plot("gap", step=0, ax=axes)
+    assert axes.get_xlabel().startswith("x")
+    assert mesh.get_array().shape == (18, 24)
+    assert axes.get_aspect() == 1.0
+    with pytest.raises(pl.ConfigError, match="not a field; give one of pressure"):
+        result.plot("force", ax=axes)
+
+
+def test_a_run_and_a_study_show_their_values() -> None:
+    """Values stand with their unit and meaning; a study names what varies and counts its runs."""
+    text = words(pl.Run(**RUN)._repr_html_())
+    assert "paraboloid on tensed_membrane" in text
+    assert "100 mN/m" in text
+    study = pl.Study(run=RUN, vary={"kernel.tension": ["1 mN/m", "2 mN/m", "3 mN/m"]})
+    text = words(study._repr_html_())
+    assert "3 runs" in text
+    assert "kernel.tension" in text

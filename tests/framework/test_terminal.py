@@ -1,0 +1,297 @@
+"""What the commands print: words and units, within the terminal, for programs too."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from rich.cells import cell_len
+from typer.testing import CliRunner, Result
+
+import pellicle as pl
+from pellicle.cli import app, new
+from pellicle.cli.exits import CRASHED
+from pellicle.cli.printing import Column, table_lines
+from pellicle.components import FAMILIES
+from pellicle.config.explain import explanations
+from pellicle.fitting.config import FitConfig
+
+RUN: dict[str, Any] = {
+    "title": "Δ layer",
+    "grid": {"points": 16, "size": "0.4 mm"},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "30 mN/m"},
+    "indenter": {"type": "paraboloid", "radius": "1 mm"},
+    "loading": {"depth": ["10 um", "20 um"]},
+    "corrections": [{"type": "yastrebov"}],
+    "outputs": [],
+}
+SHORT = Column("step", ["1", "2"])
+WIDE = [
+    SHORT,
+    Column("contact area, corrected by the length of its boundary [mm²]", ["0.01387", "–"]),
+    Column("depth [µm]", ["10", "20"]),
+    Column("a-very-long-name-of-a-parameter-without-a-single-space [1/m^0.5]", ["1e-30", "∞"]),
+    Column("接触半径 [µm]", ["1", "2"]),
+    Column("status", ["converged", "NOT CONVERGED"]),
+    Column("meaning", ["one of many words that have to be folded", ""]),
+]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with a run and a study, solved."""
+    folder = tmp_path_factory.mktemp("terminal")
+    pl.run(RUN, progress=False, threads=1).save(folder / "a.h5")
+    study = {**RUN, "study": {"vary": {"kernel.tension": ["30 mN/m", "0.3 N/m"]}}}
+    pl.run_study(study, folder / "study", progress=False, threads=1)
+    return folder
+
+
+Cli = Callable[..., Result]
+
+
+@pytest.fixture
+def cli(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Cli:
+    """Return a function that calls the command line in the folder and checks its exit code."""
+    monkeypatch.chdir(folder)
+
+    def call(*arguments: str, code: int = 0, **environment: str) -> Result:
+        result = CliRunner().invoke(app, arguments, env=environment)
+        assert result.exit_code == code, result.output
+        return result
+
+    return call
+
+
+@pytest.mark.parametrize("width", [120, 80, 60, 40, 20, 8])
+def test_a_table_fits_its_terminal(width: int) -> None:
+    """No line is wider, no number is cut or folded, and each part begins with the first column."""
+    lines = table_lines(WIDE, width)
+    assert max(map(cell_len, lines)) <= width
+    if width >= 40:
+        text = "\n".join(lines)
+        for cell in ("0.01387", "1e-30", "∞", "NOT CONVERGED" if width > 60 else "NOT"):
+            assert cell in text
+        parts = text.split("\n\n")
+        assert all(part.splitlines()[-1].split()[0] in ("2", "") or "2" in part for part in parts)
+        assert sum("step" in line for line in lines) == len(parts)
+
+
+def test_a_table_in_a_pipe_is_neither_folded_nor_cut() -> None:
+    """There is one line for each row."""
+    lines = table_lines(WIDE)
+    assert len(lines) == 3
+    assert lines[0].split("  ")[0] == "step"
+
+
+@pytest.mark.parametrize("width", [80, 40])
+@pytest.mark.parametrize(
+    "words", [["show", "a.h5"], ["show", "study"], ["plugins"], ["explain", "layered"]]
+)
+def test_commands_fit_the_terminal(cli: Cli, words: list[str], width: int) -> None:
+    """What is printed on a terminal of 80 columns, and of 40, does not run over its edge."""
+    shown = cli(*words, FORCE_COLOR="1", NO_COLOR="1", COLUMNS=str(width)).stdout
+    lines = [line for line in shown.splitlines() if not line.startswith(("title:", "versions:"))]
+    if words[0] == "explain":
+        # Documentation and example are texts of their own.
+        lines = shown.partition("field")[2].partition("example:")[0].splitlines()
+    assert max(map(cell_len, lines)) <= width
+    assert "\x1b" not in shown
+
+
+def test_numbers_have_four_digits_and_one_unit_in_a_column(cli: Cli) -> None:
+    """30 and 300 mN/m are in one unit; a run has a number before the name of its file."""
+    head, *rows = cli("show", "study").stdout.splitlines()[3:6]
+    assert head.split()[:4] == ["run", "surface", "tension", "[mN/m]"]
+    assert [row.split()[:2] for row in rows] == [["1", "30"], ["2", "300"]]
+    assert all(len(row.split()[-1]) == len("9cfd51c0…") for row in rows)
+    in_si = cli("show", "study", "--si").stdout
+    assert "surface tension [N/m]" in in_si
+    assert "depth [m]" in in_si
+
+
+def test_json_has_the_numbers_of_the_file(cli: Cli, folder: Path) -> None:
+    """`show --json` prints every number of a step in SI, and what is not a number as null."""
+    shown = json.loads(cli("show", "a.h5", "--json").stdout)
+    data = pl.load(folder / "a.h5").dataset
+    assert shown["title"] == "Δ layer"
+    assert shown["converged"] is True
+    assert [step["force"] for step in shown["steps"]] == data["force"].values.tolist()
+    assert shown["units"]["contact_area_yastrebov"] == "m2"
+    runs = json.loads(cli("show", "study", "--json").stdout)["runs"]
+    assert [run["parameters"]["kernel.tension"] for run in runs] == [0.03, 0.3]
+    assert all(run["converged"] and len(run["steps"]) == 2 for run in runs)
+    assert (folder / "study" / runs[0]["file"]).exists()
+
+
+def test_run_prints_json(cli: Cli, folder: Path) -> None:
+    """`run --json` prints the result and nothing else, also of a run without contact."""
+    Path("b.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
+    done = cli("run", "b.toml", "--json", "--set", "loading.depth=0", "--threads", "1")
+    shown = json.loads(done.stdout)
+    assert shown["files"] == [str(Path("b/b.h5"))]
+    assert shown["steps"][0]["mean_contact_pressure"] is None
+    planned = json.loads(cli("run", "b.toml", "--dry-run", "--json", "-o", "c").stdout)
+    assert [run["state"] for run in planned["runs"]] == ["to do"]
+
+
+def test_equal_statuses_are_one_line(cli: Cli) -> None:
+    """Steps that fail for one reason are named together; their number is not lost."""
+    Path("d.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
+    hasty = ["--set", "solver.max_iterations=2", "--set", "loading.depth=[1e-5, 1.5e-5, 2e-5]"]
+    done = cli("run", "d.toml", *hasty, "--threads", "1", code=1)
+    assert done.stderr.count("did not converge") == 1
+    assert "steps 1 to 3 did not converge: step 1: the surface misses" in done.stderr
+
+
+def test_version_tells_how_to_cite(cli: Cli) -> None:
+    """`--version` prints the version of the package and a reference."""
+    first, second = cli("--version").stdout.splitlines()
+    assert first == f"pellicle {pl.__version__}"
+    assert second.startswith(f"to cite it: pellicle {pl.__version__}")
+    assert "Yuan" in second
+
+
+@pytest.mark.parametrize("command", ["run", "fit", "show", "plot", "new", "validate", "explain"])
+def test_help_has_no_types_of_python(cli: Cli, command: str) -> None:
+    """Help names values by what they are, not ``<list[str]>``."""
+    shown = cli(command, "--help", COLUMNS="100").stdout
+    for jargon in ("list[", "<str>", "<bool>", "<path>", "<int", "<float", "BOOLEAN", "TEXT"):
+        assert jargon not in shown
+
+
+def test_a_fault_of_pellicle_has_an_exit_code_of_its_own(
+    cli: Cli, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A traceback does not end with 1, which means that steps or curves failed."""
+
+    def broken(*_: object) -> None:
+        raise RuntimeError("lost")
+
+    monkeypatch.setattr(new, "_write_starter", broken)
+    done = cli("new", "x.toml", code=CRASHED)
+    assert "RuntimeError: lost" in done.stderr
+    assert "please report" in done.stderr
+    assert done.stdout == ""
+
+
+def test_fit_tells_failed_curves_from_unusable_input(cli: Cli, folder: Path) -> None:
+    """1: some curves could not be fitted; 2: nothing could be read; ``--quiet`` prints why only."""
+    depth = np.linspace(-0.5, 1.5, 60)
+    force = 4 / 3 * 2.0 * np.sqrt(5) * np.maximum(depth, 0) ** 1.5
+    rows = np.column_stack([depth, force + 0.01 * np.sin(40 * depth)])
+    for name in ("one", "two"):
+        header = "position [um],force [nN]"
+        np.savetxt(folder / f"{name}.csv", rows, delimiter=",", header=header, comments="")
+    (folder / "bad.csv").write_text("position [um],force [V]\n1,2\n", encoding="utf-8")
+    options = ["-i", "paraboloid", "--radius", "5 um", "--fix", "tension=0", "--quiet"]
+    done = cli("fit", "one.csv", "bad.csv", *options, code=1)
+    assert done.stdout == ""
+    assert "bad.csv: column force is in 'V'" in done.stderr
+    assert "1 of 2 curves could not be fitted" in done.stderr
+    assert cli("fit", "one.csv", "two.csv", *options).stdout == ""
+    assert "no such" in cli("fit", "missing.csv", *options, code=2).stderr.lower()
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+def test_a_process_prints_in_the_code_page_of_its_environment(encoding: str, folder: Path) -> None:
+    """`PYTHONIOENCODING` and NO_COLOR are followed by the whole program."""
+    environment = {**os.environ, "PYTHONIOENCODING": encoding, "NO_COLOR": "1"}
+    done = subprocess.run(
+        [sys.executable, "-m", "pellicle", "show", "a.h5"],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        check=True,
+    )
+    shown = done.stdout.decode(encoding)
+    assert ("depth [um]" if encoding == "ascii" else "depth [µm]") in shown
+    assert ("[mm^2]" if encoding == "ascii" else "[mm²]") in shown
+    assert "\x1b" not in shown
+    assert done.stderr == b""
+
+
+def examples() -> Iterator[Any]:
+    """Yield every registered type."""
+    for family, members in pl.registry().components.items():
+        for type_ in members:
+            yield pytest.param(family, type_, id=f"{family}.{type_}")
+
+
+@pytest.mark.parametrize(("family", "type_"), list(examples()))
+def test_the_example_of_a_type_is_valid(
+    family: str, type_: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`explain` shows every field with its meaning, and an example that makes the component."""
+    monkeypatch.chdir(tmp_path)
+    np.savetxt("heights.txt", np.zeros((4, 4)))
+    (explained,) = explanations(f"{family}.{type_}", {})
+    component = pl.registry().components[family][type_].component
+    assert {row.name for row in explained.fields} >= {*component.model_fields} - {"type"}
+    assert all(row.meaning and row.default for row in explained.fields)
+    data = tomllib.loads(explained.example)
+    if family == "prescription":
+        assert pl.Loading(**data["loading"]).prescribed == type_
+        return
+    table = data["study"][family] if "study" in data else data.get(family) or data[f"{family}s"][0]
+    if type_ == "topography":
+        # There is no scan.x3p here.
+        assert table["path"] == "scan.x3p"
+        return
+    assert pl.registry().make(FAMILIES[family], table).type_name == type_
+
+
+@pytest.mark.parametrize(
+    ("word", "name"),
+    [
+        ("grid", "size"),
+        ("loading", "depth"),
+        ("study", "vary"),
+        ("run", "kernel"),
+        ("fit", "curves"),
+    ],
+)
+def test_tables_are_explained(cli: Cli, word: str, name: str) -> None:
+    """The tables of a run file have their fields and an example of TOML."""
+    (explained,) = json.loads(cli("explain", word, "--json").stdout)
+    assert name in [row["name"] for row in explained["fields"]]
+    data = tomllib.loads(explained["example"])
+    if word == "grid":
+        assert pl.Grid(**data["grid"]).points == (256, 256)
+    elif word == "fit":
+        assert FitConfig(**data).indenter
+
+
+def test_explain_knows_what_was_meant(cli: Cli) -> None:
+    """A type may be written with spaces or hyphens; of another word the nearest is named."""
+    assert "half_space (kernel, from pellicle" in cli("explain", "half-space").stdout
+    assert "E* [Pa]" in cli("explain", "kernel.half_space").stdout
+    assert "tensed_membrane" in cli("explain", "kernels").stdout
+    refused = cli("explain", "half_spce", code=2).stderr
+    assert (
+        refused
+        == "error: TYPE: 'half_spce' is neither a type nor a table; did you mean 'half_space'?\n"
+    )
+    Path("e.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
+    typo = cli("run", "e.toml", "--set", "kernel.type=tensed_membrain", code=2).stderr
+    assert "did you mean 'tensed_membrane'?" in typo
+
+
+def test_cells_wider_than_the_indenter_are_said_so(cli: Cli) -> None:
+    """A size in the wrong unit is not a profile that is positive or NaN."""
+    run = {**RUN, "indenter": {"type": "sphere", "radius": "1 mm"}}
+    Path("f.toml").write_text(pl.Run(**run).to_toml(), encoding="utf-8")
+    refused = cli("run", "f.toml", "--set", "grid.size=0.1", code=2).stderr
+    assert "indenter: cells of 6.25 mm × 6.25 mm are wider than indenter 'sphere'" in refused
+    assert "use a smaller grid.size, which is 100 mm × 100 mm, or more points" in refused
+    Path("g.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
+    coarse = cli("run", "g.toml", "--set", "grid.size=0.1", "--threads", "1").stderr
+    assert "which covers none of them, 6.25 mm wide" in coarse

@@ -1,0 +1,255 @@
+"""Figures and pages speak in words and engineering units, never in keys of a run file."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+import pellicle as pl
+from pellicle.config.coordinates import Coordinate, tell_apart
+from pellicle.model.paths import walk
+from pellicle.results.variables import VARIABLES, wording
+from pellicle_plugins.outputs.base import scaled
+
+RUN: dict[str, Any] = {
+    "title": "Layer under a skin",
+    "grid": {"points": 16, "size": "0.4 mm"},
+    "kernel": {
+        "type": "coated",
+        "tension": "30 mN/m",
+        "substrate": {
+            "type": "bonded_layer",
+            "reduced_modulus": "10 kPa",
+            "poissons_ratio": 0.4,
+            "thickness": "0.1 mm",
+        },
+    },
+    "indenter": {"type": "paraboloid", "radius": "1 mm"},
+    "loading": {"depth": ["5 um", "10 um"], "stiffness": True},
+    "corrections": [{"type": "yastrebov"}],
+    "solver": {"type": "active_set"},
+}
+OUTPUTS: list[dict[str, Any]] = [
+    {"type": "figures"},
+    {"type": "html"},
+    {"type": "curves", "y": ["contact_area", "contact_area_yastrebov"]},
+    {"type": "curves", "name": "ratio", "y": "mean_contact_pressure / kernel.tension ** 2"},
+    {"type": "profiles", "by": "step"},
+    {"type": "profiles", "name": "product", "y": "pressure * grid.size.0 / semi_major_axis"},
+    {"type": "maps", "by": "step", "field": "gap"},
+    {"type": "patches", "by": "step"},
+    {"type": "distributions", "by": "step"},
+    {"type": "spectrum", "by": "step"},
+    {"type": "compliance"},
+    {"type": "compliance", "name": "scaled", "x": "q * grid.size.0", "y": "compliance"},
+]
+VARIED = {
+    "kernel.tension": ["0.9 N/m", "1.1 N/m"],
+    "kernel.substrate.thickness": ["50 um", "0.1 mm"],
+    "indenter": [
+        {"type": "paraboloid", "radius": "1 mm"},
+        {"type": "cone", "half_angle": "85 degree"},
+    ],
+}
+
+
+@contextmanager
+def texts_drawn(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
+    """Collect the texts of all artists of each figure, as it is saved."""
+    drawn: list[str] = []
+
+    def saved(self: Figure, *_: Any, **__: Any) -> None:
+        # Ticks get their labels when they are drawn; layout and rendering take most of the time.
+        self.set_layout_engine("none")
+        self.draw_without_rendering()
+        drawn.extend(text.get_text() for text in self.findobj(Text))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Figure, "savefig", saved)
+        yield drawn
+
+
+class Visible(HTMLParser):
+    """The text of a page that a reader sees, without code to be typed."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.hidden: list[str] = []
+        self.texts: list[str] = []
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Enter code, style or script."""
+        if tag in ("code", "pre", "style", "script"):
+            self.hidden.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        """Leave it."""
+        if self.hidden and tag == self.hidden[-1]:
+            self.hidden.pop()
+
+    def handle_data(self, data: str) -> None:
+        """Keep a text."""
+        if not self.hidden:
+            self.texts.append(data)
+
+
+def labels_of_maps(page: str) -> list[str]:
+    """Return the texts that the script of a page shows: names and labels of maps."""
+    shown = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', page, re.DOTALL)
+    maps = [json.loads(data) for data in shown]
+    return [
+        *(field["name"] for data in maps for field in data["fields"]),
+        *(frame["label"] for data in maps for frame in data["frames"]),
+    ]
+
+
+def keys(texts: list[str], configuration: dict[str, Any]) -> set[str]:
+    """Return the keys among texts: dotted paths of a run, and names with an underscore."""
+    paths = {path for path, _, _ in walk(configuration) if "." in path}
+    words = {*paths, *(name for name in VARIABLES if "_" in name), "contact_area_yastrebov"}
+    snake = re.compile(r"(?<![\w/.-])[a-z]+(?:[_.][a-z0-9]+)*_[a-z0-9]+")
+    found = {word for text in texts for word in words if re.search(rf"\b{re.escape(word)}\b", text)}
+    # The provenance names entry points, such as kernel.half_space.
+    entry_points = re.compile(r"^\w+\.\w+$")
+    rest = {
+        match[0] for text in texts if not entry_points.match(text) for match in snake.finditer(text)
+    }
+    return found | rest
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[list[str], Path, Path]]:
+    """Return all texts of the figures of a run and of a study, and their folders."""
+    run, study = tmp_path_factory.mktemp("run"), tmp_path_factory.mktemp("study")
+    with pytest.MonkeyPatch.context() as monkeypatch, texts_drawn(monkeypatch) as texts:
+        pl.run({**RUN, "outputs": OUTPUTS}, directory=run, progress=False, threads=1)
+        outputs = [
+            *OUTPUTS[:2],
+            {"type": "profiles", "by": "kernel.substrate.thickness"},
+            {"type": "maps", "by": "indenter"},
+            {"type": "distributions", "by": "kernel.tension"},
+        ]
+        plan = {**RUN, "outputs": outputs, "study": {"vary": VARIED}}
+        plan |= {"loading": {"depth": "10 um"}, "grid": {"points": 24, "size": "0.4 mm"}}
+        pl.run_study(plan, study, progress=False, threads=1)
+        yield texts, run, study
+
+
+def test_no_figure_has_a_key(drawn: tuple[list[str], Path, Path]) -> None:
+    """Whatever is drawn of a run or a study is in words."""
+    texts, *_ = drawn
+    assert len(texts) > 500
+    assert keys(texts, RUN) == set()
+
+
+def test_no_page_has_a_key(drawn: tuple[list[str], Path, Path]) -> None:
+    """Nor has the visible text of a page, besides the file to reproduce it."""
+    _, *folders = drawn
+    for folder in folders:
+        (path,) = folder.glob("*.html")
+        page = path.read_text(encoding="utf-8")
+        texts = [*Visible(page).texts, *labels_of_maps(page)]
+        assert "surface tension" in texts
+        assert keys(texts, RUN) == set()
+
+
+def test_the_walk_finds_keys() -> None:
+    """A key among the texts is found, so that the tests above can fail."""
+    texts = ["kernel.tension = 1 N/m", "mean_pressure [Pa]", "surface tension 30 mN/m", "force [N]"]
+    assert keys(texts, RUN) == {"kernel.tension", "mean_pressure"}
+
+
+def test_labels_are_words_with_units(drawn: tuple[list[str], Path, Path]) -> None:
+    """Curves, panels, axes and colours are named; values along an axis are in one unit."""
+    texts, *_ = drawn
+    for text in (
+        "surface tension 0.9 N/m",
+        "surface tension 1.1 N/m",
+        "thickness of the substrate 50 µm",
+        "thickness of the substrate 100 µm",
+        "indenter cone",
+        "contact area, Yastrebov correction",
+        "contact area [mm²]",
+        "[mm²]",
+        "Yastrebov correction",
+        "mean contact pressure / surface tension²",
+        "pressure · domain size along x / major semi-axis",
+        "wavenumber q · domain size along x",
+        "step 2",
+        "gap [µm]",
+    ):
+        assert text in texts or any(text in other for other in texts), text
+
+
+def coordinate(values: list[float], unit: str, name: str = "odd.thing") -> xr.DataArray:
+    """Return the coordinate of a study."""
+    return xr.Dataset(coords={name: (name, values, {"units": unit})})[name]
+
+
+@pytest.mark.parametrize(
+    ("values", "unit", "texts"),
+    [
+        ([0.9e-6, 1.1e-6], "m", ["thing 0.9 µm", "thing 1.1 µm"]),
+        ([1.00001, 1.00002], "N", ["thing 1.00001 N", "thing 1.00002 N"]),
+        ([0.0, 1e-30], "m", ["thing 0 m", "thing 1e-30 m"]),
+        ([float("nan"), 1e-3], "N", ["thing –", "thing 1 mN"]),
+        ([float("inf"), -2e-9], "N", ["thing ∞ nN", "thing -2 nN"]),
+        ([2.0, 3.0], "1/m^0.5", ["thing 2 1/m^0.5", "thing 3 1/m^0.5"]),
+        ([5.0, 6.0], "photons", ["thing 5 photons", "thing 6 photons"]),
+        ([0.25, 0.5], "", ["thing 0.25", "thing 0.5"]),
+        ([-1e-3, 0.0], "rad", ["thing -0.0573°", "thing 0°"]),
+        ([1e-9, 2e-6], "m2", ["thing 0.001 mm²", "thing 2 mm²"]),
+    ],
+)
+def test_values_of_an_axis(values: list[float], unit: str, texts: list[str]) -> None:
+    """All values of an axis are in one unit, with digits that tell them apart."""
+    axis = coordinate(values, unit)
+    shown = wording(axis)
+    assert [shown.text(value) for value in values] == texts
+
+
+def test_a_stranger_s_words() -> None:
+    """A variable without words is named by its own name; with words, by those, also from a file."""
+    plain = xr.DataArray([1e-6], dims="step", name="my_own_length", attrs={"units": "m"})
+    assert wording(plain).head == "my own length [µm]"
+    titled = plain.assign_attrs(short_name="length of mine")
+    assert wording(titled).head == "length of mine [µm]"
+    assert wording(titled, si=True).head == "length of mine [m]"
+    assert wording(titled, si=True).number(1.23456789e-6) == "1.23457e-06"
+
+
+def test_axes_of_equal_words_are_told_apart() -> None:
+    """Two radii of a study name the table that they are in; other axes do not."""
+    names = {"kernel.radius": "radius", "indenter.radius": "radius", "kernel.tension": "tension"}
+    axes = {
+        key: Coordinate(np.empty(1), {"long_name": words, "short_name": words})
+        for key, words in names.items()
+    }
+    tell_apart(axes)
+    assert [axis.attributes["short_name"] for axis in axes.values()] == [
+        "radius of the kernel",
+        "radius of the indenter",
+        "tension",
+    ]
+
+
+def test_the_label_of_an_expression_has_no_wrong_unit() -> None:
+    """A force over a modulus is not in newtons, though xarray keeps the unit of the force."""
+    table = xr.Dataset(
+        {"force": ("step", [1e-6, 2e-6], {"units": "N"})}, attrs={"configuration": "{}"}
+    )
+    assert scaled("force", [table["force"]], None, table) == (1e6, "force [µN]")
+    assert scaled("force / 3", [table["force"] / 3], None, table) == (1.0, "force / 3")
+    assert scaled("force", [table["force"]], "pull [N]", table) == (1.0, "pull [N]")
