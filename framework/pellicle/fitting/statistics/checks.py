@@ -11,9 +11,9 @@ from pellicle.arrays import Array
 from pellicle.components import Component, HasForceCurve, IsShallowLimit
 from pellicle.errors import ConfigError, ConvergenceError
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
-from pellicle.fitting.models.layer import FreeLayerModel, LayerModel
+from pellicle.fitting.models.layer import LayerModel, with_thickness
 from pellicle.fitting.models.solid import lengths
-from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, THICKNESS, Coordinates
+from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 
 from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
@@ -132,8 +132,7 @@ def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str
 
 def check_depth(model: ForceModel, depth: float, parameters: Coordinates) -> None:
     """Raise ConfigError if a depth [m] is beyond that to which the force model holds."""
-    if isinstance(model, FreeLayerModel):
-        model = model.at(THICKNESS.value(parameters[THICKNESS]))
+    model = with_thickness(model, parameters)
     if depth <= model.depth_limit:
         return
     if isinstance(model, LayerModel):
