@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
+from pellicle.matlab import read_mat
 from pydantic import AfterValidator, Field, model_validator
 
 from pellicle import hookimpl
@@ -16,7 +17,6 @@ from pellicle.components import Indenter
 from pellicle.errors import ConfigError
 from pellicle.files import read_text
 from pellicle.grid import shape_of_run
-from pellicle.matlab import read_mat
 from pellicle.model.input_path import InputPath
 from pellicle.units import Length
 
