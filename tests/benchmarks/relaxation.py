@@ -31,7 +31,7 @@ MODULUS, RADIUS, DEPTH = 1e4, 1e-3, 1e-5
 TABLE = Path(__file__).parents[1] / "data" / "visco_punch.csv"
 # The times of the table and some in between: outside the punch the surface moves.
 TIMES = np.array([0.0, 0.03, 0.1, 0.2, 0.3, 0.6, 1.0, 1.7, 3.0, 5.0, 10.0])
-DECADES = [{"fraction": 0.16, "time": 10.0**n} for n in range(-3, 2)]
+DECADES = [{"fraction": 0.16, "time": 10.0**n} for n in range(-2, 3)]
 
 
 def half_space(modulus: float = MODULUS) -> dict[str, Any]:

@@ -275,24 +275,25 @@ def test_loops_lose_most_at_the_time_of_the_relaxation(tmp_path: Path) -> None:
         rows = drawn(tmp_path / "study-curves.csv", curve=f"{name} s each way")
         force, depth = column(rows, "y"), column(rows, "x")
         areas.append(float(np.trapezoid(force, depth)) / force.max())
+        assert [rows[0]["direction"], rows[-1]["direction"]] == ["approach", "retraction"]
     assert areas[1] > 4 * areas[0]
     assert areas[1] > 2 * areas[2]
 
 
 @pytest.mark.filterwarnings("ignore:kernel. the shares of 'coated' that relax sum to 1")
 def test_plateau_is_that_of_the_tension(tmp_path: Path) -> None:
-    """The force of a bead at a contact radius ends at 2πτ₀a²/R, to 8 % on coarse cells."""
+    """The force of a bead at a contact radius ends at 2πτ₀a²/R, to 10 % on coarse cells."""
     run(
         "plateau.toml",
         tmp_path,
-        "grid.points=64",
+        "grid.points=48",
         'loading.contact_radius=[{to="80 um",time=0,num=1}, {hold="3 s",num=1}]',
         'kernel.substrate.relaxation=[{fraction=1, time="0.1 s"}]',
         'study.vary={"kernel.tension"=["20 mN/m"]}',
     )
     share = column(drawn(tmp_path / "study-curves.csv"), "y")
     assert share[0] > 2.5
-    assert share[-1] == pytest.approx(1.0, abs=0.08)
+    assert share[-1] == pytest.approx(1.0, abs=0.1)
 
 
 @pytest.mark.filterwarnings("ignore:of 2 runs, in . the cells are too coarse")
@@ -302,7 +303,7 @@ def test_oscillation_a_skin_lowers_the_phase(tmp_path: Path) -> None:
         "oscillation.toml",
         tmp_path,
         "grid.points=16",
-        "loading.depth.2={amplitude=0.2e-6,frequency=0.1,cycles=2,num=12}",
+        "loading.depth.2={amplitude=0.2e-6,frequency=0.1,cycles=2,num=8}",
         'study.vary={"kernel.tension"=[0.0,0.5]}',
     )
     path = tmp_path / "study-curves.csv"

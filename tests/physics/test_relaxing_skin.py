@@ -11,6 +11,8 @@ import pytest
 
 import pellicle as pl
 from pellicle.arrays import Array
+from pellicle.numerics.outside import PlaneOperator
+from pellicle.runs.relaxation import Relaxation
 
 TABLE = Path(__file__).parents[1] / "data" / "visco_punch.csv"
 MODULUS, TENSION = 5.0, 0.5
@@ -94,6 +96,27 @@ def test_legs_are_the_same_path() -> None:
     )
     np.testing.assert_allclose(force, expected[1:], rtol=1e-9)
     assert force[-1] < 0.6 * force[3]
+
+
+def test_applications_count_those_that_bring_the_memory_forward(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two for each step but the first, as many as are applied."""
+    run = run_of(30, np.array([0.0, 0.5, 1.0, 1.5, 1.5]))
+    calls = 0
+    apply = PlaneOperator.__call__
+
+    def counted(self: PlaneOperator, field: Array, integral: float) -> Array:
+        nonlocal calls
+        calls += 1
+        return apply(self, field, integral)
+
+    monkeypatch.setattr(PlaneOperator, "__call__", counted)
+    used = pl.run(run, progress=False).dataset["operator_applications"].values
+    assert calls == 2 * 4
+    monkeypatch.setattr(Relaxation, "applications", 0)
+    solves = pl.run(run, progress=False).dataset["operator_applications"].values
+    np.testing.assert_array_equal(used - solves, [0, 2, 2, 2, 2])
 
 
 PARABOLOID = {"type": "paraboloid", "radius": 20.0}

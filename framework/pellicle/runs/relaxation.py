@@ -120,10 +120,9 @@ def warn_of_relaxation(run: Run) -> None:
     fastest = min(branch.time for branch in branches)
     if shortest == 0.0 and fastest < _FAST * least:
         warnings.warn(
-            f"loading: the shortest step takes {least:g} s, in which a share of the solid with "
-            f"the relaxation time {fastest:g} s relaxes from the start to the end: what it does "
-            "in between is not seen; use shorter steps where it matters, or a softer solid without "
-            "this share",
+            f"loading: the shortest step takes {least:g} s, far longer than the relaxation time "
+            f"{fastest:g} s of a share of the solid, so that how this share relaxes is not seen; "
+            "use shorter steps where it matters, or a softer solid without the share",
             stacklevel=3,
         )
 

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from pellicle.arrays import Array
 from pellicle.components import ForceCurve, HasLayerForceCurve, MayBeBondedLayer
 from pellicle.components.calls import layer_force_curve_of
-from pellicle.fitting.parameters import MODULUS, TENSION, THICKNESS, Parameter, Values
+from pellicle.fitting.parameters import MODULUS, TENSION, THICKNESS, Coordinates, Parameter, Values
 
 from .force_model import ForceModel, ModelForce, TensionModel, described
 from .solid import Solid, layer_table
@@ -62,6 +62,7 @@ class FreeLayerModel(ForceModel):
     """That of the thickness that is fitted; see `at`."""
     accuracy: ClassVar[float] = ACCURACY
     coarse: ClassVar[None] = None
+    on_base: ClassVar[bool] = False
 
     def at(self, thickness: float) -> LayerModel:
         """Return the model of a given thickness [m]."""
@@ -111,3 +112,10 @@ def known_layer(indenter: object, solid: Solid) -> LayerModel | None:
     model = LayerModel(indenter, *fields)
     # A punch is too wide for the curve at any depth, or at none.
     return model if model.depth_limit > 0 else None
+
+
+def with_thickness(model: ForceModel, parameters: Coordinates) -> ForceModel:
+    """Return the layer of the thickness in ``parameters`` if it is free, any other model itself."""
+    if not isinstance(model, FreeLayerModel):
+        return model
+    return model.at(THICKNESS.value(parameters[THICKNESS]))

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pellicle.fitting.models.force_model import ClosedFormModel
+from pellicle.fitting.models.layer import FreeLayerModel, LayerModel, with_thickness
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 from pellicle.units import readable
 
@@ -70,7 +71,7 @@ def advice(
     )
     if min(design.worse for design in (now, *others)) < _USELESS:
         length = 2 * tension.value / modulus.value
-        shallow = length > float(likelihood.depth(parameters)[-1])
+        shallow = length > likelihood.deepest(parameters)
         warning += f"; the curve is too {'shallow' if shallow else 'deep'}"
     return words, [warning]
 
@@ -133,20 +134,24 @@ def _designs(likelihood: Likelihood, parameters: Coordinates) -> tuple[_Design, 
     noise relative to the largest force.
     """
     now = _design("this curve", likelihood, parameters)
-    deepest = float(likelihood.depth(parameters)[-1])
-    model = likelihood.force_model
-    indenter: Any = model.indenter if isinstance(model, ClosedFormModel) else None
+    deepest = likelihood.deepest(parameters)
+    model: Any = likelihood.force_model
+    has_shape = isinstance(model, (ClosedFormModel, LayerModel, FreeLayerModel))
+    indenter: Any = model.indenter if has_shape else None
     radius = getattr(indenter, "radius", None)
     others: dict[str, Likelihood] = {}
     for factor in _FACTORS:
-        if radius is None or factor * deepest <= _DEEPEST * radius:
+        within = factor * deepest <= with_thickness(model, parameters).depth_limit
+        if within and (radius is None or factor * deepest <= _DEEPEST * radius):
             kind = "deeper" if factor > 1 else "shallower"
             position = parameters[CONTACT_POINT] + factor * likelihood.depth(parameters)
             other = replace(likelihood, position=position)
             others[f"a {kind} range, to {_metres(factor * deepest)},"] = other
         if radius is not None and deepest <= _DEEPEST * factor * radius:
             kind = "larger" if factor > 1 else "smaller"
-            shape = ClosedFormModel(indenter.model_copy(update={"radius": factor * radius}))
+            shape = replace(model, indenter=indenter.model_copy(update={"radius": factor * radius}))
+            if deepest > with_thickness(shape, parameters).depth_limit:
+                continue
             other = replace(likelihood, force_model=shape)
             others[f"a {kind} radius, {_metres(factor * radius)},"] = other
     share = likelihood.noise / np.max(np.abs(likelihood.model(parameters)))
