@@ -123,7 +123,8 @@ def bonded_layer() -> Iterator[Row]:
     """Yield contacts of a paraboloid and a flat punch on a layer on a rigid base."""
     for ratio in (0.0, 0.1, 1.0):
         coarse, fine = (
-            [half_space(shape, ratio, level) for shape in ("smooth", "punch")] for level in (0, 1)
+            (half_space("smooth", ratio, level), half_space("punch", ratio, level))
+            for level in (0, 1)
         )
         for nu in (0.0, 0.3, 0.5):
             for confinement in (0.2, 0.5, 1.0, 2.0, 5.0):
@@ -133,12 +134,12 @@ def bonded_layer() -> Iterator[Row]:
 
 
 def _on_layer(
-    smooth: HalfSpaceEquation, punch: HalfSpaceEquation, confinement: float, nu: float
+    smooth: HalfSpaceEquation, flat: HalfSpaceEquation, confinement: float, nu: float
 ) -> Array:
     """Return force and depth of a paraboloid over Hertz, and the stiffness of a punch over 2."""
     bowl = moments(smooth, 2 * smooth.nodes.t[:, None], confinement, nu)
-    flat = moments(punch, np.ones((punch.nodes.t.size, 1)), confinement, nu)
-    return np.array([bowl.force[0] * 3 / 4, bowl.depth[0], flat.force[0] / 2])
+    end = moments(flat, np.ones((flat.nodes.t.size, 1)), confinement, nu)
+    return np.array([bowl.force[0] * 3 / 4, bowl.depth[0], end.force[0] / 2])
 
 
 def adhesive_paraboloid() -> Iterator[Row]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pellicle.matlab import read_mat
+from pellicle.model.matlab import read_mat
 from pydantic import AfterValidator, Field, model_validator
 
 from pellicle import hookimpl
