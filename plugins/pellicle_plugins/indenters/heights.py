@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pellicle.model.matlab import read_mat
 from pydantic import AfterValidator, Field, model_validator
 
 from pellicle import hookimpl
@@ -18,6 +17,7 @@ from pellicle.errors import ConfigError
 from pellicle.files import read_text
 from pellicle.grid import shape_of_run
 from pellicle.model.input_path import InputPath
+from pellicle.model.matlab import read_mat
 from pellicle.units import Length
 
 from .from_heights import FromHeights
