@@ -12,7 +12,7 @@ from scipy.special import beta
 import pellicle as pl
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.drag import DRAG, DragModel
-from pellicle.fitting.models.force_model import ForceModel, tension_model
+from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
 from pellicle.fitting.models.history import History, constant_speed
 from pellicle.fitting.models.relaxing import (
     EXPONENT,
@@ -28,7 +28,7 @@ from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 Array = NDArray[np.float64]
 BEAD = Paraboloid(radius=RADIUS)
-ELASTIC = tension_model(BEAD)
+ELASTIC = ClosedFormModel(BEAD)
 DEPTH = 0.08 * RADIUS
 ROWS = path("both")
 HISTORY = History.of(ROWS.depth * DEPTH, ROWS.time)
