@@ -12,7 +12,8 @@ BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 SCRIPTS = {
     "adhesion.py": (["--points", "32", "--only", "jump_in", "wave"], 2 + 3),
     "adhesion_random.py": (["2"], 1),
-    "fit_rivals.py": (["1"], 11),
+    "fit_checks.py": (["1"], 11),
+    "fit_rivals.py": (["1", "7", "no tension", "drift"], 2),
     "cost.py": (["--cases", "rough", "punch", "--points", "32"], 2 * 3),
     "kernels.py": (["--cases", "rough", "--points", "32"], 20),
     "next_step.py": (["--cases", "rough", "--points", "32", "--repeats", "1"], 3 * 2),

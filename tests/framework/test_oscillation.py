@@ -224,11 +224,11 @@ def test_sweep_in_one_run_and_in_a_study(tmp_path: Path) -> None:
     np.testing.assert_allclose(table["loss_factor"], np.tan(table["phase"]), rtol=1e-9)
     assert table["loss_stiffness"].attrs["units"] == "N/m"
     shown = CliRunner().invoke(app, ["show", str(tmp_path)]).output
-    assert "cycle_dissipation" in shown
+    assert "dissipation of a cycle [fJ]" in shown
     result.save(tmp_path / "sweep.h5")
     lines = CliRunner().invoke(app, ["show", str(tmp_path / "sweep.h5")]).output.splitlines()
     begin = lines.index("oscillations:")
-    assert lines[begin + 1].split()[:2] == ["oscillation_frequency", "[Hz]"]
+    assert lines[begin + 1].startswith("oscillation frequency [Hz]  oscillation amplitude [nm]")
     assert [line.split()[0] for line in lines[begin + 2 : begin + 4]] == ["0.5", "2"]
 
 

@@ -178,6 +178,37 @@ def test_stiffness_after_pull_off_is_none() -> None:
     assert path["stiffness"].values[1] == 0.0
 
 
+def test_prescribed_radii_are_those_of_the_closed_theory() -> None:
+    """To half a cell, and at the depth of the branch that has this radius."""
+    closed, radii = theory(1.0), [2.0, 1.6]
+    law = {**JKR, "estimate_error": False}
+    path = solved(24, 1.0, radii, interaction=law, size=6.0, quantity="contact_radius")
+    assert path["converged"].all()
+    np.testing.assert_allclose(path["contact_radius"], radii, atol=6 / 24 / 2)
+    expected = np.linspace(1.0, 2.8, 40)
+    depths = [float(closed.equilibrium(radius).depth) for radius in expected]
+    np.testing.assert_allclose(
+        path["contact_radius"], np.interp(path["depth"].values, depths, expected), rtol=0.06
+    )
+
+
+def test_prescribed_volume_of_the_gap_where_it_sticks() -> None:
+    """A search in depth meets the volume."""
+    heights, volumes = rough_heights(), [5e-3]
+    path = solved(
+        list(heights.shape),
+        0.0,
+        volumes,
+        size=[side / 40 for side in heights.shape],
+        boundary="periodic",
+        indenter={"type": "heights", "values": heights.tolist(), "unit": 1.0},
+        interaction={"type": "linear", "work_of_adhesion": 3e-4, "range": 0.01},
+        quantity="gap_volume",
+    )
+    np.testing.assert_allclose(path["gap_volume"], volumes, rtol=1e-4)
+    assert path["converged"].all()
+
+
 def test_a_wavy_surface_sticks_as_in_johnsons_theory() -> None:
     """Partial contact of a sine, one cell across, on the way back from twice its depth."""
     height, work = 0.1, 0.002

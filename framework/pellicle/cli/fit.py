@@ -92,6 +92,9 @@ def fit(
     pool: Annotated[
         bool, typer.Option("--pool", help="Fit one modulus and one tension to all curves.")
     ] = False,
+    compare: Annotated[
+        bool, typer.Option("--compare", help="Compare what else can bend the curve, in full.")
+    ] = False,
     contact_points: Annotated[
         bool,
         typer.Option("--contact-points", help="With --pool: intervals of contact points, too."),
@@ -192,6 +195,7 @@ def fit(
         speed=speed[0] if speed and len(speed) == 1 else speed or None,
         columns=columns,
         pool=pool or None,
+        compare=compare or None,
         contact_points=contact_points or None,
         accept=tuple(accept) if accept else None,
         accepted=accepted and accepted.absolute(),

@@ -39,6 +39,9 @@ def print_fit(fit: FitResult) -> None:
     print_columns(list(zip(heads, zip(*rows, strict=True), strict=True)))
     if curves := fit.curve_rows():
         print_columns([(_words(name), [row[name] for row in curves]) for name in curves[0]])
+    if fit.rivals is not None and fit.config is not None and fit.config.compare:
+        models = fit.rivals.rows()
+        print_columns([(name, [row[name] for row in models]) for name in models[0]])
     for sentence in fit.sentences:
         echo(sentence)
     print_notes(fit)

@@ -25,8 +25,10 @@ from .executor import Task as Task
 from .executor import Threads as Threads
 from .executor import Work as Work
 from .executor import Workers as Workers
+from .indenter import ContactRadius as ContactRadius
 from .indenter import Footprint as Footprint
 from .indenter import ForceCurve as ForceCurve
+from .indenter import HasContactRadius as HasContactRadius
 from .indenter import HasForceCurve as HasForceCurve
 from .indenter import HasLayerForceCurve as HasLayerForceCurve
 from .indenter import Indenter as Indenter

@@ -73,6 +73,31 @@ class HasForceCurve(Protocol):
         ...
 
 
+class ContactRadius(NamedTuple):
+    """Contact radius at given depths, and how fast the stiffness grows with it, each shape (n,)."""
+
+    radius: Array
+    """a [m]."""
+    stiffness_slope: Array
+    """dk/da over E*, where k is the stiffness of the flat punch of radius a; 2 without tension."""
+
+
+@runtime_checkable
+class HasContactRadius(Protocol):
+    """An indenter of revolution with a known contact radius, for fits of adhesive contacts.
+
+    The adhesive contact of radius a is the one without adhesion and a flat punch of the same
+    radius, retracted.
+    """
+
+    def contact_radius(self, depth: Array, length: float) -> ContactRadius:
+        """Return the radius without adhesion at depths > 0 [m], of shape (n,).
+
+        ``length`` ≥ 0 is the elastocapillary length s = 2τ₀/E* [m].
+        """
+        ...
+
+
 class LayerForceCurve(NamedTuple):
     """Force over reduced modulus at given depths, and its derivatives, each of shape (n,)."""
 

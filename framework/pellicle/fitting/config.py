@@ -163,6 +163,9 @@ class FitConfig(FromFile, Calibration):
         "one value for each file",
     )
     pool: bool = Field(False, description="whether all curves share one modulus and one tension")
+    compare: bool = Field(
+        False, description="whether rivals of a tension are compared in full, with intervals"
+    )
     contact_points: bool = Field(
         False, description="whether a pool gives the interval of each contact point too"
     )

@@ -13,17 +13,19 @@ from numpy.typing import ArrayLike
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError
 
+from .comparison import compare
 from .config import FitConfig
 from .curves.curve import Curve
 from .curves.readers import Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
-from .result import FitResult, doubt_of_tension, status_line, thickness_of
+from .result import FitResult, status_line, thickness_of
 from .statistics.checks import check_plausible, fit_single
 from .statistics.design import advice
 from .statistics.initial_guess import initial_guesses
 from .statistics.likelihood import Likelihood, Minimum, best_minimum
+from .statistics.noise import doubt_of_tension
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 
 
@@ -164,7 +166,8 @@ def fit_source(config: FitConfig, source: Source, *, progress: bool) -> Fit:
 def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stage: None) -> Fit:
     """Return the fit of a curve whose indenter has a force curve.
 
-    ``report`` is called with a description of each stage.
+    ``report`` is called with a description of each stage.  Rivals of a tension are compared where
+    the curve seems to need one or fails a check, and always if the problem says so.
     """
     report("least squares")
     single = fit_single(problem.likelihood(), problem.fixed)
@@ -179,6 +182,16 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
     )
     best = profile.best.parameters
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
+    doubt, rivals = doubt_of_tension(single.failed_checks), None
+    if TENSION in likelihood.free and (problem.compare or doubt or tension.low is not None):
+        rivals = compare(
+            likelihood,
+            profile.best,
+            profile.without_tension,
+            threshold=threshold if problem.compare else None,
+            pairs=problem.compare,
+            report=report,
+        )
     words, undecided = advice(likelihood, best, modulus, tension)
     return Fit(
         reduced_modulus=modulus,
@@ -198,7 +211,8 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
         parameters_without_tension=profile.without_tension.parameters,
         rise=threshold,
         failed_checks=single.failed_checks,
-        doubt=doubt_of_tension(single.failed_checks),
+        doubt=doubt,
+        rivals=rivals,
         contact_point=profile.estimate(CONTACT_POINT),
         offset=profile.estimate(OFFSET),
         slope=profile.estimate(SLOPE),

@@ -299,7 +299,7 @@ def _identity(config: FitConfig, source: Source, problem: FitProblem) -> str:
     digest = hashlib.sha256(repr((version("pellicle"), options, of_curve)).encode())
     if not isinstance(config.indenter, (Component, Mapping)):
         digest.update(pickle.dumps(config.indenter))
-    for values in (curve.position, curve.force):
+    for values in (curve.position, curve.force, *([] if curve.time is None else [curve.time])):
         digest.update(values.tobytes())
     return digest.hexdigest()
 

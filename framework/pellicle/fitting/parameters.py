@@ -14,9 +14,11 @@ class Parameter:
 
     name: str
     unit: str
-    """SI unit; m, N or N/m unless `logarithmic`, since a curve sets the scale of these only."""
+    """SI unit; if not `logarithmic`, one of those that `Likelihood.ranges` scales."""
     minimum: float = -np.inf
     """Least allowed value, which the best value may equal."""
+    maximum: float = np.inf
+    """Greatest allowed value."""
     logarithmic: bool = False
     """Whether the fit varies the natural logarithm, as for a modulus of unknown magnitude."""
     shared: bool = False

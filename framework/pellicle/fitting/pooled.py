@@ -13,17 +13,18 @@ from scipy.special import bdtrc, chdtrc
 
 from pellicle.errors import ConfigError, PellicleError
 
+from .comparison import compare
 from .config import FitConfig
 from .curves.curve import Note
 from .curves.readers import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
-from .result import FitResult, doubt_of_tension, interval_text, status_line, thickness_of
+from .result import FitResult, interval_text, status_line, thickness_of
 from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
 from .statistics.design import pooled_advice
 from .statistics.likelihood import best_minimum
-from .statistics.noise import FailedCheck
+from .statistics.noise import FailedCheck, doubt_of_tension
 from .statistics.pooled_likelihood import Pool
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 
@@ -80,10 +81,6 @@ class PooledFit(FitResult):
     """Modulus and tension that several curves of one solid share."""
 
     _subject: ClassVar[str] = "these curves do"
-    _look_alikes: ClassVar[str] = (
-        "curves of one speed on a solid that relaxes, or that adheres, can look the same: a second "
-        "speed or a dwell, and the retract would tell"
-    )
 
     curves: tuple[PooledCurve, ...]
     agreement: str
@@ -191,7 +188,7 @@ def pool_sources(config: FitConfig, sources: Sequence[Source], *, progress: bool
         except ConfigError as error:
             raise source.named(error, "; leave it out") from None
     with status_line(progress) as report:
-        fit = _fit_pool(singles, config.contact_points, report)
+        fit = _fit_pool(singles, config.contact_points, report, config.compare)
     data = [data_of(problem.curve, config) for problem, _ in singles]
     return replace(fit, config=config, record=watch.record(config, data))
 
@@ -200,6 +197,7 @@ def _fit_pool(
     singles: Sequence[tuple[FitProblem, SingleFit]],
     contact_points: bool,
     report: Callable[[str], None],
+    compared: bool,
 ) -> PooledFit:
     report("least squares")
     pool = Pool.of([single.likelihood for _, single in singles])
@@ -245,6 +243,16 @@ def _fit_pool(
         )
     _, shapes = check_shape(pool, profile.best)
     advice, undecided = pooled_advice(modulus, tension)
+    doubt, rivals = _doubt(curves) or doubt_of_tension(shapes), None
+    if TENSION in pool.free and (compared or doubt or factor > 1 or tension.low is not None):
+        rivals = compare(
+            pool,
+            profile.best,
+            profile.without_tension,
+            threshold=threshold if compared else None,
+            pairs=compared or factor > 1,
+            report=report,
+        )
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,
@@ -257,7 +265,8 @@ def _fit_pool(
         parameters_without_tension=profile.without_tension.parameters,
         rise=threshold,
         failed_checks=tuple(shapes),
-        doubt=_doubt(curves) or doubt_of_tension(shapes),
+        doubt=doubt,
+        rivals=rivals,
         curves=tuple(curves),
         agreement=_agreement(curves, excess, degrees, factor),
         agree=factor == 1,

@@ -10,7 +10,7 @@ import numpy as np
 from pellicle.errors import ConfigError, PellicleError
 
 from .config import FIXABLE, FitConfig
-from .curves.curve import Curve, clean
+from .curves.curve import Curve, Segment, clean
 from .curves.readers import Source
 from .models.force_model import ForceModel
 from .models.simulation import Simulation, simulate
@@ -32,6 +32,9 @@ class FitProblem:
     fixed: Coordinates
     """Parameters that are not fitted."""
     poissons_ratio: float | None
+    segment: Segment = "approach"
+    compare: bool = False
+    """Whether rivals of a tension are compared in full."""
 
     def simulated(self, config: FitConfig, *, progress: bool) -> FitProblem:
         """Return the problem with a force model, simulated if need be."""
@@ -40,7 +43,7 @@ class FitProblem:
         position = self.curve.position
         span = float(np.ptp(position))
         point = self.fixed.get(CONTACT_POINT)
-        reach = (1 + BEFORE) * span if point is None else float(position[-1]) - point
+        reach = (1 + BEFORE) * span if point is None else float(position.max()) - point
         # If no position reaches contact, the fit itself reports it.
         model = simulate(
             *self.model,
@@ -56,7 +59,16 @@ class FitProblem:
         """Return the likelihood of the curve, with a noise as large as the largest force."""
         assert not isinstance(self.model, Simulation), "its force curve is not simulated yet"
         curve, noise = self.curve, float(np.max(np.abs(self.curve.force)))
-        whole = Likelihood(curve.position, curve.force, self.model, noise, (), curve.stiffness)
+        whole = Likelihood(
+            curve.position,
+            curve.force,
+            self.model,
+            noise,
+            (),
+            curve.stiffness,
+            curve.time,
+            self.segment,
+        )
         return replace(whole, free=tuple(p for p in whole.parameters if p not in self.fixed))
 
 
@@ -85,7 +97,9 @@ def problems(config: FitConfig, sources: Sequence[Source]) -> list[FitProblem | 
         ratio = getattr(known, "poissons_ratio", config.poissons_ratio)
         try:
             curve = clean(curve, config.segment)
-            results.append(FitProblem(source.name, curve, model, fixed, ratio))
+            results.append(
+                FitProblem(source.name, curve, model, fixed, ratio, config.segment, config.compare)
+            )
         except ConfigError as error:
             results.append(error)
     return results

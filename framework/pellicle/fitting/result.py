@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,18 +23,8 @@ from .statistics.profile import CONFIDENCE, Estimate, ProfileResult
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from .comparison import Comparison
     from .record import Record
-
-
-def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:
-    """Return why failed checks invalidate the evidence of a tension; empty if none does."""
-    codes = list(dict.fromkeys(check.code for check in failed if check.of_model))
-    if not codes:
-        return ""
-    if "adhesion" in codes:
-        return "no tension is needed where the force dips before contact: that is adhesion"
-    checks = "a check" if len(codes) == 1 else "checks"
-    return f"this is not evidence of one, because the model fails {checks} ({', '.join(codes)})"
 
 
 def thickness_of(model: ForceModel, profile: ProfileResult) -> Estimate | None:
@@ -50,12 +40,6 @@ class FitResult:
     """Modulus and tension, and how well they describe the measured force."""
 
     _subject: ClassVar[str] = "this curve does"
-    _look_alikes: ClassVar[str] = (
-        "one curve of a solid that relaxes, softens with depth or adheres can look the same: a "
-        "second speed or a dwell, a second radius, and the retract would tell"
-    )
-    """Effects that look like a tension, and measurements that tell them apart."""
-
     reduced_modulus: Estimate
     """E* [Pa]."""
     tension: Estimate
@@ -84,6 +68,8 @@ class FitResult:
     """h [m], if the solid is a bonded layer with a force curve."""
     config: FitConfig | None = field(default=None, kw_only=True)
     """The configuration of the fit."""
+    rivals: Comparison | None = field(default=None, kw_only=True)
+    """Other explanations of the curves, if there is a tension to doubt or they were requested."""
     record: Record | None = field(default=None, kw_only=True)
     """Files with their hashes, versions, date and wall time."""
 
@@ -95,9 +81,11 @@ class FitResult:
 
     @property
     def tension_needed(self) -> bool:
-        """Whether 0 lies outside the interval of the tension, and no check of the model fails."""
-        tension = self.tension
-        return not tension.held and tension.low is not None and not self.doubt
+        """Whether a model with tension beats all its rivals and passes the checks of its residuals.
+
+        Without a comparison with rivals there is nothing that needs a tension.
+        """
+        return self.rivals is not None and self.rivals.verdict == "needed"
 
     @property
     def comparison(self) -> str:
@@ -110,10 +98,8 @@ class FitResult:
             return (
                 f"tension is fixed at {readable(tension.value, 'N/m', 4)} ({figures} against none)"
             )
-        if tension.low is not None and self.doubt:
-            return f"tension fits better than none ({figures}), but {self.doubt}"
-        if tension.low is not None:
-            return f"tension is needed ({figures} against none); {self._look_alikes}"
+        if self.rivals is not None and self.rivals.verdict != "not shown":
+            return "; ".join(filter(None, [self.rivals.sentence, self.rivals.advice]))
         if tension.high is not None:
             bound = f"it is below {readable(tension.high, 'N/m', 3)}"
             return f"{self._subject} not show tension ({figures}); {bound}"
@@ -127,7 +113,21 @@ class FitResult:
     @property
     def sentences(self) -> list[str]:
         """The verdicts of the fit in words."""
-        return list(filter(None, [self.comparison, self.advice]))
+        return list(filter(None, [self.comparison, self.range_of_moduli, self.advice]))
+
+    @property
+    def range_of_moduli(self) -> str:
+        """The moduli of all explanations that the curves cannot tell apart, in words."""
+        if self.rivals is None or self.rivals.verdict != "undecided":
+            return ""
+        tied = [fit for fit in self.rivals.tied if fit.rival.is_single] or self.rivals.tied
+        moduli = [fit.estimates["reduced_modulus"].value for fit in tied]
+        return (
+            f"the reduced modulus is {readable(min(moduli), 'Pa', 3)} to "
+            f"{readable(max(moduli), 'Pa', 3)} over the "
+            f"{len(moduli)} models that the data cannot tell apart; the interval above holds for "
+            "one of them"
+        )
 
     @property
     def all_messages(self) -> list[str]:
@@ -171,6 +171,8 @@ class FitResult:
             "messages": list(self.messages),
             "notes": [text for text in self.messages if isinstance(text, Note)],
         }
+        if self.rivals is not None:
+            result["rivals"] = self.rivals.to_dict()
         if self.config is not None:
             result["configuration"] = self.config.to_dict()
         if self.record is not None:

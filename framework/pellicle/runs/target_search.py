@@ -114,6 +114,8 @@ class _Trials:
             touch = -float(profile.max()) / reach
             if not self.setting.operator.has_mean_compliance:
                 self.limit = -self.setting.mean_height / reach
+            if guess is None and state is not None and self.setting.law:
+                guess = state.depth
             depth = touch + 1.0 if guess is None else guess / reach
             return depth if depth < self.limit else 0.5 * (touch + self.limit)
         if guess is None and state is not None:

@@ -126,9 +126,12 @@ def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
     }
     if step.how == "nearest" and step.missed <= _NEAR:
         return near, near.value.format(**words)
+    finer = "use more points"
+    if step.equilibrium.problem.law:
+        finer = "no contact between them is stable, or the cells are too large to show it"
     remedy = {
         "met": "nothing nearer can be resolved: use more points",
-        "nearest": "it jumps from {below} to {above}: use more points".format(**words),
+        "nearest": "it jumps from {below} to {above}: {finer}".format(**words, finer=finer),
         "not found": "no load that attains it was found",
     }[step.how]
     return far, far.value.format(**words, remedy=remedy)

@@ -26,11 +26,13 @@ from numpy.polynomial import chebyshev
 from scipy.interpolate import make_interp_spline
 
 from pellicle.arrays import Array, Mask
-from pellicle.components import ForceCurve
+from pellicle.components import ContactRadius, ForceCurve
 
 from .stretched_spline import Interpolant, stretched_spline
 
 SCALE = 1e-3
+_PUNCH_RADII: tuple[float, float] = 1e-3, 1e8
+"""Least and largest radius of a punch over s at which its stiffness is inverted."""
 LEAST_DEPTH = 1e-60
 """[m]; powers of a depth at the end of the range of floats would overflow."""
 FILE = files("pellicle_plugins.analytic").joinpath("master_curves.json")
@@ -88,6 +90,29 @@ def flat_punch(radius: float, depth: Array, length: float) -> ForceCurve:
     stiffness = 2 * radius * np.exp(log)
     force = stiffness * d
     return _spread(touching, force, np.full_like(d, stiffness[0]), force * rate / radius)
+
+
+def punch_radius(stiffness: Array, length: float) -> ContactRadius:
+    """Return the radius [m] of flat punches of stiffnesses k/E* [m] at s = ``length`` [m]."""
+    if not length:
+        return ContactRadius(stiffness / 2, np.full_like(stiffness, 2.0))
+    first, last, inverse = _punch_radii()
+    size = np.log(stiffness / length)
+    # Beyond the last node tension changes nothing.
+    radius = np.where(size < last, length * np.exp(inverse(np.clip(size, first, last))), 0.0)
+    radius = np.where(size < last, radius, stiffness / 2)
+    ratio = length / radius
+    log, rate = _one_variable("flat_punch")(ratio)
+    return ContactRadius(radius, 2 * np.exp(log) * (1 - ratio * rate))
+
+
+@cache
+def _punch_radii() -> tuple[float, float, Any]:
+    """Return log(a/s) of a flat punch as a function of log(k/s), between the first and the last."""
+    radii = np.log(np.geomspace(*_PUNCH_RADII, 600))
+    log, _ = _one_variable("flat_punch")(np.exp(-radii))
+    size = np.log(2.0) + radii + log
+    return float(size[0]), float(size[-1]), make_interp_spline(size, radii, 5)
 
 
 def sphere(radius: float, depth: Array, length: float) -> ForceCurve:

@@ -6,8 +6,9 @@ from abc import abstractmethod
 from functools import lru_cache
 
 from pellicle.arrays import Array
-from pellicle.components import ForceCurve, Indenter, LayerForceCurve
+from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceCurve
 from pellicle_plugins.analytic.layer_curves import Layer, Profile, Punch
+from pellicle_plugins.analytic.master_curves import punch_radius
 
 
 class Axisymmetric(Indenter):
@@ -21,6 +22,13 @@ class Axisymmetric(Indenter):
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
         """Return P/E* and its partial derivatives at depths [m] and s = 2τ₀/E* [m]."""
         return self._master_curve(depth, length)
+
+    def contact_radius(self, depth: Array, length: float) -> ContactRadius:
+        """Return the contact radius without adhesion at depths > 0 [m], and dk/da over E*.
+
+        The stiffness dF/dδ is that of the flat punch of the same radius.
+        """
+        return punch_radius(self._master_curve(depth, length).by_depth, length)
 
     def layer_depth_limit(self, thickness: float, poissons_ratio: float) -> float:
         """Return the depth [m] up to which the force curve holds on a bonded layer."""

@@ -17,6 +17,7 @@ from pellicle.errors import ConfigError
 from pellicle.files import read_text
 from pellicle.grid import shape_of_run
 from pellicle.model.input_path import InputPath
+from pellicle.model.matlab import read_mat
 from pellicle.units import Length
 
 from .from_heights import FromHeights
@@ -39,7 +40,7 @@ class Heights(FromHeights):
         Field(
             title="file",
             examples=["heights.txt"],
-            description="file with a 2-D array: .npy, text (.txt, .csv, .dat) or .h5",
+            description="file with a 2-D array: .npy, text (.txt, .csv, .dat), .h5 or .mat",
         ),
     ] = None
     unit: Annotated[
@@ -50,7 +51,8 @@ class Heights(FromHeights):
         ),
     ]
     dataset: Annotated[
-        str | None, Field(description="name of the array in an HDF5 file that holds several")
+        str | None,
+        Field(description="name of the array in a file that holds several"),
     ] = None
     # An array is replaced by its checked copy, which the caller cannot change.
     values: Annotated[
@@ -96,6 +98,7 @@ def _load(path: Path, dataset: str | None) -> Any:
     if path.stat().st_size == 0:
         raise ConfigError(f"{path} is empty; give a file that holds a 2-D array", "path")
     readers = {".npy": _load_npy, ".h5": _load_hdf5, ".hdf5": _load_hdf5, ".nc": _load_hdf5}
+    readers[".mat"] = _load_mat
     reader = readers.get(path.suffix.lower(), _load_text)
     try:
         return reader(path, dataset)
@@ -152,6 +155,19 @@ def _load_hdf5(path: Path, dataset: str | None) -> Any:
             raise ConfigError(f"{path} has {content}; give one of: {', '.join(names)}", "dataset")
         _require_header(file[dataset], path)
         return file[dataset][...]
+
+
+def _load_mat(path: Path, dataset: str | None) -> Any:
+    arrays = {name: value for name, value in read_mat(path).items() if np.ndim(value) == 2}
+    if dataset is None and len(arrays) == 1:
+        (dataset,) = arrays
+    if dataset not in arrays:
+        if not arrays:
+            raise ValueError("it holds no matrix")
+        content = f"no array {dataset!r}" if dataset else "more than one array"
+        raise ConfigError(f"{path} has {content}; give one of: {', '.join(arrays)}", "dataset")
+    _require_header(arrays[dataset], path)
+    return arrays[dataset]
 
 
 def _require_header(array: Any, path: Path) -> None:

@@ -9,7 +9,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from pellicle import hookimpl
-from pellicle.components import Force, Prescription, Search, Setting
+from pellicle.components import Depth, Force, Prescription, Search, Setting
 from pellicle.components.prescription import in_unit
 from pellicle.errors import ConfigError
 from pellicle.numerics.problem import Equilibrium
@@ -40,11 +40,8 @@ class ContactArea(Prescription):
 
 def unreachable(setting: Setting, area: float) -> str:
     """Return the reason why a contact area [m²] is impossible on this grid; empty if possible."""
-    if setting.law:
-        return (
-            "not within reach of a search by force where there is an interaction: a contact that "
-            "sticks jumps along the force; prescribe depth or base_displacement"
-        )
+    if setting.law and not area > 0:
+        return "lost at no certain depth where the contact sticks; prescribe depth"
     cell, profile = setting.grid.cell_area, setting.profile
     covered = int(np.count_nonzero(np.isfinite(profile)))
     first = int(np.count_nonzero(profile == profile.max()))
@@ -69,22 +66,28 @@ def area_search(setting: Setting, area: float) -> Force | Search:
     if not area > 0:
         return Force(0.0)
     cell, state = setting.grid.cell_area, setting.state
-    if state is not None and state.contact.any():
+    guess: float | None
+    if setting.law and state is not None:
+        guess = state.depth
+    elif state is not None and state.contact.any():
         before = float(np.count_nonzero(state.contact)) * cell
         guess = float(state.pressure.sum()) * cell * math.pow(area / before, 1.5)
     else:
         heights = np.sort(setting.profile[np.isfinite(setting.profile)])[::-1]
         lowest = heights[min(math.ceil(area / cell + 0.5), heights.size - 1)]
         # Slightly deeper, because exactly at the height of a cell round-off decides its contact.
-        guess = setting.force_at(-1.01 * float(lowest))
+        depth = -1.01 * float(lowest)
+        guess = depth if setting.law else setting.force_at(depth)
 
     def measure(step: Equilibrium) -> float:
         return float(np.count_nonzero(step.contact)) * cell
 
-    # A jump is located to 1e-4 of the force; half a cell means the nearest whole number of cells.
+    # A jump is located to 1e-4 of the control; half a cell means the nearest whole number of cells.
+    # Along the force a contact that sticks would jump.
     return Search(
         goal=area,
         measure=measure,
+        control=Depth if setting.law else Force,
         resolution=cell / 2,
         width=1e-4,
         guess=guess,

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import ClassVar, Literal
 
 from pellicle import hookimpl
-from pellicle.components import Prescription, Search, Setting
+from pellicle.components import Depth, Force, Prescription, Search, Setting
 from pellicle.components.prescription import in_unit
 from pellicle.errors import ConfigError
 from pellicle.numerics.problem import Equilibrium
@@ -44,6 +44,7 @@ class GapVolume(Prescription):
         return Search(
             -value,
             lambda step: -_volume(step),
+            control=Depth if setting.law else Force,
             resolution=1e-6 * (value or _at_first_touch(setting)),
             quantity="gap volume",
             unit="m**3",

@@ -117,19 +117,11 @@ REFUSALS: dict[str, tuple[dict[str, Any], list[str]]] = {
     ),
     "area": (
         {"loading": {"contact_area": [0, "0.01 mm^2"]}},
-        ["loading.contact_area.0: 0 m2 is not within reach", "prescribe depth"],
-    ),
-    "radius": (
-        {"loading": {"contact_radius": ["0.06 mm"]}},
-        ["loading.contact_radius.0: 6e-05 m is not within reach", "prescribe depth"],
+        ["loading.contact_area.0: 0 m2 is lost at no certain depth", "prescribe depth"],
     ),
     "depth of full contact": (
         {"grid": PERIODIC, "loading": {"depth": ["1 mm"]}},
         ["loading.depth.0: 0.001 m is beyond full contact", "prescribe mean_pressure"],
-    ),
-    "volume": (
-        {"grid": PERIODIC, "loading": {"gap_volume": ["0.005 mm^3"]}},
-        ["loading.gap_volume.0: is searched by force", "prescribe depth or base_displacement"],
     ),
 }
 

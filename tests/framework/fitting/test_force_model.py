@@ -28,6 +28,7 @@ class Sprung:
     depth_limit = np.inf
     accuracy = 1e-9
     coarse = None
+    on_base = False
 
     def force(self, depth: Array, values: Values) -> ModelForce:
         """Return force and derivatives."""

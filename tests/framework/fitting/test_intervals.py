@@ -11,7 +11,7 @@ import pytest
 
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, Coordinates, Parameter
-from pellicle.fitting.statistics.likelihood import ChiSquared, Minimum, Range
+from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood, Minimum, Range
 from pellicle.fitting.statistics.profile import (
     ImprovedMinimum,
     chi_squared_threshold,
@@ -38,6 +38,10 @@ class Linear(ChiSquared):
     def ranges(self) -> Mapping[Parameter, Range]:
         """Wide limits, or ``limit``."""
         return dict.fromkeys(BEST, Range(1.0, -self.limit, self.limit))
+
+    def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
+        """Return no curve: there is only a quadric."""
+        return []
 
     def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return residuals and the design matrix."""

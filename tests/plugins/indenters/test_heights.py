@@ -11,6 +11,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 import pellicle as pl
 from pellicle import memory
@@ -222,3 +223,15 @@ def test_ends_with_the_domain() -> None:
     result = pl.run(run, progress=False)
     assert result.dataset["contact"].values.all()
     assert result.converged
+
+
+def test_matlab_file(tmp_path: Path) -> None:
+    """A matrix of a MATLAB file is chosen by its name, or by being the only one."""
+    path, heights = tmp_path / "surface.mat", np.arange(12.0).reshape(3, 4)
+    savemat(path, {"z": heights, "note": {"by": "me"}})
+    punch = pl.indenter("heights", path=path, unit="1 um")
+    x, y = np.zeros((3, 1)), np.zeros((1, 4))
+    assert np.array_equal(punch.profile(x, y), (heights - 11) * 1e-6)
+    savemat(path, {"z": heights, "w": heights})
+    with pytest.raises(pl.ConfigError, match="more than one array; give one of: z, w"):
+        pl.indenter("heights", path=path, unit="1 um")

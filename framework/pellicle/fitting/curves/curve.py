@@ -244,10 +244,10 @@ def _rows(z: Array, segment: Segment, messages: list[str]) -> slice:
             "position",
         )
     if segment == "both":
-        if inward != [True, False]:
+        if inward not in ([True], [True, False]):
             raise ConfigError(
-                "does not hold an approach and then a retract, and both are to be fitted; give "
-                "both passes in order of time, or set segment to the one that there is",
+                "does not begin with an approach, and both passes are to be fitted; give the rows "
+                "in order of time, or set segment to the pass that there is",
                 "position",
             )
         return slice(0, z.size)

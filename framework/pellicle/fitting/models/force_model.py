@@ -28,7 +28,10 @@ class ModelForce(NamedTuple):
     by_depth: Array
     """∂F/∂δ [N/m]."""
     by_parameter: Mapping[Parameter, Array]
-    """Derivative of F with respect to the value of each parameter [N per unit]."""
+    """Derivative of F with respect to the value of each parameter [N per unit].
+
+    For a solid with a memory that of the contact point too, at equal depths: the time in contact.
+    """
 
 
 class ForceModel(Protocol):
@@ -47,11 +50,18 @@ class ForceModel(Protocol):
         """Error of the force relative to the largest one; noise below this cannot be resolved."""
 
     @property
+    def on_base(self) -> bool:
+        """Whether depths are those of the cantilever's base, whose bending the model includes."""
+
+    @property
     def coarse(self) -> ForceModel | None:
         """The same model from coarser grids, if it is simulated, else None."""
 
     def force(self, depth: Array, values: Values) -> ModelForce:
-        """Return force and derivatives at depths [m] of shape (n,); 0 where ``depth`` ≤ 0."""
+        """Return force and derivatives at depths [m] of shape (n,); 0 where ``depth`` ≤ 0.
+
+        ``values`` has the contact point too.
+        """
 
     def guesses(self, span: float) -> Iterable[Values]:
         """Yield values to compare with a curve whose positions span ``span`` [m]."""
@@ -71,6 +81,7 @@ class TensionModel(ForceModel, ABC):
     """
 
     parameters: ClassVar[tuple[Parameter, ...]] = (MODULUS, TENSION)
+    on_base: ClassVar[bool] = False
 
     @abstractmethod
     def force_curve(self, depth: Array, length: float) -> ForceCurve:

@@ -62,6 +62,7 @@ class FreeLayerModel(ForceModel):
     """That of the thickness that is fitted; see `at`."""
     accuracy: ClassVar[float] = ACCURACY
     coarse: ClassVar[None] = None
+    on_base: ClassVar[bool] = False
 
     def at(self, thickness: float) -> LayerModel:
         """Return the model of a given thickness [m]."""

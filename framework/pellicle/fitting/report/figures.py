@@ -341,6 +341,6 @@ def _estimates(rows: Sequence[Row], figure: FigureBase) -> None:
 
 
 def _relative_depth(member: Likelihood, position: Array, parameters: Coordinates) -> Array:
-    deepest = member.depth(parameters)[-1]
+    deepest = member.deepest(parameters)
     depth: Array = (position - parameters[CONTACT_POINT]) / deepest
     return depth

@@ -73,7 +73,24 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
             "is not described by any modulus above 0; check signs, indenter and fix", "force"
         )
     minimum = best_minimum(likelihood, guesses)
-    residuals = Residuals.of(likelihood, minimum.parameters)
+    estimate, source = judged(likelihood, minimum.parameters)
+    noise, failed = estimate.noise, estimate.failed
+    scaled = minimum.chi_squared * (likelihood.noise / noise.deviation) ** 2
+    likelihood = replace(likelihood, noise=noise.deviation)
+    notes, shape = check_shape(likelihood, minimum._replace(chi_squared=scaled))
+    return SingleFit(
+        likelihood,
+        minimum.parameters,
+        noise.freedom,
+        source,
+        (*failed, *shape),
+        (*estimate.messages, *notes, *(check.message for check in (*failed, *shape))),
+    )
+
+
+def judged(likelihood: Likelihood, parameters: Coordinates) -> tuple[NoiseEstimate, str]:
+    """Return the noise that residuals at best parameters show, its source, and failed checks."""
+    residuals = Residuals.of(likelihood, parameters)
     count = int(residuals.before.sum())
     if count < _QUIET:
         source, before = "residuals of the fit", None
@@ -89,17 +106,7 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
     failed = (*_spikes(residuals), *in_contact)
     if failed:
         source += f"; checks that fail: {', '.join(check.code for check in failed)}"
-    scaled = minimum.chi_squared * (likelihood.noise / noise.deviation) ** 2
-    likelihood = replace(likelihood, noise=noise.deviation)
-    notes, shape = check_shape(likelihood, minimum._replace(chi_squared=scaled))
-    return SingleFit(
-        likelihood,
-        minimum.parameters,
-        noise.freedom,
-        source,
-        (*failed, *shape),
-        (*messages, *notes, *(check.message for check in (*failed, *shape))),
-    )
+    return NoiseEstimate(noise, failed, messages=messages), source
 
 
 def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str]:
@@ -111,7 +118,7 @@ def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str
         The depth is beyond that to which the force model holds.
     """
     messages = []
-    model, depth = likelihood.force_model, float(likelihood.depth(parameters)[-1])
+    model, depth = likelihood.force_model, likelihood.deepest(parameters)
     check_depth(model, depth, parameters)
     shape = getattr(model, "indenter", None)
     radius = next(iter(lengths(shape)), None) if isinstance(shape, Component) else None
@@ -208,10 +215,14 @@ def _check_contact(residuals: Residuals, before: NoiseEstimate | None) -> NoiseE
 
 def _contact_bins(residuals: Residuals) -> Array:
     """Return a column for each bin of the points in contact, narrow near first touch."""
-    share = residuals.depth / float(residuals.depth[-1])
+    share = residuals.depth / float(residuals.depth.max())
+    bins = len(_DEPTHS) - 1
     index = np.digitize(share, _DEPTHS[1:-1])
+    # A second pass has bins of its own, the shallowest with the rows after contact.
+    second = ~residuals.likelihood.first_pass
+    index[second] += bins
     index[residuals.before] = -1
-    return np.where(index[:, None] == np.arange(len(_DEPTHS) - 1), 1.0, 0.0)
+    return np.where(index[:, None] == np.arange(2 * bins if second.any() else bins), 1.0, 0.0)
 
 
 def _misfit(code: str, finding: str, residuals: Residuals) -> FailedCheck:
@@ -237,7 +248,7 @@ def check_shape(
     deep: list[tuple[float, IsShallowLimit, HasForceCurve]] = []
     models = []
     for member, part in chi_squared.curves(best.parameters):
-        model, depth = member.force_model, float(member.depth(part)[-1])
+        model, depth = member.force_model, member.deepest(part)
         limit = model.indenter if isinstance(model, ClosedFormModel) else None
         if isinstance(limit, IsShallowLimit) and depth > SHALLOW * limit.radius:
             shape = limit.whole_shape()

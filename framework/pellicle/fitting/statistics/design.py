@@ -71,7 +71,7 @@ def advice(
     )
     if min(design.worse for design in (now, *others)) < _USELESS:
         length = 2 * tension.value / modulus.value
-        shallow = length > float(likelihood.depth(parameters)[-1])
+        shallow = length > likelihood.deepest(parameters)
         warning += f"; the curve is too {'shallow' if shallow else 'deep'}"
     return words, [warning]
 
@@ -134,7 +134,7 @@ def _designs(likelihood: Likelihood, parameters: Coordinates) -> tuple[_Design, 
     noise relative to the largest force.
     """
     now = _design("this curve", likelihood, parameters)
-    deepest = float(likelihood.depth(parameters)[-1])
+    deepest = likelihood.deepest(parameters)
     model: Any = likelihood.force_model
     has_shape = isinstance(model, (ClosedFormModel, LayerModel, FreeLayerModel))
     indenter: Any = model.indenter if has_shape else None

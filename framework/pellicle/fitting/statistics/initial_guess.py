@@ -16,16 +16,25 @@ BEFORE = 0.5
 GUESSES = 3
 
 
-def initial_guesses(likelihood: Likelihood, fixed: Coordinates) -> list[Coordinates]:
+def initial_guesses(
+    likelihood: Likelihood, fixed: Coordinates, points: list[float] | None = None
+) -> list[Coordinates]:
     """Return the `GUESSES` best of a scan over contact points and values of the model, best first.
 
     ``fixed`` has the coordinates of all parameters that are not free; others are ignored.  At each
     node the force scale and the baseline, in which the model is linear, follow by least squares.
+    With ``points``, the contact points of the scan, all rows are compared, as a model needs that
+    belongs to them; otherwise averages of neighbours.
     """
     fixed = {p: fixed[p] for p in likelihood.parameters if p not in likelihood.free}
-    z, f = _binned(likelihood.position), _binned(likelihood.force)
+    if points is None:
+        z, f = _binned(likelihood.position), _binned(likelihood.force)
+    else:
+        z = likelihood.base if likelihood.force_model.on_base else likelihood.position
+        f = likelihood.force
     span = float(np.ptp(z))
-    points = np.linspace(z[0] - BEFORE * span, z[-1] - 0.02 * span, _POINTS).tolist()
+    if points is None:
+        points = np.linspace(z.min() - BEFORE * span, z.max() - 0.02 * span, _POINTS).tolist()
     if CONTACT_POINT in fixed:
         points = [fixed[CONTACT_POINT]]
     # A parameter fixed at its minimum (no tension) removes the trials above it.
@@ -57,7 +66,7 @@ def _linear_fit(
 ) -> tuple[float, Coordinates] | None:
     """Return misfit [N²] and coordinates; None if the force would have to be negative."""
     model = likelihood.force_model
-    shape = model.force(z - point, values).force
+    shape = model.force(z - point, {**values, CONTACT_POINT: point}).force
     baseline = {OFFSET: np.ones_like(z), SLOPE: z - likelihood.position[0]}
     fitted = [p for p in baseline if p not in fixed]
     matrix = np.column_stack([shape, *(baseline[p] for p in fitted)])

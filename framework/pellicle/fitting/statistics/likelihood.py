@@ -11,9 +11,11 @@ from typing import Literal, NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.errors import ConvergenceError
+from pellicle.fitting.curves.curve import Segment
 from pellicle.fitting.models.force_model import ForceModel
+from pellicle.fitting.models.history import History, constant_speed, last_row_of_loading
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, Parameter
 
 REACH = np.log(100.0)
@@ -27,6 +29,10 @@ _LARGEST_CHANGE = 20.0
 _METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 60), ("trf", 1000))
 """Optimisers, tried in this order, and their largest numbers of steps."""
 _TOLERANCE = 1e-10
+_ROUGH_METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 30), ("trf", 60))
+_ROUGH_TOLERANCE = 1e-7
+_SLOWEST = np.log(30.0)
+"""Logarithm of the ratio of a relaxation time, either way, to the one that a search starts from."""
 _BALANCE_STEPS = 200
 """Largest number of Newton steps for the balance of cantilever and solid."""
 _BALANCE_TOLERANCE = 1e-9
@@ -111,6 +117,10 @@ class ChiSquared(ABC):
         """Error of the model relative to the largest force; noise below it cannot be resolved."""
 
     @abstractmethod
+    def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
+        """Return the likelihood and the coordinates of each curve."""
+
+    @abstractmethod
     def coarse(self) -> ChiSquared | None:
         """Return the same with force curves from coarser grids; None if none is simulated."""
 
@@ -168,8 +178,12 @@ class ChiSquared(ABC):
         """Return the minimum of χ² near ``best`` with a parameter at its least value."""
         return self.minimise(best.parameters | {parameter: parameter.minimum}, (parameter,))
 
-    def minimise(self, start: Coordinates, fixed: Sequence[Parameter] = ()) -> Minimum:
+    def minimise(
+        self, start: Coordinates, fixed: Sequence[Parameter] = (), *, rough: bool = False
+    ) -> Minimum:
         """Return the minimum of χ² near ``start``, where the parameters in ``fixed`` stay.
+
+        A ``rough`` search ends sooner, and where it has come to; its χ² is an upper bound.
 
         Raises
         ------
@@ -195,21 +209,24 @@ class ChiSquared(ABC):
 
         u = np.clip([start[p] for p in free], lowest, highest) / scale
         # Dogbox is faster at active bounds, but makes small steps along curved valleys.
-        for method, most in _METHODS:
+        tolerance = _ROUGH_TOLERANCE if rough else _TOLERANCE
+        for method, most in _ROUGH_METHODS if rough else _METHODS:
             solution = least_squares(
                 lambda u: linearised(u.tobytes())[0],
                 u,
                 lambda u: linearised(u.tobytes())[1],
                 (lowest / scale, highest / scale),
                 method=method,
-                xtol=_TOLERANCE,
-                ftol=_TOLERANCE,
-                gtol=_TOLERANCE,
+                xtol=tolerance,
+                ftol=tolerance,
+                gtol=tolerance,
                 max_nfev=most,
             )
             if solution.success:
                 return Minimum(full(solution.x), 2 * float(solution.cost))
             u = solution.x
+        if rough:
+            return Minimum(full(u), 2 * float(solution.cost))
         raise ConvergenceError(
             f"the search for the parameters of least χ² did not converge in {_METHODS[-1][1]} "
             "steps: the curve does not tell them apart; fix one of them, or fit less of the "
@@ -232,6 +249,46 @@ class Likelihood(ChiSquared):
     stiffness: float | None = None
     """Spring constant [N/m] of the cantilever whose deflection was subtracted to get the position.
     Noise of the force is then in the position too; only the position of the base is exact."""
+    time: Array | None = None
+    """Time of each row [s], of shape (n,); None if it is not known."""
+    segment: Segment = "approach"
+    """Pass that was measured; rows of one are sorted by position, those of both by time."""
+
+    @cached_property
+    def history(self) -> History:
+        """Path in time, at constant speed if the time is not known."""
+        time = self.time
+        if time is None and self.segment == "both":
+            time = constant_speed(self.base)
+        elif time is None:
+            share = (self.base - self.base[0]) / np.ptp(self.base)
+            time = share if self.segment == "approach" else 1 - share
+        return History.of(self.position, time)
+
+    @cached_property
+    def first_pass(self) -> Mask:
+        """Whether a row is taken on the first pass, dwell included, of shape (n,)."""
+        if self.segment != "both":
+            return np.full(self.position.size, True)
+        rows = np.arange(self.position.size)
+        return np.asarray(rows <= last_row_of_loading(self.base))
+
+    @cached_property
+    def moves_out(self) -> Mask:
+        """Whether a row is taken while the indenter moves out of the solid, of shape (n,)."""
+        return self.first_pass if self.segment == "retract" else ~self.first_pass
+
+    def thinned(self, points: int) -> Likelihood:
+        """Return about as many rows as ``points``, with the noise of as much information."""
+        step = max(self.force.size // points, 1)
+        rows = slice(None, None, step)
+        return replace(
+            self,
+            position=self.position[rows],
+            force=self.force[rows],
+            noise=self.noise / np.sqrt(step),
+            time=None if self.time is None else self.time[rows],
+        )
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -268,15 +325,24 @@ class Likelihood(ChiSquared):
         """Scale and limits of each coordinate; the scale of a force model's follows its unit."""
         z, force = self.position, self.force
         span, height = float(np.ptp(z)), float(np.ptp(force))
-        sizes = {"m": span, "N": height, "N/m": height / span}
-        steepest = height / float(self.travel[-1])
+        duration = 1.0 if self.time is None else float(np.ptp(self.time))
+        sizes = {
+            "m": span,
+            "N": height,
+            "N/m": height / span,
+            "J/m^2": height / span,
+            "Pa s": height * duration / span**2,
+            "": 1.0,
+        }
+        steepest = height / float(np.ptp(self.travel))
 
         def range_of(parameter: Parameter) -> Range:
             if parameter.is_length:
                 return Range(1.0, *(float(np.log(share * span)) for share in _LENGTHS))
             if parameter.logarithmic:
-                return Range(1.0, -_LARGEST_CHANGE, _LARGEST_CHANGE)
-            return Range(sizes[parameter.unit], parameter.minimum, np.inf)
+                largest = _SLOWEST if parameter.unit == "s" else _LARGEST_CHANGE
+                return Range(1.0, -largest, largest)
+            return Range(sizes[parameter.unit], parameter.minimum, parameter.maximum)
 
         return {p: range_of(p) for p in self.force_model.parameters} | {
             CONTACT_POINT: Range(span, z.min() - _FARTHEST * span, z.max()),
@@ -303,23 +369,35 @@ class Likelihood(ChiSquared):
         depth: Array = self.position - parameters[CONTACT_POINT]
         return depth
 
+    def deepest(self, parameters: Coordinates) -> float:
+        """Return the largest position relative to the contact point [m]."""
+        return float(self.position.max()) - parameters[CONTACT_POINT]
+
     def model(self, parameters: Coordinates) -> Array:
         """Return the force [N] at every position."""
-        return self._model(self.position, parameters)[0]
+        return (
+            self._balanced(parameters)[0]
+            if self.force_model.on_base
+            else self._model(self.position, parameters)[0]
+        )
 
-    def _model(self, position: Array, parameters: Coordinates) -> tuple[Array, Array]:
-        """Return force [N] and its Jacobian by coordinate, of shape (n, number of parameters)."""
+    def _model(self, position: Array, parameters: Coordinates) -> tuple[Array, Array, Array]:
+        """Return force [N], its Jacobian by coordinate, and its derivative by depth.
+
+        The Jacobian has shape (n, number of parameters), the others (n,).
+        """
         model = self.force_model
         values = {p: p.value(parameters[p]) for p in model.parameters}
-        elastic = model.force(position - parameters[CONTACT_POINT], values)
+        point = parameters[CONTACT_POINT]
+        elastic = model.force(position - point, {**values, CONTACT_POINT: point})
+        by_point = elastic.by_parameter.get(CONTACT_POINT, 0.0) - elastic.by_depth
         force = elastic.force + parameters[OFFSET] + parameters[SLOPE] * self.travel
         columns = [
             elastic.by_parameter[p] * (value if p.logarithmic else 1.0)
             for p, value in values.items()
         ]
-        return force, np.column_stack(
-            [-elastic.by_depth, *columns, np.ones_like(self.travel), self.travel]
-        )
+        jacobian = np.column_stack([by_point, *columns, np.ones_like(self.travel), self.travel])
+        return force, jacobian, elastic.by_depth
 
     def fitted(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return position [m] and force [N] of the model, both without noise.
@@ -347,16 +425,17 @@ class Likelihood(ChiSquared):
         There the force solves F = P(z − F/k). P is convex in the depth, so Newton's iteration is
         monotonic after its first step.
         """
-        if self.stiffness is None:
-            return self._model(self.position, parameters)
+        if self.stiffness is None or self.force_model.on_base:
+            return self._model(self.base, parameters)[:2]
         force = self.force.copy()
         # Positions far from 0 are rounded, and so is the force that balances them.
         rounding = 8 * float(np.finfo(float).eps * np.max(np.abs(self.base))) * self.stiffness
         tolerance = max(_BALANCE_TOLERANCE * float(np.ptp(self.force)), rounding)
-        contact_point = self._column[CONTACT_POINT]
         for _ in range(_BALANCE_STEPS):
-            response, jacobian = self._model(self.base - force / self.stiffness, parameters)
-            give = 1 - jacobian[:, contact_point] / self.stiffness
+            response, jacobian, by_depth = self._model(
+                self.base - force / self.stiffness, parameters
+            )
+            give = 1 + by_depth / self.stiffness
             step = (response - force) / give
             force += step
             # Negated so that NaN ends the iteration.

@@ -5,6 +5,7 @@ The points before contact show adhesion, drift, offset, slow noise and detector 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -53,6 +54,17 @@ class FailedCheck(NamedTuple):
         return self.code not in _OF_NOISE
 
 
+def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:
+    """Return why failed checks invalidate the evidence of a tension; empty if none does."""
+    codes = list(dict.fromkeys(check.code for check in failed if check.of_model))
+    if not codes:
+        return ""
+    if "adhesion" in codes:
+        return "no tension is needed where the force dips before contact: that is adhesion"
+    checks = "a check" if len(codes) == 1 else "checks"
+    return f"this is not evidence of one, because the model fails {checks} ({', '.join(codes)})"
+
+
 class Noise(NamedTuple):
     """An estimate of the noise; of two, that with the larger deviation is the greater."""
 
@@ -94,7 +106,7 @@ class Residuals(NamedTuple):
     jacobian: Array
     """Derivatives of the model by the coordinates that the fit varies."""
     before: Mask
-    """Whether a point lies before contact."""
+    """Whether a point lies before contact on the first pass."""
     depth: Array
     """Position relative to the contact point [m]."""
     step: float
@@ -116,7 +128,7 @@ class Residuals(NamedTuple):
             parameters,
             -scaled * likelihood.noise,
             jacobian[:, likelihood.columns(varied)] * likelihood.noise,
-            depth < -_NEAR * float(np.ptp(likelihood.position)),
+            (depth < -_NEAR * float(np.ptp(likelihood.position))) & likelihood.first_pass,
             depth,
             step,
             max(likelihood.accuracy * largest, step / np.sqrt(12)),
@@ -146,7 +158,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     force, travel = residuals.force[before], residuals.likelihood.travel[before]
     points = force.size
     independent = residuals.independent_noise(before)
-    line = np.column_stack([np.ones(points), travel / travel[-1]])
+    line = np.column_stack([np.ones(points), travel / np.ptp(residuals.likelihood.travel)])
     # The force as measured, since a fitted slope of the baseline absorbs part of a dip.
     measured = residuals.likelihood.force[before]
     slope, change = _slope(measured, line)

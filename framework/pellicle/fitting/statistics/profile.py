@@ -84,16 +84,24 @@ class ProfileResult:
         Without an interval the ends are None.  Where the interval is narrower than the Cramér–Rao
         bound, that bound is infinite: it is that of a linear model, and this model is not linear.
         """
-        best, bound = self.best.parameters[parameter], self.bounds[parameter]
-        fixed = parameter not in self.likelihood.free
-        low, high = (best, best) if fixed else self.ends.get(parameter, (None, None))
-        lowest = parameter.minimum if low is None else low
-        if high is not None and max(high - best, best - lowest) < bound:
-            bound = np.inf
-        value = parameter.value(best)
-        low, high = (None if end is None else parameter.value(end) for end in (low, high))
-        bound *= value if parameter.logarithmic else 1.0
-        return Estimate(value, low, high, parameter.unit, bound, fixed)
+        ends = self.ends.get(parameter, (None, None))
+        return estimate_of(parameter, self.likelihood, self.best, ends, self.bounds)
+
+
+def estimate_of(
+    parameter: Parameter, chi_squared: ChiSquared, best: Minimum, ends: Ends, bounds: Coordinates
+) -> Estimate:
+    """Return value, interval and bound of a parameter from its coordinates."""
+    value, bound = best.parameters[parameter], bounds[parameter]
+    fixed = parameter not in chi_squared.free
+    low, high = (value, value) if fixed else ends
+    lowest = parameter.minimum if low is None else low
+    if high is not None and max(high - value, value - lowest) < bound:
+        bound = np.inf
+    value = parameter.value(value)
+    low, high = (None if end is None else parameter.value(end) for end in (low, high))
+    bound *= value if parameter.logarithmic else 1.0
+    return Estimate(value, low, high, parameter.unit, bound, fixed)
 
 
 def chi_squared_threshold(freedom: float) -> float:

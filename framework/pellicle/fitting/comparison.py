@@ -1,0 +1,346 @@
+"""Whether a tension is needed: its rivals, how well each describes the curves, and the verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from pellicle.errors import ConvergenceError
+
+from .parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates, Parameter
+from .statistics.checks import judged
+from .statistics.experiments import advised
+from .statistics.likelihood import ChiSquared, Likelihood, Minimum, least
+from .statistics.noise import FailedCheck, doubt_of_tension
+from .statistics.profile import Ends, Estimate, ImprovedMinimum, confidence_interval, estimate_of
+from .statistics.rivals import NONE, TENSED, Rival, rivals
+
+MARGIN = 6.0
+"""Difference of AIC from which one model is preferred: odds of e³, 20 to 1."""
+_OF_MANY = 12.0
+"""Difference of AIC by which the best of many rivals must beat no effect at all."""
+_FIRST_TENSIONS = (0.03, 0.3)
+"""Tensions from which a search for one starts, over modulus and depth."""
+Verdict = Literal["needed", "not shown", "undecided", "other"]
+
+
+@dataclass(frozen=True)
+class RivalFit:
+    """One explanation of the curves, and how well it describes them."""
+
+    rival: Rival
+    chi_squared: float
+    aic: float
+    """Akaike's criterion, over that of the best."""
+    bic: float
+    """Bayes' criterion (Schwarz), over that of the best."""
+    parameters: Coordinates
+    estimates: dict[str, Estimate]
+    """The parameters by name; their intervals only if the comparison was requested."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the explanation as JSON data."""
+        return {
+            "name": self.rival.code,
+            "tension": self.rival.has_tension,
+            "chi_squared": self.chi_squared,
+            "delta_aic": self.aic,
+            "delta_bic": self.bic,
+            "parameters": {name: value.to_dict() for name, value in self.estimates.items()},
+        }
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """The explanations of the curves, best first, and whether they need a tension."""
+
+    fits: tuple[RivalFit, ...]
+    verdict: Verdict
+    sentence: str
+    advice: str
+    """The measurement that would separate the explanations, if they are tied."""
+    failed_checks: tuple[FailedCheck, ...]
+    """Checks that the best explanation fails."""
+
+    @property
+    def best(self) -> RivalFit:
+        """The explanation with the least AIC."""
+        return self.fits[0]
+
+    @property
+    def tied(self) -> tuple[RivalFit, ...]:
+        """The explanations that the curves cannot tell from the best, the best included."""
+        return tuple(fit for fit in self.fits if fit.aic < MARGIN)
+
+    def rows(self) -> list[dict[str, str]]:
+        """Return a line of a table for each explanation."""
+        return [
+            {
+                "model": fit.rival.code,
+                "χ²": f"{fit.chi_squared:.4g}",
+                "ΔAIC": f"{fit.aic:.3g}",
+                "ΔBIC": f"{fit.bic:.3g}",
+                "parameters": ", ".join(map(_figure, fit.estimates.items())),
+            }
+            for fit in self.fits
+        ]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the comparison as JSON data."""
+        return {
+            "verdict": self.verdict,
+            "sentence": self.sentence,
+            "advice": self.advice,
+            "tied": [fit.rival.code for fit in self.tied],
+            "margin": MARGIN,
+            "models": [fit.to_dict() for fit in self.fits],
+        }
+
+
+def _figure(item: tuple[str, Estimate]) -> str:
+    name, value = item
+    ends = [f"{end:.3g}" if end is not None else "open" for end in (value.low, value.high)]
+    interval = "" if ends == ["open", "open"] else f" ({' to '.join(ends)})"
+    return f"{name} {value.value:.3g}{interval} {value.unit}".strip()
+
+
+def compare(
+    chi_squared: ChiSquared,
+    best: Minimum,
+    without: Minimum,
+    *,
+    threshold: float | None = None,
+    pairs: bool = True,
+    report: Callable[[str], None] = lambda stage: None,
+) -> Comparison:
+    """Return how rivals of a tension describe the curves.
+
+    Parameters
+    ----------
+    chi_squared
+        That of the elastic solid under tension, whose tension is free.
+    best, without
+        Its minima with and without tension.
+    threshold
+        Δχ² at the ends of intervals, which are not determined if it is None.
+    pairs
+        Whether a tension beside another effect is always compared; otherwise only if no single
+        effect passes its checks.
+    report
+        Called with the name of each explanation.
+    """
+    every = rivals(chi_squared, best.parameters)
+    minima: dict[str, tuple[Rival, Minimum]] = {
+        NONE.code: (NONE, without),
+        TENSED.code: (TENSED, best),
+    }
+    for rival in every:
+        if rival.code not in minima and not rival.has_tension:
+            report(rival.words)
+            starts = [without.parameters, best.parameters]
+            minimum = rival.minimum(chi_squared, starts)
+            if minimum is not None:
+                minima[rival.code] = (rival, minimum)
+    noises, failed = _noises(chi_squared, minima)
+    if pairs or any(check.of_model for check in failed):
+        for rival in every:
+            if rival.code in minima or not rival.has_tension:
+                continue
+            report(rival.words)
+            _, single = minima.get(rival.code.partition("+")[2], (NONE, without))
+            starts = [best.parameters, *_tensed(chi_squared, single)]
+            minimum = rival.minimum(chi_squared, starts)
+            if minimum is not None:
+                minima[rival.code] = (rival, minimum)
+        noises, failed = _noises(chi_squared, minima)
+    fits = _ranked(chi_squared, minima, noises, threshold)
+    return _judge(chi_squared, fits, failed, noises)
+
+
+def _tensed(chi_squared: ChiSquared, single: Minimum) -> list[Coordinates]:
+    """Return starts with some tension from a minimum without."""
+    scale = chi_squared.ranges[TENSION].scale
+    return [single.parameters | {TENSION: share * scale} for share in _FIRST_TENSIONS]
+
+
+def _criterion(chi_squared: ChiSquared, pair: tuple[Rival, Minimum]) -> float:
+    """Return Akaike's criterion for noise of unknown size, since models that fail widen it."""
+    rival, minimum = pair
+    mine = rival.of(chi_squared)
+    parts = mine.curves(minimum.parameters)
+    misfit = sum(
+        member.force.size * float(np.log(member.chi_squared(part) * member.noise**2))
+        for member, part in parts
+    )
+    return misfit + 2 * len(mine.free)
+
+
+def _noises(
+    chi_squared: ChiSquared, minima: dict[str, tuple[Rival, Minimum]]
+) -> tuple[list[float], list[FailedCheck]]:
+    """Return the noise [N] of each curve as the best explanation shows it, and failed checks."""
+    rival, minimum = min(minima.values(), key=partial(_criterion, chi_squared))
+    noises: list[float] = []
+    failed: list[FailedCheck] = []
+    for member, part in rival.of(chi_squared).curves(minimum.parameters):
+        estimate, _ = judged(member, part)
+        noises.append(estimate.noise.deviation)
+        failed += estimate.failed
+    return noises, failed
+
+
+class _Row(NamedTuple):
+    rival: Rival
+    chi_squared: ChiSquared
+    minimum: Minimum
+    value: float
+    aic: float
+    bic: float
+
+
+def _ranked(
+    chi_squared: ChiSquared,
+    minima: dict[str, tuple[Rival, Minimum]],
+    noises: Sequence[float],
+    threshold: float | None,
+) -> list[RivalFit]:
+    """Return the explanations, best first, with χ² at the noise of the best."""
+    rows = []
+    for rival, minimum in minima.values():
+        mine = rival.of(chi_squared)
+        value = sum(
+            member.chi_squared(part) * (member.noise / noise) ** 2
+            for (member, part), noise in zip(mine.curves(minimum.parameters), noises, strict=True)
+        )
+        points = sum(member.force.size for member, _ in mine.curves(minimum.parameters))
+        free = len(mine.free)
+        rows.append(
+            _Row(rival, mine, minimum, value, value + 2 * free, value + np.log(points) * free)
+        )
+    aic, bic = min(row.aic for row in rows), min(row.bic for row in rows)
+    fits = []
+    for row in sorted(rows, key=lambda row: row.aic):
+        scale = row.value / row.minimum.chi_squared if row.minimum.chi_squared else 1.0
+        limit = None if threshold is None else threshold / scale
+        fits.append(
+            RivalFit(
+                row.rival,
+                row.value,
+                row.aic - aic,
+                row.bic - bic,
+                row.minimum.parameters,
+                _estimates(row.chi_squared, row.minimum, limit),
+            )
+        )
+    return fits
+
+
+def _estimates(
+    chi_squared: ChiSquared, minimum: Minimum, threshold: float | None
+) -> dict[str, Estimate]:
+    """Return what is fitted beside contact point and baseline, with intervals if requested."""
+    estimates = {}
+    bounds = chi_squared.deviations(minimum.parameters)
+    for p in chi_squared.parameters:
+        if p.name in (CONTACT_POINT.name, OFFSET.name, SLOPE.name):
+            continue
+        if p == TENSION and p not in chi_squared.free:
+            continue
+        ends: Ends = None, None
+        if threshold is not None and p in chi_squared.free:
+            ends = _interval(chi_squared, minimum, p, threshold)
+        estimates[p.name] = estimate_of(p, chi_squared, minimum, ends, bounds)
+    return estimates
+
+
+def _interval(chi_squared: ChiSquared, best: Minimum, p: Parameter, threshold: float) -> Ends:
+    """Return the interval of a parameter, open if the search fails or finds a better minimum."""
+    for _ in range(3):
+        try:
+            return confidence_interval(chi_squared, best, p, threshold)
+        except ImprovedMinimum as improved:
+            best = least([best, improved.minimum])
+        except ConvergenceError:
+            break
+    return None, None
+
+
+def _judge(
+    chi_squared: ChiSquared,
+    fits: Sequence[RivalFit],
+    failed: Sequence[FailedCheck],
+    noises: Sequence[float],
+) -> Comparison:
+    """Return the verdict on ranked explanations."""
+    alone = {fit.rival.code: fit.aic for fit in fits if not fit.rival.has_tension}
+    # A tension beside an effect that does as well alone is no explanation of its own.
+    with_tension = next(
+        fit
+        for fit in fits
+        if fit.rival == TENSED
+        or (
+            fit.rival.has_tension
+            and alone.get(fit.rival.code.partition("+")[2], np.inf) - fit.aic >= MARGIN
+        )
+    )
+    without = [fit for fit in fits if not fit.rival.has_tension]
+    none = next(fit for fit in fits if fit.rival == NONE)
+    first = without[0]
+    gain = none.chi_squared - with_tension.chi_squared
+    margin = first.aic - with_tension.aic
+    doubt = doubt_of_tension(failed)
+    curves = "this curve" if isinstance(chi_squared, Likelihood) else "these curves"
+    advice = ""
+    verdict: Verdict
+    if none.aic - with_tension.aic < MARGIN and not doubt:
+        # The best of many rivals beats a clean curve by more than one of them does.
+        is_other = first.aic + _OF_MANY <= none.aic
+        verdict, sentence = "not shown", ""
+        if is_other:
+            verdict, sentence = "other", f"{first.rival.words} describes {curves}, without tension"
+    elif doubt:
+        verdict = "other"
+        sentence = (
+            f"no model describes {curves}: that of least AIC is {fits[0].rival.words}, and it "
+            f"fails a check ({', '.join(dict.fromkeys(c.code for c in failed if c.of_model))})"
+        )
+        if "adhesion" in {check.code for check in failed}:
+            sentence += "; the force dips before contact, which is adhesion"
+    elif margin >= MARGIN:
+        verdict = "needed"
+        sentence = (
+            f"tension is needed (Δχ² = {gain:.3g}, ΔAIC = {none.aic - with_tension.aic:.3g} "
+            f"against none; ΔAIC = {margin:.3g} against {first.rival.words}, the best without it)"
+        )
+        if with_tension.rival != TENSED:
+            beside = with_tension.rival.words.removeprefix("tension and ")
+            sentence += f"; beside it there is {beside}"
+    elif margin <= -MARGIN:
+        verdict = "other"
+        sentence = (
+            f"{first.rival.words} describes {curves} better than tension "
+            f"(ΔAIC = {-margin:.3g}), so this is not evidence of a tension"
+        )
+    else:
+        verdict = "undecided"
+        tied = [fit for fit in without if abs(fit.aic - with_tension.aic) < MARGIN]
+        names = [
+            f"{fit.rival.words} (Δχ² = {fit.chi_squared - with_tension.chi_squared:.2g})"
+            for fit in tied
+        ]
+        sentence = f"{curves} cannot tell {with_tension.rival.words} from {_listed(names)}"
+        advice = advised(
+            chi_squared,
+            (with_tension.rival, with_tension.parameters),
+            [(fit.rival, fit.parameters) for fit in tied],
+            noises,
+        )
+    return Comparison(tuple(fits), verdict, sentence, advice, tuple(failed))
+
+
+def _listed(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} or {names[-1]}"

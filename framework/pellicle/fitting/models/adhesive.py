@@ -1,0 +1,230 @@
+"""Indenter of revolution that adheres to a tensed solid, held by a cantilever."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from pellicle.arrays import Array, Mask
+from pellicle.components import HasContactRadius
+from pellicle.errors import ConfigError
+from pellicle.fitting.parameters import MODULUS, TENSION, Parameter, Values
+
+from .force_model import ClosedFormModel, ModelForce
+
+WORK_OF_ADHESION = Parameter(
+    "work_of_adhesion", "J/m^2", logarithmic=True, shared=True, plausible=(1e-7, 10.0)
+)
+"""w."""
+_SEARCH, _NODES = 160, 120
+"""Nodes of the search for the instability, and of the branch above it."""
+_DECADES = 6.0
+"""Range of depths without adhesion that is searched, below the largest."""
+_STEP = 1e-4
+"""Relative step of numerical derivatives."""
+_PENALTY = 30.0
+"""Stiffness by which the branch is continued below its end, over that of the whole curve."""
+_SIGNIFICANT = 6.0
+"""Standard errors that a jump of the force must exceed to decide which rows touch."""
+_WIDTH = 3
+"""Rows on either side of a jump whose means are compared."""
+_LENGTHS = (0.0, 0.1, 1.0)
+_WORKS = (3e-5, 3e-4, 3e-3, 3e-2, 0.2)
+"""s and w/E* of the initial guesses, over the measured range of positions."""
+
+
+class _Branch(NamedTuple):
+    """Base positions and forces of equilibria, and their derivatives, each of shape (n,)."""
+
+    position: Array
+    force: Array
+    by_parameter: tuple[tuple[Array, Array], ...]
+    """Derivatives of position and force by E*, τ₀ and w, without adhesion the same depth."""
+
+
+@dataclass(frozen=True, eq=False)
+class AdhesiveModel:
+    """Adhesive contact on its stable branch, which a cantilever ends where dF/dδ = −k.
+
+    With force F₁, depth δ₁, stiffness k₁ and radius a of the contact without adhesion the
+    equilibria are F = F₁ − k₁D, δ = δ₁ − D, D = √(4πa w / (dk₁/da)): superposition of a punch that
+    is retracted by D (Johnson, Kendall & Roberts 1971 without tension).  On approach the indenter
+    adheres as it touches, at δ = 0.  Where the curve itself jumps, that decides which rows touch:
+    contacts of the real world break early.
+    """
+
+    elastic: ClosedFormModel
+    moves_out: Mask
+    """Whether a row is taken while the indenter moves out, of shape (n,)."""
+    attached: Array
+    """1 for a row in contact, −1 for one that is not, 0 where the model decides, of shape (n,)."""
+    stiffness: float | None = None
+    """Spring constant of the cantilever [N/m]; None if it is infinite or not known."""
+    parameters: ClassVar[tuple[Parameter, ...]] = (MODULUS, TENSION, WORK_OF_ADHESION)
+    coarse: ClassVar[None] = None
+    on_base: ClassVar[bool] = True
+    accuracy: ClassVar[float] = 1e-5
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.elastic.indenter, HasContactRadius):
+            raise ConfigError(
+                "has no contact radius to adhere with; give a paraboloid, a sphere or a cone",
+                "indenter",
+            )
+
+    @property
+    def depth_limit(self) -> float:
+        """Depth [m] up to which the force curve holds."""
+        return self.elastic.depth_limit
+
+    @cached_property
+    def _radius(self) -> HasContactRadius:
+        assert isinstance(self.elastic.indenter, HasContactRadius)
+        return self.elastic.indenter
+
+    def force(self, depth: Array, values: Values) -> ModelForce:
+        """Return force and derivatives at base positions over the contact point [m]."""
+        branch = self._stable(values, float(depth.max()))
+        end = float(branch.position[0])
+        root = np.sqrt(np.maximum(branch.position - end, 0.0))
+        highest = np.maximum.accumulate(root)
+        keep = np.concatenate([[True], root[1:] > highest[:-1]])
+        columns = [branch.force, *(part for pair in branch.by_parameter for part in pair)]
+        spline = CubicSpline(root[keep], np.column_stack(columns)[keep])
+        beyond = depth - end
+        at = np.sqrt(np.clip(beyond, 0.0, float(root[-1]) ** 2))
+        force, *changes = spline(at).T
+        # Below the last equilibrium it goes on steeply, so that rows in contact pull it along.
+        steepest = _PENALTY * float(np.ptp(branch.force)) / float(np.ptp(branch.position))
+        least = 1e-9 * float(root[-1])
+        rate = np.where(beyond > 0, spline(at, 1)[:, 0] / (2 * np.maximum(at, least)), steepest)
+        rate = np.minimum(rate, 1e3 * steepest)
+        force = force + np.where(beyond > 0, 0.0, steepest * beyond)
+        touches = np.where(self.moves_out, beyond >= 0, depth > 0)
+        contact = np.where(self.attached == 0, touches, self.attached > 0)
+        by_parameter = {
+            p: np.where(contact, changes[2 * i + 1] - rate * changes[2 * i], 0.0)
+            for i, p in enumerate(self.parameters)
+        }
+        return ModelForce(np.where(contact, force, 0.0), np.where(contact, rate, 0.0), by_parameter)
+
+    def pull_off(self, values: Values) -> float:
+        """Return the least force [N] of the branch that a dead load can follow."""
+        free = AdhesiveModel(self.elastic, self.moves_out, self.attached, None)
+        return float(free._stable(values, 0.0).force.min())
+
+    def _stable(self, values: Values, deepest: float) -> _Branch:
+        """Return the stable branch up to a base position [m], from its end on."""
+        work, modulus = values[WORK_OF_ADHESION], values[MODULUS]
+        tiny = float(np.finfo(float).tiny) ** 0.25
+        scale = max(deepest, work / modulus, tiny)
+        top = np.log(scale)
+        for _ in range(200):
+            position, force = self._equilibria(np.array([np.exp(top)]), values)
+            if position[0] > deepest and force[0] > 0:
+                break
+            top += 0.3
+        else:
+            raise ConfigError(
+                f"of {work:.3g} J/m² pulls a solid of {modulus:.3g} Pa out without end",
+                "work_of_adhesion",
+            )
+        grid = np.linspace(top - _DECADES * np.log(10), top, _SEARCH)
+        position, _ = self._equilibria(np.exp(grid), values)
+        index = int(np.argmin(position))
+        start = float(grid[index])
+        if 0 < index < _SEARCH - 1:
+            width = float(grid[1] - grid[0])
+            for _ in range(3):
+                at = start + width * np.array([-1.0, 0.0, 1.0])
+                below, middle, above = self._equilibria(np.exp(at), values)[0].tolist()
+                bend = below - 2 * middle + above
+                if bend > 0:
+                    start += width * float(np.clip((below - above) / (2 * bend), -1.0, 1.0))
+                width /= 10
+        nodes = np.exp(start + (top - start) * np.linspace(0, 1, _NODES) ** 2)
+        position, force = self._equilibria(nodes, values)
+        changes = []
+        for parameter in (MODULUS, TENSION):
+            step = _STEP * values[parameter]
+            if parameter == TENSION:
+                step = max(step, 1e-5 * modulus * scale)
+            other = {**values, parameter: values[parameter] + step}
+            varied = self._equilibria(nodes, other)
+            changes.append(((varied[0] - position) / step, (varied[1] - force) / step))
+        elastic, retraction = self._superposed(nodes, values)
+        by_work = -retraction / (2 * work)
+        by_force = elastic.by_depth * modulus * by_work
+        softness = 0.0 if self.stiffness is None else 1 / self.stiffness
+        changes.append((by_work + softness * by_force, by_force))
+        return _Branch(position, force, tuple(changes))
+
+    def _superposed(self, depth: Array, values: Values) -> tuple[Any, Array]:
+        """Return the contact without adhesion over E*, and the retraction D [m]."""
+        modulus = values[MODULUS]
+        length = 2 * values[TENSION] / modulus
+        elastic = self.elastic.force_curve(depth, length)
+        contact = self._radius.contact_radius(depth, length)
+        energy = 4 * np.pi * values[WORK_OF_ADHESION] / modulus
+        return elastic, np.sqrt(energy * contact.radius / contact.stiffness_slope)
+
+    def _equilibria(self, depth: Array, values: Values) -> tuple[Array, Array]:
+        """Return base position [m] and force [N], of depths without adhesion [m]."""
+        elastic, retraction = self._superposed(depth, values)
+        force = values[MODULUS] * (elastic.force - elastic.by_depth * retraction)
+        bending = 0.0 if self.stiffness is None else force / self.stiffness
+        return depth - retraction + bending, force
+
+    def guesses(self, span: float) -> Iterator[Values]:
+        """Yield E* = 1 Pa with tensions and works of adhesion from little to much."""
+        for length in _LENGTHS:
+            for work in _WORKS:
+                yield {
+                    MODULUS: 1.0,
+                    TENSION: length * span / 2,
+                    WORK_OF_ADHESION: work * span,
+                }
+
+    def scaled(self, values: Values, factor: float) -> Values:
+        """Return all values times ``factor``."""
+        return {parameter: factor * value for parameter, value in values.items()}
+
+    def description(self) -> dict[str, Any]:
+        """Return the indenter and the adhesion as JSON data."""
+        return self.elastic.description() | {"adhesion": "equilibrium"}
+
+
+def attachment(base: Array, force: Array, moves_out: Mask) -> Array:
+    """Return which rows touch, as jumps of the force show: 1, −1 or 0 for unknown, of shape (n,).
+
+    Deeper by one row, the force falls where the indenter snaps in and where it has not snapped off.
+    """
+    states = np.zeros(force.size)
+    for rows in (np.flatnonzero(~moves_out), np.flatnonzero(moves_out)):
+        if rows.size < 4 * _WIDTH:
+            continue
+        deeper = rows[np.argsort(base[rows], kind="stable")]
+        jump = _jump(-force[deeper])
+        if jump is not None:
+            states[deeper[: jump + 1]] = -1
+            states[deeper[jump + 1 :]] = 1
+    return states
+
+
+def _jump(force: Array) -> int | None:
+    """Return the row, in order of position, after which the force jumps up; None if none does."""
+    bends = np.diff(force, 2)
+    noise = 1.4826 / np.sqrt(6) * float(np.median(np.abs(bends)))
+    sums = np.cumsum(np.concatenate([[0.0], force]))
+    means = (sums[_WIDTH:] - sums[:-_WIDTH]) / _WIDTH
+    rises = means[_WIDTH:] - means[:-_WIDTH]
+    index = int(np.argmax(rises))
+    if rises[index] <= _SIGNIFICANT * noise * np.sqrt(2 / _WIDTH) or rises[index] <= 0:
+        return None
+    near = np.arange(index, index + 2 * _WIDTH - 1)
+    return int(near[np.argmax(np.diff(force)[near])])

@@ -1,0 +1,73 @@
+"""Drag of the solid or of the liquid around it, in proportion to contact radius and speed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.fitting.parameters import Parameter, Values
+
+from .force_model import ModelForce, TensionModel
+from .history import History
+
+DRAG = Parameter("drag", "Pa s", minimum=0.0, shared=True)
+"""η of the force η a dδ/dt, with the contact radius a."""
+
+
+@dataclass(frozen=True)
+class DragModel:
+    """Elastic solid under tension with a drag η a dδ/dt in contact.
+
+    The contact radius a is that without tension, half the slope of the force over E*.
+    """
+
+    elastic: TensionModel
+    history: History
+    coarse: ClassVar[None] = None
+    on_base: ClassVar[bool] = False
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Modulus, tension and drag."""
+        return (*self.elastic.parameters, DRAG)
+
+    @property
+    def depth_limit(self) -> float:
+        """Depth [m] up to which the force curve holds."""
+        return self.elastic.depth_limit
+
+    @property
+    def accuracy(self) -> float:
+        """Error of the elastic force."""
+        return self.elastic.accuracy
+
+    def force(self, depth: Array, values: Values) -> ModelForce:
+        """Return force and derivatives at depths [m] of the rows, of shape (n,)."""
+        elastic = self.elastic.force(depth, values)
+        radius = self.elastic.force_curve(depth, 0.0).by_depth / 2
+        # The radius grows without limit at first touch; a difference over one row has a limit.
+        step = float(np.ptp(depth)) / depth.size
+        growth = (self.elastic.force_curve(depth + step, 0.0).by_depth / 2 - radius) / step
+        drag = values[DRAG] * self.history.velocity
+        return ModelForce(
+            elastic.force + drag * radius,
+            elastic.by_depth + drag * np.where(depth > 0, growth, 0.0),
+            {**elastic.by_parameter, DRAG: self.history.velocity * radius},
+        )
+
+    def guesses(self, span: float) -> Iterator[Values]:
+        """Yield guesses of the elastic solid without drag."""
+        for values in self.elastic.guesses(span):
+            yield {**values, DRAG: 0.0}
+
+    def scaled(self, values: Values, factor: float) -> Values:
+        """Return all values times ``factor``."""
+        return {parameter: factor * value for parameter, value in values.items()}
+
+    def description(self) -> dict[str, Any]:
+        """Return the indenter and the drag as JSON data."""
+        return self.elastic.description() | {"drag": "contact radius × speed"}

@@ -1,0 +1,193 @@
+"""Measurements that would tell explanations of a curve apart, forecast without noise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.errors import ConvergenceError, PellicleError
+from pellicle.fitting.models.force_model import ClosedFormModel
+from pellicle.fitting.parameters import CONTACT_POINT, Coordinates
+
+from .likelihood import ChiSquared, Likelihood
+from .pooled_likelihood import Pool
+from .rivals import Rival
+
+_ROWS = 150
+"""Rows of a pass in a forecast."""
+_NEEDED = 21.0
+"""Expected Δχ² from which a measurement tells two models apart in 95 % of cases: the difference of
+two misfits is normal about this with twice its root as deviation, and must exceed 6."""
+_USELESS = 1.0
+"""Expected Δχ² below which a measurement is not proposed."""
+_DEEPEST = 0.5
+"""Largest depth over radius that is proposed."""
+_MANY = 30
+"""Largest number of curves that is proposed."""
+
+Explanation = tuple[Rival, Coordinates]
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A curve that could be measured."""
+
+    words: str
+    base: Array
+    """Positions of the base over the contact point [m], in order of time."""
+    time: Array
+    segment: Any
+    radius: float = 1.0
+    """Radius of the indenter over that of the curve."""
+
+
+def advised(
+    chi_squared: ChiSquared,
+    tensed: Explanation,
+    others: Sequence[Explanation],
+    noises: Sequence[float],
+) -> str:
+    """Return which measurement would separate a model with tension from others, and how many.
+
+    The others are as good as the model with tension now.  Each model makes the measurement that it
+    predicts, without noise, and the rest are fitted to this and to the curve itself; the least χ²
+    among those that have to be told apart is what a measurement is worth.
+    """
+    members = chi_squared.members if isinstance(chi_squared, Pool) else (chi_squared,)
+    first = members[0]
+    assert isinstance(first, Likelihood)
+    part = _part(chi_squared, tensed[1])
+    likelihood = replace(first, noise=noises[0])
+    best: tuple[float, str] | None = None
+    for measurement in _measurements(likelihood, part[CONTACT_POINT]):
+        worth = np.inf
+        for rival, parameters in others:
+            known = _part(chi_squared, parameters)
+            for truth, guess in (
+                ((tensed[0], part), (rival, known)),
+                ((rival, known), (tensed[0], part)),
+            ):
+                worth = min(worth, _separation(likelihood, measurement, truth, guess))
+                if worth < _USELESS:
+                    break
+            if worth < _USELESS:
+                break
+        if worth >= _NEEDED:
+            return f"{measurement.words} would (expected Δχ² = {worth:.2g})"
+        if best is None or worth > best[0]:
+            best = worth, measurement.words
+    if best is None or best[0] < _NEEDED / _MANY:
+        return "no other speed, dwell, pass, depth or radius at this noise would; less noise might"
+    count = int(np.ceil(_NEEDED / best[0]))
+    return f"{count} curves of this kind would: {best[1]} (expected Δχ² = {best[0]:.2g} each)"
+
+
+def _part(chi_squared: ChiSquared, parameters: Coordinates) -> Coordinates:
+    """Return the coordinates of the first curve."""
+    if not isinstance(chi_squared, Pool):
+        return parameters
+    return {replace(p, curve=0): v for p, v in parameters.items() if p.curve == 0}
+
+
+def _measurements(likelihood: Likelihood, point: float) -> Iterator[Measurement]:
+    """Yield measurements, the easiest first."""
+    base = likelihood.base
+    down = np.linspace(base.min(), base.max(), _ROWS) - point
+    times = likelihood.history.time
+    duration = float(np.ptp(times[likelihood.first_pass]))
+    speed = float(np.ptp(base)) / duration
+    known = likelihood.time is not None
+    forth = np.linspace(0, duration, _ROWS)
+    both, there = np.concatenate([down, down[::-1]]), np.concatenate([forth, duration + forth])
+    if likelihood.segment == "approach":
+        yield Measurement("the retraction", both, there, "both")
+    held = np.concatenate([down, np.full(_ROWS, down[-1])])
+    yield Measurement(
+        f"a dwell of {_duration(duration, known)} at the largest depth", held, there, "both"
+    )
+    for factor in (0.1, 10.0):
+        words = f"of {_speed(factor * speed)}" if known else f"{factor:g} times as fast"
+        yield Measurement(f"a second speed {words}", down, forth / factor, "approach")
+    model: Any = likelihood.force_model
+    indenter = model.indenter if isinstance(model, ClosedFormModel) else None
+    radius = getattr(indenter, "radius", None)
+    deepest = float(down[-1])
+    for factor in (1 / 3, 3.0):
+        if deepest > 0 and (radius is None or factor * deepest <= _DEEPEST * radius):
+            words = "shallower" if factor < 1 else "deeper"
+            yield Measurement(
+                f"a {words} curve, to {factor * deepest * 1e6:.2g} µm",
+                factor * down,
+                factor * forth,
+                "approach",
+            )
+    for factor in (1 / 3, 3.0):
+        if radius is not None and deepest <= _DEEPEST * factor * radius:
+            yield Measurement(
+                f"a second radius, {factor * radius * 1e6:.2g} µm", down, forth, "approach", factor
+            )
+
+
+def _speed(value: float) -> str:
+    return f"{value * 1e6:.2g} µm/s"
+
+
+def _duration(value: float, known: bool) -> str:
+    return f"{value:.2g} s" if known else "the duration of the approach"
+
+
+def _separation(
+    likelihood: Likelihood, measurement: Measurement, truth: Explanation, guess: Explanation
+) -> float:
+    """Return the least χ² of a model on what another predicts, now and by a measurement."""
+    rival, parameters = truth
+    curves = [
+        _predicted(rival, likelihood.thinned(_ROWS), parameters),
+        _predicted(rival, _planned(likelihood, measurement), parameters | {CONTACT_POINT: 0.0}),
+    ]
+    other, start = guess
+    pool = Pool.of([_member(other, curve) for curve in curves])
+    starts = [other.start(member, start) for member in pool.members]
+    starts[1][CONTACT_POINT] = 0.0
+    worth = np.inf
+    with suppress(ConvergenceError, PellicleError):
+        worth = pool.minimise(pool.joined(starts), rough=True).chi_squared
+    return worth
+
+
+def _member(rival: Rival, curve: Likelihood) -> Likelihood:
+    member = rival.of(curve)
+    assert isinstance(member, Likelihood)
+    return member
+
+
+def _planned(likelihood: Likelihood, measurement: Measurement) -> Likelihood:
+    """Return a measurement that has not been made yet, its forces 0."""
+    model = likelihood.force_model
+    if measurement.radius != 1 and isinstance(model, ClosedFormModel):
+        indenter: Any = model.indenter
+        radius = measurement.radius * indenter.radius
+        model = ClosedFormModel(indenter.model_copy(update={"radius": radius}))
+    return replace(
+        likelihood,
+        position=measurement.base,
+        force=np.zeros_like(measurement.base),
+        noise=likelihood.noise * np.sqrt(_ROWS / likelihood.force.size),
+        force_model=model,
+        time=measurement.time,
+        segment=measurement.segment,
+    )
+
+
+def _predicted(rival: Rival, curve: Likelihood, parameters: Coordinates) -> Likelihood:
+    """Return a curve with the forces of a model at its positions of the base."""
+    base = curve.base
+    still = replace(curve, position=base, force=np.zeros_like(base))
+    member = _member(rival, still)
+    position, force = member.fitted(rival.start(member, parameters))
+    return replace(curve, position=position, force=force)

@@ -1,0 +1,281 @@
+"""What a curve can be mistaken for: other force models, and their minima of χ²."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pellicle.components import HasContactRadius, HasForceCurve, HasLayerForceCurve, Indenter
+from pellicle.errors import ConvergenceError, PellicleError
+from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
+from pellicle.fitting.models.drag import DRAG, DragModel
+from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel, TensionModel
+from pellicle.fitting.models.layer import FreeLayerModel
+from pellicle.fitting.models.relaxing import (
+    EXPONENT,
+    RELAXATION_TIME,
+    SHARE,
+    PowerLawModel,
+    RelaxingModel,
+    StandardLinearModel,
+)
+from pellicle.fitting.parameters import (
+    CONTACT_POINT,
+    OFFSET,
+    SLOPE,
+    TENSION,
+    THICKNESS,
+    Coordinates,
+    Parameter,
+)
+from pellicle.plugins import registry
+
+from .initial_guess import initial_guesses
+from .likelihood import ChiSquared, Likelihood, Minimum, least
+from .pooled_likelihood import Pool
+
+_THIN = 200
+"""Rows of a curve that is scanned for initial guesses."""
+_INCOMPRESSIBLE = 0.5
+"""Poisson's ratio of a layer, whose effect is that of another thickness to first order."""
+_THICKNESSES = (2.0, 10.0)
+"""Thicknesses from which a search starts, over the range of positions."""
+_SHALLOW = 0.1
+"""Depth over radius up to which sphere and paraboloid are one shape."""
+_CONE = np.pi / 4
+"""Half angle of a cone in place of a bead, which its modulus cannot be told from."""
+_SHARES = (0.0, 0.1)
+"""Values of a parameter that is not logarithmic from which a search starts, over its scale."""
+
+
+@dataclass(frozen=True)
+class Rival:
+    """An explanation of a curve: a force model, and the parameters that it fits."""
+
+    code: str
+    """Name in tables, such as ``tension+power_law``."""
+    words: str
+    """Name in sentences."""
+    has_tension: bool
+    build: Callable[[Likelihood], ForceModel]
+    """Return the force model for the rows of a curve."""
+    own: tuple[Parameter, ...] = ()
+    """Parameters beside modulus, tension, contact point and baseline."""
+    baseline: tuple[Parameter, ...] = ()
+    """Parameters of the baseline that are fitted even if the fit itself does not."""
+
+    of_shape: bool = False
+    """Whether it is another shape, for which a tension can make up in any curve."""
+
+    @property
+    def is_single(self) -> bool:
+        """Whether it is one effect alone."""
+        return "+" not in self.code
+
+    def of(self, chi_squared: ChiSquared) -> ChiSquared:
+        """Return χ² with this model in place of an elastic solid under tension."""
+        if isinstance(chi_squared, Pool):
+            return Pool.of([self._of(member) for member in chi_squared.members])
+        assert isinstance(chi_squared, Likelihood)
+        return self._of(chi_squared)
+
+    def _of(self, likelihood: Likelihood) -> Likelihood:
+        free = [p for p in likelihood.free if p != TENSION or self.has_tension]
+        free += [p for p in (*self.own, *self.baseline) if p not in free]
+        return replace(likelihood, force_model=self.build(likelihood), free=tuple(free))
+
+    def start(self, chi_squared: ChiSquared, known: Coordinates) -> Coordinates:
+        """Return coordinates for all parameters of a χ² of this model."""
+        defaults = {WORK_OF_ADHESION: -20.0, RELAXATION_TIME: 0.0, THICKNESS: -10.0}
+        missing = {p: defaults.get(p, 0.0) for p in chi_squared.parameters if p not in known}
+        start = {p: known.get(p, missing.get(p, 0.0)) for p in chi_squared.parameters}
+        return start if self.has_tension or TENSION not in start else start | {TENSION: 0.0}
+
+    def minimum(self, chi_squared: ChiSquared, starts: Sequence[Coordinates]) -> Minimum | None:
+        """Return the least minimum of χ² of this model near several starts; None if none is found.
+
+        ``starts`` may lack the parameters of its own, of which it has guesses.
+        """
+        mine, minima = self.of(chi_squared), []
+        for start in starts:
+            whole = self.start(mine, start)
+            known = [p for p in self.own if p in start]
+            guesses = [{}] if len(known) == len(self.own) else self._guesses(mine, whole)
+            for guess in guesses:
+                with suppress(ConvergenceError, PellicleError):
+                    minima.append(mine.minimise(whole | guess, rough=True))
+        return least(minima) if minima else None
+
+    def _guesses(self, chi_squared: ChiSquared, start: Coordinates) -> list[Coordinates]:
+        members = chi_squared.curves(start)
+        model = members[0][0].force_model
+        if isinstance(model, RelaxingModel):
+            own = [g for m, _ in (members[0], members[-1]) for g in _own_guesses(m.force_model)]
+            return [
+                {p: p.coordinate(v) for p, v in guess.items()}
+                for number, guess in enumerate(own)
+                if guess not in own[:number]
+            ]
+        if isinstance(model, FreeLayerModel):
+            span = chi_squared.ranges[CONTACT_POINT].scale
+            return [{THICKNESS: float(np.log(share * span))} for share in _THICKNESSES]
+        if isinstance(model, AdhesiveModel):
+            return list(_adhesive_guesses(self, chi_squared, start))
+        scales = chi_squared.ranges
+        return [{p: share * scales[p].scale for p in self.own} for share in _SHARES]
+
+
+def _own_guesses(model: ForceModel) -> list[dict[Parameter, float]]:
+    return model.own_guesses() if isinstance(model, RelaxingModel) else []
+
+
+def _adhesive_guesses(
+    rival: Rival, chi_squared: ChiSquared, start: Coordinates
+) -> Iterator[Coordinates]:
+    """Yield the best of a scan for each curve, the shared parameters from the first."""
+    parts = []
+    for member, part in chi_squared.curves(start):
+        thin = rival.of(replace(member.thinned(_THIN), force_model=_elastic(member)))
+        assert isinstance(thin, Likelihood)
+        span = max(member.deepest(part), 0.05 * float(np.ptp(member.position)))
+        points = part[CONTACT_POINT] + span * np.linspace(-0.3, 0.6, 13)
+        points = points[points < member.position.max()]
+        best = initial_guesses(thin, part, points.tolist())
+        if not best:
+            return
+        parts.append(best)
+    for rank in range(min(map(len, parts))):
+        chosen = [best[rank] for best in parts]
+        yield chi_squared.joined(chosen) if isinstance(chi_squared, Pool) else chosen[0]
+
+
+def _same(likelihood: Likelihood) -> ForceModel:
+    return likelihood.force_model
+
+
+def _elastic(likelihood: Likelihood) -> TensionModel:
+    """Return the elastic solid under tension in a force model."""
+    model = likelihood.force_model
+    elastic = getattr(model, "elastic", model)
+    assert isinstance(elastic, TensionModel)
+    return elastic
+
+
+def _adhesive(likelihood: Likelihood) -> ForceModel:
+    elastic = _elastic(likelihood)
+    assert isinstance(elastic, ClosedFormModel)
+    attached = attachment(likelihood.base, likelihood.force, likelihood.moves_out)
+    return AdhesiveModel(elastic, likelihood.moves_out, attached, likelihood.stiffness)
+
+
+def _layer(likelihood: Likelihood) -> ForceModel:
+    elastic = _elastic(likelihood)
+    assert isinstance(elastic, ClosedFormModel)
+    assert isinstance(elastic.indenter, HasLayerForceCurve)
+    return FreeLayerModel(elastic.indenter, _INCOMPRESSIBLE)
+
+
+def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
+    """Yield what can bend the curves beside a tension."""
+    if any(p not in member.free for member in members for p in (OFFSET, SLOPE)):
+        yield Rival("baseline_slope", "a sloping baseline", False, _same, baseline=(OFFSET, SLOPE))
+    if not all(isinstance(member.force_model, TensionModel) for member in members):
+        return
+    if all(member.segment != "retract" for member in members):
+        yield Rival(
+            "power_law",
+            "power-law relaxation",
+            False,
+            lambda member: PowerLawModel(_elastic(member), member.history),
+            (EXPONENT,),
+        )
+        yield Rival(
+            "standard_linear",
+            "standard linear relaxation",
+            False,
+            lambda member: StandardLinearModel(_elastic(member), member.history),
+            (SHARE, RELAXATION_TIME),
+        )
+        yield Rival(
+            "drag",
+            "drag",
+            False,
+            lambda member: DragModel(_elastic(member), member.history),
+            (DRAG,),
+        )
+    elastic = [_elastic(member) for member in members]
+    if all(
+        isinstance(model, ClosedFormModel) and isinstance(model.indenter, HasContactRadius)
+        for model in elastic
+    ):
+        yield Rival("adhesion", "adhesion", False, _adhesive, (WORK_OF_ADHESION,))
+    if all(
+        isinstance(model, ClosedFormModel) and isinstance(model.indenter, HasLayerForceCurve)
+        for model in elastic
+    ):
+        yield Rival("thickness", "a thin layer", False, _layer, (THICKNESS,))
+
+
+def _shapes(members: Sequence[Likelihood], deepest: float) -> Iterator[Rival]:
+    """Yield other shapes of the same size, without tension, for curves down to a depth [m]."""
+    indenters = [getattr(member.force_model, "indenter", None) for member in members]
+    if not all(isinstance(indenter, Indenter) for indenter in indenters):
+        return
+    types = {getattr(indenter, "type", "") for indenter in indenters}
+    for name in ("paraboloid", "sphere", "cone"):
+        if types == {name} or types == {"flat_punch"}:
+            continue
+        # Shallow, they differ by less than what is known of the shape of a bead.
+        radii = [getattr(indenter, "radius", np.inf) for indenter in indenters]
+        if name != "cone" and deepest <= _SHALLOW * min(radii):
+            continue
+        if all(_shape(name, indenter) is not None for indenter in indenters):
+
+            def build(member: Likelihood, name: str = name) -> ForceModel:
+                shape = _shape(name, _elastic(member).indenter)  # type: ignore[attr-defined]
+                assert shape is not None
+                return ClosedFormModel(shape)
+
+            yield Rival(name, f"a {name}", False, build, of_shape=True)
+
+
+def _shape(name: str, indenter: object) -> HasForceCurve | None:
+    """Return another shape with the size of an indenter; None if it has none."""
+    radius = getattr(indenter, "radius", None)
+    fields = {"half_angle": _CONE} if name == "cone" else {"radius": radius}
+    if None in fields.values():
+        return None
+    try:
+        shape = registry().make(Indenter, {"type": name, **fields})
+    except PellicleError:
+        return None
+    return shape if isinstance(shape, HasForceCurve) else None
+
+
+NONE = Rival("none", "no tension", False, _same)
+TENSED = Rival("tension", "tension", True, _same)
+
+
+def rivals(chi_squared: ChiSquared, parameters: Coordinates) -> list[Rival]:
+    """Return the explanations of the curves without tension, then those with it.
+
+    ``parameters`` are the best with a tension.
+    """
+    members = chi_squared.members if isinstance(chi_squared, Pool) else (chi_squared,)
+    likelihoods = [member for member in members if isinstance(member, Likelihood)]
+    depths = [member.deepest(part) for member, part in chi_squared.curves(parameters)]
+    effects = [*_single_effects(likelihoods), *_shapes(likelihoods, max(depths))]
+    pairs = [
+        replace(
+            effect,
+            code=f"tension+{effect.code}",
+            words=f"tension and {effect.words}",
+            has_tension=True,
+        )
+        for effect in effects
+        if not effect.of_shape
+    ]
+    return [NONE, *effects, TENSED, *pairs]
