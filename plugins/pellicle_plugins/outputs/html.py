@@ -38,12 +38,12 @@ from pellicle.report.page import (
 from pellicle.report.page import Field as MapField
 from pellicle.report.plotting import (
     DIVERGING,
-    STUDY_FIGURES,
     TIME,
     default_step,
     drawings,
     draws_contact,
     study_curves,
+    study_figures,
     svg,
     without_round_off,
 )
@@ -472,10 +472,9 @@ def _pictures_of_study(table: xr.Dataset) -> list[Picture]:
     def fill(variable: str, figure: Figure) -> None:
         study_curves(table, figure.add_subplot(), variable)
 
-    names = STUDY_FIGURES if "force" in table else ()
     return [
         _picture(partial(fill, name), f"{wording(table[name]).words.capitalize()} over the study.")
-        for name in names
+        for name in study_figures(table)
     ]
 
 
