@@ -201,8 +201,18 @@ class Html(Output):
         *first, last = [f"{field.name}" for field in mapped.values()]
         names = f"{', '.join(first)} and {last}".capitalize()
         words = wording(data[shown_variable(data, prescribed)]).words
-        caption = f"{names} at prescribed {words}, in {_some(len(chosen), steps, 'load step')}."
-        maps = Maps(caption, "load step", tuple(mapped.values()), frames, begin=max(begin, 0))
+        # Over the range of the last step the first ones would have one colour.
+        colours = ", each in colours over its own range" if len(chosen) > 1 else ""
+        shown_steps = _some(len(chosen), steps, "load step")
+        caption = f"{names} at prescribed {words}, in {shown_steps}{colours}."
+        maps = Maps(
+            caption,
+            "load step",
+            tuple(mapped.values()),
+            frames,
+            begin=max(begin, 0),
+            shared=False,
+        )
         return maps, chosen
 
     def _frames_of_runs(

@@ -250,7 +250,10 @@ def test_what_was_prescribed_is_named(tmp_path: Path) -> None:
     """The list of steps, the caption of the maps and the answer name a prescribed force."""
     page = page_of(tmp_path, loading={"force": ["1 uN", "2 uN"]})
     assert [frame["label"] for frame in page.maps["frames"]] == ["1: force 1 µN", "2: force 2 µN"]
-    assert "Contact pressure and gap at prescribed force, in each load step." in page.words
+    caption = (
+        "Contact pressure and gap at prescribed force, in each load step, each in colours over "
+    )
+    assert caption + "its own range." in page.words
     assert re.match(r"At force 2 µN: depth \S+ µm, contact radius", page.maps["frames"][1]["note"])
 
 
@@ -404,7 +407,8 @@ def test_what_is_left_out_or_coarser_is_said(tmp_path: Path) -> None:
     outputs = [{"type": "html", "points": 8, "frames": 2}]
     page = page_of(tmp_path, loading=loading, outputs=outputs)
     assert [frame["label"][0] for frame in page.maps["frames"]] == ["3", "5"]
-    assert "in 2 of 5 load steps. Each pixel is the mean over 3 × 3 cells." in page.words
+    assert "in 2 of 5 load steps, each in colours over its own range." in page.words
+    assert "Each pixel is the mean over 3 × 3 cells." in page.words
     assert len(page.table("Results of each")) == 5
 
 
