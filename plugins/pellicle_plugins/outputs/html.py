@@ -100,7 +100,7 @@ _STICKING = {
 }
 """The variables that are mapped where there is an interaction."""
 _CURVES = {
-    "profile": "Pressure and gap along x through the centre, in the step that is mapped first.",
+    "profile": "Pressure and gap along x through the centre, at {step}.",
     "force_depth": "Force against depth over the load steps.",
     "area_force": "Contact area, of the cells and corrected, against force over the load steps.",
     TIME: "Force, depth and contact area over time.",
@@ -470,8 +470,14 @@ def _pictures_of(result: Result, chosen: list[int]) -> list[Picture]:
     """Return the curves of a run, with marks at the ``chosen`` steps, which are mapped."""
     fills = {name: fill for name, fill in drawings(result).items() if name in _CURVES}
     several = result.dataset.sizes["step"] > 1
+    shown = default_step(result.dataset) % result.dataset.sizes["step"]
+    step = label_of_step(result.dataset, shown, prescribed_of(result.configuration))
     return [
-        _picture(fill, _CURVES[name], partial(_marks, data=result.dataset, chosen=chosen))
+        _picture(
+            fill,
+            _CURVES[name].format(step=step),
+            partial(_marks, data=result.dataset, chosen=chosen),
+        )
         for name, fill in fills.items()
         if several or name == "profile"
     ]

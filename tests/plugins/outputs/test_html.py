@@ -254,6 +254,7 @@ def test_what_was_prescribed_is_named(tmp_path: Path) -> None:
     page = page_of(tmp_path, loading={"force": ["1 uN", "2 uN"]})
     assert [frame["label"] for frame in page.maps["frames"]] == ["1: force 1 µN", "2: force 2 µN"]
     assert "Contact pressure and gap at prescribed force, in each load step." in page.words
+    assert "along x through the centre, at force 2 µN." in page.words
     assert re.match(r"At force 2 µN: depth \S+ µm, contact radius", page.maps["frames"][1]["note"])
 
 
@@ -340,7 +341,7 @@ def test_methods(ran: tuple[Path, xr.Dataset], studied: tuple[Path, xr.Dataset])
     ):
         assert part in text
     (text,) = (text for text in Page(studied[0]).texts["p"] if text.startswith("Normal contact"))
-    assert "indenter: paraboloid;" in text or "indenter: paraboloid." in text
+    assert "indenter: paraboloid. Varied: radius. Solver" in text
 
 
 def test_study(studied: tuple[Path, xr.Dataset]) -> None:
