@@ -25,6 +25,8 @@ from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.analytic.cone import cone
 from pellicle_plugins.analytic.hertz import sphere
+from pellicle_plugins.analytic.layer_equation import HalfSpace as HalfSpaceEquation
+from pellicle_plugins.analytic.layer_equation import half_space, moments
 from pellicle_plugins.analytic.tensed_punch import punch
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
@@ -115,6 +117,29 @@ def layered_compliance() -> Iterator[Row]:
             q = np.array([0.05, 0.2, 0.5, 1.0, 2.0, 5.0])
             for wave, value in zip(q, kernel.compliance(q) * q / 2, strict=True):
                 yield ratio, nu, float(wave), float(value), 1e-9
+
+
+def bonded_layer() -> Iterator[Row]:
+    """Yield contacts of a paraboloid and a flat punch on a layer on a rigid base."""
+    for ratio in (0.0, 0.1, 1.0):
+        coarse, fine = (
+            (half_space("smooth", ratio, level), half_space("punch", ratio, level))
+            for level in (0, 1)
+        )
+        for nu in (0.0, 0.3, 0.5):
+            for confinement in (0.2, 0.5, 1.0, 2.0, 5.0):
+                values = _on_layer(*fine, confinement, nu)
+                change = np.abs(_on_layer(*coarse, confinement, nu) / values - 1)
+                yield ratio, nu, confinement, *map(float, values), max(float(change.max()), 1e-9)
+
+
+def _on_layer(
+    smooth: HalfSpaceEquation, flat: HalfSpaceEquation, confinement: float, nu: float
+) -> Array:
+    """Return force and depth of a paraboloid over Hertz, and the stiffness of a punch over 2."""
+    bowl = moments(smooth, 2 * smooth.nodes.t[:, None], confinement, nu)
+    end = moments(flat, np.ones((flat.nodes.t.size, 1)), confinement, nu)
+    return np.array([bowl.force[0] * 3 / 4, bowl.depth[0], end.force[0] / 2])
 
 
 def adhesive_paraboloid() -> Iterator[Row]:
@@ -252,6 +277,23 @@ TABLES = (
             _ERROR,
         ),
         layered_compliance,
+    ),
+    Table(
+        "bonded_layer",
+        f"Rigid paraboloid of radius R and flat punch on a layer of thickness h, glued to a rigid "
+        f"base, under tension; {_E}",
+        "Integral equation of tensed_paraboloid with a smooth part more for the layer (Hayes, "
+        "Keer, Herrmann & Mockros 1972), by collocation on graded panels, two meshes compared",
+        (
+            _S,
+            ("nu", "Poisson's ratio of the layer"),
+            ("a_over_h", "contact radius a over h"),
+            ("F_over_Hertz", "force on the paraboloid over 4 E* a^3/(3 R)"),
+            ("depth_over_Hertz", "its depth over a^2/R"),
+            ("punch_over_half_space", "force on a flat punch of radius a over 2 E* a times depth"),
+            _ERROR,
+        ),
+        bonded_layer,
     ),
     Table(
         "adhesive_paraboloid",

@@ -495,7 +495,7 @@ def test_figures(tmp_path: Path) -> None:
     carry_out(study({TENSION: [0.0, 1.0], "indenter.radius": [1e-3, 2e-3]}, outputs=None), tmp_path)
     assert {path.name for path in tmp_path.glob("*.png")} == {
         "study-force.png",
-        "study-contact_fraction.png",
+        "study-contact_area.png",
     }
 
 

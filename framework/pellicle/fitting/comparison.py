@@ -133,7 +133,7 @@ def compare(
     report
         Called with the name of each explanation.
     """
-    every = rivals(chi_squared)
+    every = rivals(chi_squared, best.parameters)
     minima: dict[str, tuple[Rival, Minimum]] = {
         NONE.code: (NONE, without),
         TENSED.code: (TENSED, best),
@@ -276,7 +276,17 @@ def _judge(
     noises: Sequence[float],
 ) -> Comparison:
     """Return the verdict on ranked explanations."""
-    with_tension = next(fit for fit in fits if fit.rival.has_tension)
+    alone = {fit.rival.code: fit.aic for fit in fits if not fit.rival.has_tension}
+    # A tension beside an effect that does as well alone is no explanation of its own.
+    with_tension = next(
+        fit
+        for fit in fits
+        if fit.rival == TENSED
+        or (
+            fit.rival.has_tension
+            and alone.get(fit.rival.code.partition("+")[2], np.inf) - fit.aic >= MARGIN
+        )
+    )
     without = [fit for fit in fits if not fit.rival.has_tension]
     none = next(fit for fit in fits if fit.rival == NONE)
     first = without[0]

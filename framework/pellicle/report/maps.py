@@ -52,6 +52,8 @@ class Frame:
     """Number of cells in a pixel along x and y."""
     shape: tuple[int, int]
     packed: tuple[_Packed, ...]
+    note: str = ""
+    """A sentence shown with the maps."""
 
 
 def side(points: int, maps: int) -> int:
@@ -137,6 +139,7 @@ class Maps:
             "frames": [
                 {
                     "label": frame.label,
+                    "note": frame.note,
                     "shape": frame.shape,
                     "size": [edge * length for edge in frame.grid.size],
                     "pixel": [

@@ -51,6 +51,7 @@ function makeMaps(figure, data) {
   const line = figure.querySelector("input[type=range]");
   const alone = figure.querySelector("input[type=checkbox]");
   const readout = figure.querySelector("output");
+  const note = figure.querySelector(".note");
   const canvases = [...figure.querySelectorAll("canvas")];
   const colours = data.fields.map((field) => bytesOf(field.colours));
   const pictures = canvases.map(() => document.createElement("canvas"));
@@ -85,6 +86,9 @@ function makeMaps(figure, data) {
     if (moved) view = whole();
     select.value = index;
     if (line) line.value = index;
+    if (note) note.textContent = wanted.note;
+    if (figure.id === "maps")
+      for (const mark of document.querySelectorAll("[data-mark]")) mark.hidden = Number(mark.dataset.mark) !== index;
     paint();
   }
 

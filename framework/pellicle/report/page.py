@@ -44,6 +44,8 @@ class Text:
 
     kind: ClassVar[str] = "text"
     text: str
+    lead: bool = False
+    """Whether it stands out as the answer."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,9 @@ class Picture:
     caption: str
     description: str
     """Text for readers who cannot see the drawing."""
+    marks: Sequence[Sequence[tuple[float, float]]] = ()
+    """Points for each frame of the page's first maps, as shares of width and height from top left;
+    those of the frame that is shown are marked."""
 
     @property
     def source(self) -> str:

@@ -17,10 +17,23 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import Solver
 from pellicle.files import atomic_write, for_document, storage_errors
 from pellicle.numerics.problem import height_scale
+from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
 from pellicle.results.variables import CONTACT_AREA, wording
 from pellicle.units import DIGITS, axis_unit, readable
+
+from .style import (
+    MARKERS,
+    NO_CONTACT,
+    FigureStyle,
+    add_colour_bar,
+    clear_legends,
+    colour,
+    is_log_spaced,
+    is_ordered,
+    label_log_axes,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -90,15 +103,13 @@ def pressure_map(result: Result, axes: Axes, step: int | None = None) -> None:
         # The stage "rgba" converts every cell to a colour before it resamples.
         interpolation_stage="data",
     )
-    axes.set_facecolor("0.93")
+    axes.set_facecolor(NO_CONTACT)
     if tensile:
         outline_contact(data, axes, length)
     axes.set(xlabel=f"x [{length_name}]", ylabel=f"y [{length_name}]")
     axes.set_title(_caption(result, step))
     label = "pressure, negative where it pulls" if tensile else "contact pressure"
-    figure = axes.get_figure()
-    if figure is not None:
-        figure.colorbar(image, ax=axes, label=f"{label} [{name}]", shrink=0.85)
+    add_colour_bar(axes, image, f"{label} [{name}]")
 
 
 def diverging(values: Array) -> dict[str, Any]:
@@ -153,12 +164,16 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     # A gap of 0 everywhere has no scale of its own, and is drawn on that of the depth.
     gap_scale, gap_name = axis_unit(gap[near] if opens else data["depth"].values, "m")
     x = line["x"].values * length
-    axes.plot(x, line["pressure"].values * scale, color="C0")
+    pressure, contact = line["pressure"].values * scale, line["contact"].values
+    edge = np.zeros_like(contact) if pulls else edge_cells(contact)
+    axes.plot(*smooth(x, np.where(edge, np.nan, pressure)), color="C0")
+    if edge.any():
+        axes.plot(x[edge], pressure[edge], ".", color="C0", markersize=3, label=EDGE_CELLS)
     axes.set(xlabel=f"x [{length_name}] at y = {line['y'].item() * length:.3g} {length_name}")
     axes.set_ylabel(f"{'' if pulls else 'contact '}pressure [{name}]", color="C0")
     axes.set_title(_caption(result, step))
     gap_axes = axes.twinx()
-    gap_axes.plot(x, np.where(near, gap * gap_scale, np.nan), color="C1", linestyle="--")
+    gap_axes.plot(*smooth(x, np.where(near, gap * gap_scale, np.nan)), color="C1", linestyle="--")
     gap_axes.set_ylabel(f"gap [{gap_name}]", color="C1")
     if pulls:
         axes.axhline(0.0, color="C0", linewidth=0.6)
@@ -167,6 +182,54 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
         side.set_ylim(bottom=0.0)
     if not opens and float(data["depth"]) > 0:
         gap_axes.set_ylim(top=float(data["depth"]) * gap_scale)
+    if edge.any():
+        axes.legend(fontsize="small")
+
+
+EDGE_CELLS = "cells at the edge of contact"
+"""Name of the cells whose pressure is that of the grid."""
+_EDGE = 3
+_RESOLVED = 16
+_SMOOTH = 300
+
+
+def edge_cells(contact: Mask) -> Mask:
+    """Return which cells along a line through one contact are its three outermost at each end.
+
+    Their pressure depends on where the edge of contact passes through them, most where tension
+    makes it jump there. Lines through several contacts or fewer than 16 cells have none.
+    """
+    edge = np.zeros(contact.shape, dtype=bool)
+    (cells,) = np.nonzero(contact)
+    if cells.size < _RESOLVED or cells[-1] - cells[0] + 1 != cells.size:
+        return edge
+    if cells[0] > 0:
+        edge[cells[:_EDGE]] = True
+    if cells[-1] < contact.size - 1:
+        edge[cells[-_EDGE:]] = True
+    return edge
+
+
+def smooth(x: Array, y: Array) -> tuple[Array, Array]:
+    """Return a curve through points without their corners, with gaps where ``y`` is not finite.
+
+    Cubic pieces (Fritsch & Butland 1984) do not overshoot. Curves of 300 points stay as they are.
+    """
+    if x.size >= _SMOOTH or np.any(np.diff(x) <= 0):
+        return x, y
+    from scipy.interpolate import PchipInterpolator
+
+    pieces_x, pieces_y = [], []
+    finite = np.flatnonzero(np.isfinite(y))
+    for piece in np.split(finite, np.flatnonzero(np.diff(finite) > 1) + 1):
+        if piece.size > 2:
+            fine = np.interp(np.arange(0, piece.size - 0.95, 0.1), np.arange(piece.size), x[piece])
+            pieces_x += [fine, fine[-1:]]
+            pieces_y += [PchipInterpolator(x[piece], y[piece])(fine), np.full(1, np.nan)]
+        else:
+            pieces_x += [x[piece], x[piece][-1:]]
+            pieces_y += [y[piece], np.full(piece[-1:].size, np.nan)]
+    return np.concatenate(pieces_x), np.concatenate(pieces_y)
 
 
 def _shade(axes: Axes, x: Array, where: Mask) -> None:
@@ -212,10 +275,10 @@ def over_time(result: Result, figure: Figure) -> None:
     shown_t = wording(data["time"])
     good = data["converged"].values.astype(bool)
     t = data["time"].values * shown_t.scale.factor
-    for axes, (name, colour) in zip(panels, _OVER_TIME.items(), strict=True):
+    for axes, (name, hue) in zip(panels, _OVER_TIME.items(), strict=True):
         shown = wording(data[name])
         y = data[name].values * shown.scale.factor
-        axes.plot(t, y, color=colour, mfc="white", **_marked(t.size))
+        axes.plot(t, y, color=hue, mfc="white", **_marked(t.size))
         axes.plot(t[~good], y[~good], "x", color="red", markersize=9)
         axes.set_ylabel(shown.head)
         axes.axhline(0.0, color="0.4", linewidth=0.6)
@@ -225,10 +288,10 @@ def over_time(result: Result, figure: Figure) -> None:
     figure.align_ylabels(panels)
 
 
-def _marked(count: int) -> dict[str, Any]:
+def _marked(count: int, marker: str = "o") -> dict[str, Any]:
     """Return keywords of ``Axes.plot`` for a curve over ``count`` steps: markers on few of them."""
     few = count <= _MOST_MARKED
-    return {"linestyle": "-", "marker": "o" if few else "", "markersize": 4}
+    return {"linestyle": "-", "marker": marker if few else "", "markersize": 4}
 
 
 _OVER_TIME = {"force": "C0", "depth": "C1", "contact_area": "C2"}
@@ -241,12 +304,16 @@ FIGURES: dict[str, Callable[[Result, Axes], None]] = {
     "area_force": area_force,
 }
 """Figures of a run on one pair of axes, by the suffix of the file name."""
-STUDY_FIGURES = "force", "contact_fraction"
-"""Variables drawn for a study, which are the suffixes of the file names too."""
+STUDY_FIGURES = "force", "contact_area", "contact_fraction"
+"""Variables that may be drawn for a study, which are the suffixes of the file names too."""
 
 
 def save_figures(
-    result: Result, directory: Path, name: str, formats: Iterable[str]
+    result: Result,
+    directory: Path,
+    name: str,
+    formats: Iterable[str],
+    style: FigureStyle | None = None,
 ) -> tuple[Path, ...]:
     """Write every figure as ``directory/name-figure.format`` and return the files.
 
@@ -255,7 +322,7 @@ def save_figures(
     StorageError
         A file cannot be written.
     """
-    return _save(drawings(result), directory, name, formats)
+    return _save(drawings(result), directory, name, formats, style)
 
 
 def drawings(result: Result) -> dict[str, Callable[[Figure], None]]:
@@ -273,9 +340,13 @@ def drawings(result: Result) -> dict[str, Callable[[Figure], None]]:
 
 
 def save_study_figures(
-    table: xr.Dataset, directory: Path, name: str, formats: Iterable[str]
+    table: xr.Dataset,
+    directory: Path,
+    name: str,
+    formats: Iterable[str],
+    style: FigureStyle | None = None,
 ) -> tuple[Path, ...]:
-    """Write force and contact fraction of a study as ``directory/name-figure.format``.
+    """Write the figures of `study_figures` as ``directory/name-figure.format``.
 
     Parameters are as for `save_figures`; ``table`` is that of `pellicle.run_study`.
 
@@ -284,14 +355,24 @@ def save_study_figures(
     StorageError
         A file cannot be written.
     """
-    if "force" not in table:
-        return ()
 
     def fill(variable: str, figure: Figure) -> None:
         study_curves(table, figure.add_subplot(), variable)
 
-    figures = {variable: partial(fill, variable) for variable in STUDY_FIGURES}
-    return _save(figures, directory, name, formats)
+    figures = {variable: partial(fill, variable) for variable in study_figures(table)}
+    return _save(figures, directory, name, formats, style)
+
+
+def study_figures(table: xr.Dataset) -> tuple[str, ...]:
+    """Return the variables drawn for a study: force, and contact fraction or area.
+
+    A free domain has no nominal area of which the contact is a fraction.
+    """
+    if "force" not in table:
+        return ()
+    grid = json.loads(table.attrs.get(FIRST_RUN, "{}")).get("grid", {})
+    periodic = grid.get("boundary") == "periodic"
+    return "force", "contact_fraction" if periodic else "contact_area"
 
 
 def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
@@ -313,9 +394,11 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     named_by = wording(table[compared[0]]) if compared else None
     stacked = [d for d in table["status"].dims if d not in (along, *compared)]
     many = table.sizes[compared[0]] if compared else 1
+    ordered = bool(compared) and is_ordered(table, compared[0])
     pulls, paths = has_interaction(table), list[list[Leg]]()
     for number, part in enumerate(_parts(table, compared)):
-        colour = _colour(number, many)
+        hue = colour(number, many, ordered=ordered)
+        marker = MARKERS[number % len(MARKERS)]
         # Of many values only some are named: colours change evenly between them.
         named = compared and number % -(-many // _MOST_NAMED) == 0
         label = named_by.text(part[compared[0]].item()) if named and named_by else ""
@@ -330,14 +413,14 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
                     paths[-1],
                     x[finished],
                     y[finished],
-                    color=colour,
-                    marker="o",
+                    color=hue,
+                    marker=marker,
                     linestyle="-",
                     label=label,
                     markersize=4,
                 )
             else:
-                axes.plot(x, y, color=colour, label=label, mfc="white", **_marked(x.size))
+                axes.plot(x, y, color=hue, label=label, mfc="white", **_marked(x.size, marker))
             good = line["converged"].values
             axes.plot(x[~good], y[~good], "x", color="red", markersize=9)
             label = ""
@@ -346,10 +429,12 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
         ylabel=shown.head,
         title=table.attrs.get("title", ""),
     )
+    if along != "step" and is_log_spaced(table[against].values):
+        axes.set_xscale("log")
     if pulls:
         axes.axhline(0.0, color="0.4", linewidth=0.6)
         if paths:
-            name_legs(axes, paths)
+            name_legs(axes, paths, "C0" if many == 1 else "0.4")
     else:
         axes.set_ylim(bottom=0.0)
     axes.grid(alpha=0.3)
@@ -363,10 +448,11 @@ def _save(
     directory: Path,
     name: str,
     formats: Iterable[str],
+    style: FigureStyle | None,
 ) -> tuple[Path, ...]:
     files: list[Path] = []
     for suffix, fill in figures.items():
-        files += save_figure(fill, directory / f"{name}-{suffix}", formats)
+        files += save_figure(fill, directory / f"{name}-{suffix}", formats, style=style)
     return tuple(files)
 
 
@@ -375,8 +461,11 @@ def save_figure(
     stem: Path,
     formats: Iterable[str],
     size: tuple[float, float] = (5.4, 4.2),
+    style: FigureStyle | None = None,
 ) -> tuple[Path, ...]:
     """Let ``draw`` fill a figure of ``size`` [inch], and write it as ``stem.format``.
+
+    The width of a ``style`` replaces that of ``size``, with the height in proportion.
 
     Raises
     ------
@@ -384,7 +473,7 @@ def save_figure(
         A file cannot be written.
     """
     files = []
-    with _figure(draw, size) as figure:
+    with _figure(draw, size, style) as figure:
         for format_ in formats:
             path = stem.with_name(f"{stem.name}.{format_}")
             with storage_errors(path):
@@ -417,7 +506,8 @@ def svg(draw: Callable[[Figure], None], size: tuple[float, float] = (5.4, 4.2)) 
     """Let ``draw`` fill a figure of ``size`` [inch], and return it as reproducible SVG."""
     import matplotlib as mpl
 
-    with mpl.rc_context(), _figure(draw, size) as figure:
+    # A page cannot count on the fonts of its reader.
+    with mpl.rc_context(), _figure(draw, size, FigureStyle(svg_text=False)) as figure:
         mpl.rcParams["svg.hashsalt"] = "pellicle"
         buffer = BytesIO()
         figure.savefig(buffer, format="svg", metadata={"Date": None})
@@ -425,17 +515,21 @@ def svg(draw: Callable[[Figure], None], size: tuple[float, float] = (5.4, 4.2)) 
 
 
 @contextmanager
-def _figure(draw: Callable[[Figure], None], size: tuple[float, float]) -> Iterator[Figure]:
-    import matplotlib.style
+def _figure(
+    draw: Callable[[Figure], None], size: tuple[float, float], style: FigureStyle | None = None
+) -> Iterator[Figure]:
     from matplotlib.figure import Figure
     from matplotlib.text import Text
 
-    with matplotlib.style.context("default"):
-        figure = Figure(figsize=size, dpi=150, layout="constrained")
+    style = style or FigureStyle()
+    with style.applied():
+        figure = Figure(figsize=style.size(size), dpi=150, layout="constrained")
         draw(figure)
         # SVG repeats every text in a comment of its XML.
         for text in figure.findobj(Text):
             text.set_text(for_document(text.get_text()))
+        label_log_axes(figure)
+        clear_legends(figure)
         yield figure
 
 
@@ -443,14 +537,6 @@ def _parts(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Dat
     """Yield the part of a table at each combination of indices along dimensions."""
     for index in np.ndindex(*(table.sizes[d] for d in dimensions)):
         yield table.isel(dict(zip(dimensions, index, strict=True)))
-
-
-def _colour(number: int, count: int) -> str | tuple[float, float, float, float]:
-    if count <= 10:
-        return f"C{number}"
-    import matplotlib
-
-    return matplotlib.colormaps["viridis"](0.9 * number / (count - 1))
 
 
 def _curve(
@@ -485,7 +571,7 @@ def _curve(
         axes.plot(x[~good], y[~good], "x", color="red", markersize=9, label="_not converged")
     axes.set(xlabel=shown_x.head, ylabel=shown.head)
     if hysteretic:
-        name_legs(axes, [path])
+        name_legs(axes, [path], "C0" if len(series) == 1 else "0.4")
         if axes.get_legend_handles_labels()[1]:
             axes.legend(fontsize="small")
     if pulls:
@@ -523,10 +609,13 @@ def draw_legs(
         label = None
 
 
-def name_legs(axes: Axes, paths: Iterable[Iterable[Leg]]) -> None:
-    """Name approach and retraction in the legend to come, if the paths have both."""
+def name_legs(axes: Axes, paths: Iterable[Iterable[Leg]], hue: str = "0.4") -> None:
+    """Name approach and retraction in the legend to come, if the paths have both.
+
+    ``hue`` is the colour of the curve, if there is only one.
+    """
     if len({leg.direction for path in paths for leg in path}) > 1:
-        style: dict[str, Any] = {"color": "0.4", "marker": "o", "markersize": 4}
+        style: dict[str, Any] = {"color": hue, "marker": "o", "markersize": 4}
         axes.plot([], [], label="approach", markerfacecolor="white", **style)
         axes.plot([], [], label="retraction", linestyle=RETRACTION, **style)
 

@@ -16,8 +16,8 @@ from pellicle.components import Indenter
 from pellicle.errors import ConfigError
 from pellicle.files import read_text
 from pellicle.grid import shape_of_run
-from pellicle.matlab import read_mat
 from pellicle.model.input_path import InputPath
+from pellicle.model.matlab import read_mat
 from pellicle.units import Length
 
 from .from_heights import FromHeights

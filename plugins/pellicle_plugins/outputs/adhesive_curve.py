@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -16,6 +16,7 @@ from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError, StorageError
 from pellicle.report.plotting import save_figure
+from pellicle.report.style import colour
 from pellicle.results.result import Result
 from pellicle.units import Quantity, axis_unit
 from pellicle_plugins.analytic.adhesive_path import curve_of, steepest_slopes
@@ -54,7 +55,7 @@ class _Drawn:
     """The path of a run and its adhesive curve."""
 
     name: Label
-    colour: str
+    colour: Any
     path: xr.Dataset
     curve: analysis.AdhesiveCurve | None
     """None if the path has none."""
@@ -98,12 +99,16 @@ class AdhesiveCurve(TableFigure):
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure, the curve and its summary."""
+        paths = list(self._paths(runs))
         drawn = [
-            self._drawn(name, f"C{number}", run)
-            for number, (name, run) in enumerate(self._paths(runs))
+            self._drawn(name, colour(number, len(paths), ordered=self.is_ordered(runs)), run)
+            for number, (name, run) in enumerate(paths)
         ]
         files = save_figure(
-            lambda figure: self._fill(figure.add_subplot(), drawn), stem, self.formats
+            lambda figure: self._fill(figure.add_subplot(), drawn),
+            stem,
+            self.formats,
+            style=self.style,
         )
         summary = stem.with_name(f"{stem.name}-summary")
         return (
@@ -121,14 +126,14 @@ class AdhesiveCurve(TableFigure):
                 continue
             yield name, run
 
-    def _drawn(self, name: Label, colour: str, run: xr.Dataset) -> _Drawn:
+    def _drawn(self, name: Label, hue: Any, run: xr.Dataset) -> _Drawn:
         _refuse(run)
         path = run.isel(step=run["converged"].values & (run["contact_area"].values > 0))
         try:
             curve = curve_of(path, self.work_of_adhesion)
         except ConfigError as error:
-            return _Drawn(name, colour, path, None, str(error))
-        drawn = _Drawn(name, colour, path, curve, "")
+            return _Drawn(name, hue, path, None, str(error))
+        drawn = _Drawn(name, hue, path, curve, "")
         return replace(drawn, status=_status(curve, drawn.points(), path))
 
     def _summary(self, drawn: _Drawn) -> dict[str, object]:
@@ -169,12 +174,13 @@ class AdhesiveCurve(TableFigure):
             for what, contact in points.items():
                 x, y = contact.depth * length, contact.force * newton
                 axes.plot(x, y, _MARKERS[what], color=one.colour, markersize=5, mfc="white")
+        hue = "0.4" if len(drawn) != 1 else drawn[0].colour
         if curves:
-            axes.plot([], [], "-", color="0.4", linewidth=1.4, label="with adhesion")
-            axes.plot([], [], ":", color="0.4", linewidth=1.4, label="unstable at fixed depth")
+            axes.plot([], [], "-", color=hue, linewidth=1.4, label="with adhesion")
+            axes.plot([], [], ":", color=hue, linewidth=1.4, label="unstable at fixed depth")
             for what, marker in _MARKERS.items():
-                axes.plot([], [], marker, color="0.4", markersize=5, mfc="white", label=what)
-        axes.plot([], [], "--", color="0.4", linewidth=0.8, label="without adhesion")
+                axes.plot([], [], marker, color=hue, markersize=5, mfc="white", label=what)
+        axes.plot([], [], "--", color=hue, linewidth=0.8, label="without adhesion")
         axes.axhline(0.0, color="0.6", linewidth=0.6)
         axes.set(xlabel=f"depth [{length_name}]", ylabel=f"force [{newton_name}]", title=self.title)
         set_scales(axes, ())

@@ -21,6 +21,7 @@ from pellicle.files import storage_errors
 from pellicle.model.expression import evaluate, formula
 from pellicle.model.messages import nearest
 from pellicle.report.plotting import save_figure, without_round_off
+from pellicle.report.style import FigureStyle, is_ordered
 from pellicle.results.derived import FIRST_RUN, names
 from pellicle.results.result import Result
 from pellicle.results.variables import wording, words_of_name
@@ -30,12 +31,15 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-_PLACEHOLDER = re.compile(r"\{([^{}]+)\}")
+_PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::(\.\d+[fg]))?\}")
 
 
 Formats = Annotated[
     tuple[Literal["png", "svg", "pdf"], ...],
     Field(min_length=1, description="file formats to write: png, svg, pdf"),
+]
+StyleField = Annotated[
+    FigureStyle, Field(description="for print: width, font_size, svg_text, file (a style file)")
 ]
 Log = Annotated[tuple[Literal["x", "y"], ...], Field(description="axes that are logarithmic: x, y")]
 Reference = Annotated[
@@ -54,6 +58,7 @@ class TableFigure(Output):
         str, Field(pattern=r"^[\w-]*$", description="suffix of the file names; the type if absent")
     ] = ""
     formats: Formats = ("png",)
+    style: StyleField = FigureStyle()
     title: Annotated[str, Field(description="title of the figure")] = ""
     by: Annotated[
         str | None,
@@ -62,7 +67,8 @@ class TableFigure(Output):
     label: Annotated[
         str | None,
         Field(
-            description="name of a curve or a panel; {expression} in it is replaced by its value"
+            description="name of a curve or a panel; {expression} in it is replaced by its value, "
+            "to three digits, or as in {expression:.2g}"
         ),
     ] = None
 
@@ -81,6 +87,10 @@ class TableFigure(Output):
         for index in along(table, self.by):
             point = table.isel({**first, **index})
             yield label(self.label, point, self.by, table), point
+
+    def is_ordered(self, runs: Runs) -> bool:
+        """Whether the curves belong to numbers to compare."""
+        return is_ordered(runs.table, self.by)
 
     def steps(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
         """Yield the name of each curve or panel and the last load step of its run, if finished."""
@@ -108,7 +118,10 @@ class XYFigure(TableFigure):
         """Write the figure and its numbers."""
         rows: list[dict[str, object]] = []
         files = save_figure(
-            lambda figure: rows.extend(self.draw(figure.add_subplot(), runs)), stem, self.formats
+            lambda figure: rows.extend(self.draw(figure.add_subplot(), runs)),
+            stem,
+            self.formats,
+            style=self.style,
         )
         return (*files, write_csv(stem, rows))
 
@@ -145,7 +158,10 @@ def label(template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dat
     if template is not None:
         variables = names(data)
         text = _PLACEHOLDER.sub(
-            lambda match: f"{np.nanmean(np.asarray(evaluate(match[1], variables))):.3g}", template
+            lambda match: format(
+                np.nanmean(np.asarray(evaluate(match[1], variables))), match[2] or ".3g"
+            ),
+            template,
         )
         return Label(text, text)
     axes = [dim] if dim else json.loads(data.attrs.get("axes", "[]"))

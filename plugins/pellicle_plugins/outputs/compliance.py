@@ -14,6 +14,7 @@ from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.errors import StorageError
 from pellicle.model.expression import evaluate
+from pellicle.report.style import MARKERS, colour
 from pellicle.results.derived import names
 
 from .base import XYFigure, in_words, set_scales
@@ -41,7 +42,9 @@ class Compliance(XYFigure):
 
     def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
         """Draw the curves, and yield the rows of the numbers drawn."""
-        for number, (name, picked) in enumerate(self.picked(runs.table)):
+        curves, ordered = list(self.picked(runs.table)), self.is_ordered(runs)
+        for number, (name, picked) in enumerate(curves):
+            hue = colour(number, len(curves), ordered=ordered)
             try:
                 configuration = runs.open(str(picked["run"].item())).attrs["configuration"]
             except StorageError:
@@ -50,25 +53,27 @@ class Compliance(XYFigure):
             q, cells = of_cells_along_x(run)
             # A grid with a single cell along x has no waves.
             shown = np.unique(np.geomspace(1, max(1, q.size), _MARKERS).astype(int)) - 1
-            for values, series, style in (
-                (cells, "cells", "o"),
-                (run.kernel.compliance(q), "symbol", "-"),
+            for values, series, marker in (
+                (cells, "cells", MARKERS[number % len(MARKERS)]),
+                (run.kernel.compliance(q), "symbol", ""),
             ):
                 x, y = self._columns(picked, q, values)
                 axes.plot(
                     x,
                     y,
-                    style,
-                    color=f"C{number}",
+                    marker=marker,
+                    color=hue if series == "cells" else "black",
+                    zorder=2 if series == "cells" else 1,
                     markersize=3.5,
                     markerfacecolor="white",
-                    markevery=list(shown) if style == "o" else None,
+                    linestyle="none" if series == "cells" else "-",
+                    markevery=list(shown) if series == "cells" else None,
                     linewidth=1.0,
-                    label=(name.words or series) if style == "o" else None,
+                    label=(name.words or series) if series == "cells" else None,
                 )
                 for px, py in zip(x, y, strict=True):
                     yield {"curve": name.key, "series": series, "x": px, "y": py}
-        axes.plot([], [], color="0.4", linewidth=1.0, label="symbol")
+        axes.plot([], [], color="black", linewidth=1.0, label="symbol")
         axes.set(
             xlabel=self.x_label
             or ("wavenumber q [rad/m]" if self.x == "q" else in_words(self.x, runs.table, _WORDS)),

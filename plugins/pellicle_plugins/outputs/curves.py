@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -18,6 +19,7 @@ from pellicle.errors import ConfigError
 from pellicle.model.base import Model
 from pellicle.model.expression import names_in
 from pellicle.report.plotting import MOST_LEGS, RETRACTION, draw_legs
+from pellicle.report.style import LINES, MARKERS, colour, is_log_spaced
 from pellicle.results.path import has_interaction, has_path, has_times
 from pellicle.results.variables import FIELDS, WALL_PRESSURE, wording
 from pellicle.units import printed
@@ -40,9 +42,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
-_MARKERS = "os^Dv<>P"
-_LINES = ("-", "--", ":", "-.")
 _GRIDS = 3
+_LETTERS = 50
 
 
 def _several(value: object) -> object:
@@ -154,12 +155,20 @@ class Curves(XYFigure):
             line.draw(axes, factor_x, factor_y, bool(self.log))
         published = list(self._draw_published(axes))
         axes.set(xlabel=x_label, ylabel=y_label, title=self.title)
-        set_scales(axes, self.log, signed=has_interaction(runs.table))
+        set_scales(axes, self._log(runs.table), signed=has_interaction(runs.table))
         if axes.get_legend_handles_labels()[1]:
             axes.legend(frameon=False, fontsize="small")
         for line in lines:
             yield from line.rows()
         yield from published
+
+    def _log(self, table: xr.Dataset) -> tuple[Literal["x", "y"], ...]:
+        """Return the logarithmic axes: x too if it is an evenly growing axis of the study."""
+        axis = self.x.strip()
+        if "log" in self.model_fields_set or axis not in table.sizes or axis == "step":
+            return self.log
+        values = table[axis].values
+        return ("x",) if values.dtype.kind in "if" and is_log_spaced(values) else ()
 
     def _scaled_y(self, ys: Sequence[xr.DataArray], table: xr.Dataset) -> tuple[float, str]:
         """Return the factor and the label of the vertical axis; several y have but a common unit.
@@ -170,9 +179,10 @@ class Curves(XYFigure):
             return scaled(self.y[0], ys, self.y_label, table)
         units = {self._unit(text, table) for text in self.y}
         if len(units) > 1 or "" in units:
-            return 1.0, ""
+            return 1.0, _fold(self.series or [self._named(text, table) for text in self.y])
         scale = wording(joined("", ys)).scale
-        return scale.factor, f"[{scale.unit}]"
+        heads = self.series or [self._named(text, table) for text in self.y]
+        return scale.factor, f"{_fold(heads)} [{scale.unit}]"
 
     def _named(self, text: str, table: xr.Dataset) -> str:
         """Return one of several y in words, with its unit if the axis has none."""
@@ -192,6 +202,9 @@ class Curves(XYFigure):
         """Yield what is drawn, in order; entries that only the legend shows have no points."""
         reference = exact(runs) if self.reference else None
         directions: set[str] = set()
+        many = runs.table.sizes[self.by] if self.by else 1
+        ordered = self.is_ordered(runs)
+        shared = "0.4" if max(many, len(ys)) > 1 else "C0"
         for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
             series = self.series[number] if self.series else text
             named = self.series[number] if self.series else self._named(text, runs.table)
@@ -202,7 +215,10 @@ class Curves(XYFigure):
                 part = runs.table.isel(point)
                 name = label(self.label, part, self.by, runs.table)
                 # Colours distinguish the values of `by`, markers those of `y`.
-                style = _Style(f"C{index if self.by else number}", number, reference is not None)
+                hue = colour(index, many, ordered=ordered) if self.by else colour(number, len(ys))
+                style = _Style(
+                    hue, number, reference is not None, marker=index if len(ys) == 1 else number
+                )
                 legend = "" if number else name.words
                 if not self.by and (self.series or len(ys) > 1):
                     legend = named
@@ -216,15 +232,15 @@ class Curves(XYFigure):
                         yield _Limit(points, style, name.key, f"{series}, extrapolated")
                 if reference:
                     points, _ = self._points(part, _at(exact_x, point), _at(exact_y, point))
-                    thin = _Style(style.colour, None)
+                    thin = _Style("black", None)
                     yield _Line(points.ordered(), thin, "", name.key, f"{series}, semi-analytic")
             if self.by and len(ys) > 1:
                 yield _Line(_NO_POINTS, _Style("0.4", number, reference is not None), named)
         if reference:
-            yield _Line(_NO_POINTS, _Style("0.4", None), "semi-analytic")
+            yield _Line(_NO_POINTS, _Style("black", None), "semi-analytic")
         if len(directions) > 1:
-            yield _Line(_NO_POINTS, _Style("0.4", 0), "approach")
-            yield _Line(_NO_POINTS, _Style("0.4", 0, retracts=True), "retraction")
+            yield _Line(_NO_POINTS, _Style(shared, 0), "approach")
+            yield _Line(_NO_POINTS, _Style(shared, 0, retracts=True), "retraction")
 
     def _draw_published(self, axes: Axes) -> Iterator[dict[str, object]]:
         for number, other in enumerate(self.published):
@@ -285,13 +301,15 @@ class Curves(XYFigure):
 
 @dataclass(frozen=True)
 class _Style:
-    colour: str
+    colour: Any
     number: int | None
     """Index of the marker and line style; None for a plain thin line."""
     scattered: bool = False
     """Whether only markers are drawn, beside the line of a reference."""
     retracts: bool = False
     """Whether it is the retraction of a path, with short dashes and filled markers."""
+    marker: int | None = None
+    """Index of the marker; that of the line style if absent."""
 
     def keywords(self) -> dict[str, Any]:
         """Return keywords of ``Axes.plot``."""
@@ -299,12 +317,12 @@ class _Style:
             return {"color": self.colour, "linewidth": 1.0, "zorder": 1}
         return {
             "color": self.colour,
-            "marker": _MARKERS[self.number % len(_MARKERS)],
+            "marker": MARKERS[(self.number if self.marker is None else self.marker) % len(MARKERS)],
             "linestyle": "none"
             if self.scattered
             else RETRACTION
             if self.retracts
-            else _LINES[self.number % len(_LINES)],
+            else LINES[self.number % len(LINES)],
             "markersize": 4,
             "markerfacecolor": self.colour if self.retracts else "white",
             "linewidth": 1.2,
@@ -424,6 +442,11 @@ def _require_grids(x: xr.DataArray) -> None:
             f"vary the grid over at least {_GRIDS}",
             "extrapolate",
         )
+
+
+def _fold(names: Sequence[str]) -> str:
+    """Return names as the label of an axis, in lines of bounded length."""
+    return textwrap.fill(", ".join(names), _LETTERS)
 
 
 def _of_run(variable: xr.DataArray) -> bool:

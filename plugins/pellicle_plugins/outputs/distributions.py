@@ -12,6 +12,7 @@ from pydantic import Field
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.report.plotting import save_figure
+from pellicle.report.style import LINES, colour
 from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit
 
@@ -44,7 +45,13 @@ class Distributions(TableFigure):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
         curves = [(name, self._densities(step)) for name, step in self.steps(runs)]
-        files = save_figure(lambda figure: self._fill(figure, curves), stem, self.formats, _SIZE)
+        files = save_figure(
+            lambda figure: self._fill(figure, curves, self.is_ordered(runs)),
+            stem,
+            self.formats,
+            _SIZE,
+            self.style,
+        )
         return (*files, write_csv(stem, list(_rows(curves)), _HEADS))
 
     def _densities(self, step: xr.Dataset) -> dict[str, analysis.Distribution]:
@@ -56,13 +63,19 @@ class Distributions(TableFigure):
             for name in _FIELDS
         }
 
-    def _fill(self, figure: Figure, curves: _Curves) -> None:
+    def _fill(self, figure: Figure, curves: _Curves, ordered: bool) -> None:
         for axes, (field, unit) in zip(figure.subplots(1, 2), _FIELDS.items(), strict=True):
             edges = [densities[field].edges for _, densities in curves]
             factor, name = axis_unit(np.concatenate([*edges, np.zeros(1)]), unit)
-            for curve, densities in curves:
+            for number, (curve, densities) in enumerate(curves):
                 density = densities[field].density / factor
-                axes.stairs(density, densities[field].edges * factor, label=curve.words or None)
+                axes.stairs(
+                    density,
+                    densities[field].edges * factor,
+                    color=colour(number, len(curves), ordered=ordered),
+                    linestyle=LINES[number % len(LINES)],
+                    label=curve.words or None,
+                )
             axes.set(xlabel=f"{field} [{name}]", ylabel=f"probability density [1/{name}]")
             set_scales(axes, self.log if any(bins.size > 1 for bins in edges) else ())
             if axes.get_legend_handles_labels()[1]:

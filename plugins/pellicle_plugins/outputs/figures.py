@@ -15,9 +15,10 @@ from pellicle.report.plotting import (
     save_figures,
     save_study_figures,
 )
+from pellicle.report.style import FigureStyle
 from pellicle.results.result import Result
 
-from .base import Formats
+from .base import Formats, StyleField
 
 
 class Figures(Output):
@@ -26,6 +27,7 @@ class Figures(Output):
     type: Literal["figures"] = "figures"
     shares_stem: ClassVar[bool] = True
     formats: Formats = ("png",)
+    style: StyleField = FigureStyle()
 
     @property
     def suffixes(self) -> tuple[str, ...]:
@@ -36,8 +38,8 @@ class Figures(Output):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Draw the result of a run, or the table of a study."""
         if runs.axes is not None:
-            return save_study_figures(runs.table, stem.parent, stem.name, self.formats)
-        return save_figures(Result(runs.open()), stem.parent, stem.name, self.formats)
+            return save_study_figures(runs.table, stem.parent, stem.name, self.formats, self.style)
+        return save_figures(Result(runs.open()), stem.parent, stem.name, self.formats, self.style)
 
 
 @hookimpl

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -29,6 +30,7 @@ from pellicle.report.page import (
     Picture,
     Section,
     Table,
+    Text,
     frame,
     page,
     side,
@@ -36,18 +38,18 @@ from pellicle.report.page import (
 from pellicle.report.page import Field as MapField
 from pellicle.report.plotting import (
     DIVERGING,
-    STUDY_FIGURES,
     TIME,
     default_step,
     drawings,
     draws_contact,
     study_curves,
+    study_figures,
     svg,
     without_round_off,
 )
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
-from pellicle.results.path import has_interaction, has_times
+from pellicle.results.path import has_interaction
 from pellicle.results.result import Result, first_message
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
@@ -69,6 +71,17 @@ from pellicle.studies.summary import (
     short_files,
 )
 from pellicle.units import DIGITS, readable
+
+from .answer import (
+    answer_of_path,
+    answer_of_step,
+    answer_of_study,
+    has_one_shape,
+    label_of_step,
+    methods,
+    prescribed_of,
+    shown_variable,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -132,25 +145,32 @@ class Html(Output):
         if runs.axes is None:
             data, run = runs.open(), configuration
             result = Result(data)
+            grid = Grid(**run["grid"])
+            maps, chosen = self._maps_of_steps(result, grid)
             sections = [
-                Section("Status", [_status(result)]),
-                Section("Results", [*_steps(data), *_path(result), *_oscillations(result)]),
-                Section("Maps", [self._maps_of_steps(result, Grid(**run["grid"]))]),
-                Section("Curves", _pictures_of(result)),
+                Section("In short", [*_answer(result, grid), _status(result)]),
+                Section("Maps", [maps]),
+                Section("Curves", _pictures_of(result, chosen)),
+                Section("Numbers", [*_steps(data), *_path(result), *_oscillations(result)]),
                 Section("Inputs", [_inputs(list(inputs(run)))]),
             ]
+            varied: tuple[str, ...] = ()
         else:
             run = json.loads(table.attrs[FIRST_RUN])
             rows = list(runs_of(table))
             frames = dict(self._frames_of_runs(table, rows, stem.parent / "runs"))
+            varied = tuple(str(name) for name in table.coords if name != "step")
+            answer = answer_of_study(table, len(rows))
+            lead = [Text(answer, lead=True)] if answer else []
             sections = [
-                Section("Status", [_status_of_study(table, len(rows))]),
-                Section("Runs", [_runs(table, rows, list(frames)), *_paths(table, rows)]),
+                Section("In short", [*lead, _status_of_study(table, len(rows))]),
                 Section("Maps", _maps_of_runs(table, list(frames.values()), len(rows))),
                 Section("Curves", _pictures_of_study(table)),
+                Section("Numbers", [_runs(table, rows, list(frames)), *_paths(table, rows)]),
                 Section("Inputs", [_inputs(_varied(table, list(inputs(run))))]),
             ]
         sections += [
+            Section("Methods", [Text(methods(run, table.attrs["versions"], varied))]),
             Section("Provenance", [*_origin(table.attrs, run)]),
             Section("How to reproduce it", [*_reproduce(configuration, stem)]),
         ]
@@ -161,28 +181,29 @@ class Html(Output):
             part.write_text(text, encoding="utf-8")
         return (path,)
 
-    def _maps_of_steps(self, result: Result, grid: Grid) -> Maps:
+    def _maps_of_steps(self, result: Result, grid: Grid) -> tuple[Maps, list[int]]:
+        """Return the maps of load steps, and the indices of the steps."""
         data = result.dataset
         steps = data.sizes["step"]
         chosen = self._chosen(steps)
-        depth = wording(data["depth"])
+        prescribed = prescribed_of(result.configuration)
         mapped = _mapped(data)
         points = side(self.points, len(chosen) * len(mapped))
         frames = []
         for index in chosen:
             step = without_round_off(data.isel(step=index))
-            label = depth.text(step["depth"].item())
-            if has_times(step):
-                label = f"{readable(step['time'].item(), 's', DIGITS)}, {label}"
-            label = f"{index + 1}: {label}"
+            label = f"{index + 1}: {label_of_step(data, index, prescribed)}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
-            frames.append(_frame(label, grid, step, mapped, points))
+            note = answer_of_step(data, index, grid.boundary, prescribed)
+            frames.append(replace(_frame(label, grid, step, mapped, points), note=note))
         shown = default_step(data) % steps
         begin = int(np.searchsorted(chosen, shown, side="right")) - 1
         *first, last = [f"{field.name}" for field in mapped.values()]
         names = f"{', '.join(first)} and {last}".capitalize()
-        caption = f"{names} in {_some(len(chosen), steps, 'load step')}."
-        return Maps(caption, "load step", tuple(mapped.values()), frames, begin=max(begin, 0))
+        words = wording(data[shown_variable(data, prescribed)]).words
+        caption = f"{names} at prescribed {words}, in {_some(len(chosen), steps, 'load step')}."
+        maps = Maps(caption, "load step", tuple(mapped.values()), frames, begin=max(begin, 0))
+        return maps, chosen
 
     def _frames_of_runs(
         self, table: xr.Dataset, rows: list[xr.Dataset], folder: Path
@@ -244,6 +265,16 @@ def _maps_of_runs(table: xr.Dataset, frames: list[Frame], count: int) -> list[Ma
 
 def _some(shown: int, count: int, what: str) -> str:
     return f"each {what}" if shown == count else f"{shown} of {count} {what}s"
+
+
+def _answer(result: Result, grid: Grid) -> list[Text]:
+    """Return the answer of a run in a sentence or two."""
+    data = result.dataset
+    shown = default_step(data) % data.sizes["step"]
+    prescribed = prescribed_of(result.configuration)
+    first = answer_of_step(data, shown, grid.boundary, prescribed)
+    rest = answer_of_path(data, result.path_summary)
+    return [Text(first, lead=True), *([Text(rest)] if rest else [])]
 
 
 def _status(result: Result) -> Notice:
@@ -340,6 +371,20 @@ def _numbers(data: xr.Dataset) -> list[str]:
     ]
 
 
+_OF_ONE_SHAPE = {"contact_radius", "semi_major_axis", "semi_minor_axis", "major_axis_angle"}
+
+
+def _means_something(data: xr.Dataset, name: str) -> bool:
+    """Whether a variable has a meaning here: a contact in several parts has no radius or ellipse.
+
+    Nor has a variable without any finite value, unless no step has a force.
+    """
+    if name in _OF_ONE_SHAPE and not has_one_shape(data):
+        return False
+    missing = not np.isfinite(data[name].values.astype(float)).any()
+    return not missing or not np.isfinite(data["force"].values).any()
+
+
 def _is_effort(name: str) -> bool:
     # Prescriptions add residuals of their own.
     return name in names_of("effort") or name.startswith("residual_")
@@ -348,9 +393,10 @@ def _is_effort(name: str) -> bool:
 def _steps(data: xr.Dataset) -> list[Table]:
     """Return the numbers of each load step: the result, the shape of the contact, the effort."""
     effort = [n for n in _numbers(data) if _is_effort(n)]
-    shape = [n for n in _numbers(data) if n in names_of("contact")]
+    shape = [n for n in _numbers(data) if n in names_of("contact") and _means_something(data, n)]
+    measures = [n for n in _numbers(data) if n not in (*effort, *names_of("contact"))]
     tables = {
-        "Results of each load step.": [n for n in _numbers(data) if n not in (*effort, *shape)],
+        "Results of each load step.": measures,
         "Shape of the contact in each load step.": shape,
         "Residuals and effort of each load step.": effort,
     }
@@ -383,7 +429,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
     ``mapped`` has the indices of the runs that are mapped, in the order of their maps.
     """
     axes = [str(name) for name in table.coords if name != "step"]
-    names = [n for n in _numbers(table) if not _is_effort(n)]
+    names = [n for n in _numbers(table) if not _is_effort(n) and _means_something(table, n)]
     varied = [_column(table[name]) for name in axes]
     numbers = [_column(table[name]) for name in names]
     rows: list[list[str | Cell]] = []
@@ -411,11 +457,12 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
     return Table(caption, columns, rows)
 
 
-def _pictures_of(result: Result) -> list[Picture]:
+def _pictures_of(result: Result, chosen: list[int]) -> list[Picture]:
+    """Return the curves of a run, with marks at the ``chosen`` steps, which are mapped."""
     fills = {name: fill for name, fill in drawings(result).items() if name in _CURVES}
     several = result.dataset.sizes["step"] > 1
     return [
-        _picture(fill, _CURVES[name])
+        _picture(fill, _CURVES[name], partial(_marks, data=result.dataset, chosen=chosen))
         for name, fill in fills.items()
         if several or name == "profile"
     ]
@@ -425,31 +472,73 @@ def _pictures_of_study(table: xr.Dataset) -> list[Picture]:
     def fill(variable: str, figure: Figure) -> None:
         study_curves(table, figure.add_subplot(), variable)
 
-    names = STUDY_FIGURES if "force" in table else ()
     return [
         _picture(partial(fill, name), f"{wording(table[name]).words.capitalize()} over the study.")
-        for name in names
+        for name in study_figures(table)
     ]
 
 
-def _picture(fill: Callable[[Figure], None], caption: str) -> Picture:
+_Marks = list[list[tuple[float, float]]]
+
+
+def _picture(
+    fill: Callable[[Figure], None],
+    caption: str,
+    marked: Callable[[Figure], _Marks] | None = None,
+) -> Picture:
+    """Return a picture, with the marks that ``marked`` returns for the filled figure."""
+    marks: _Marks = []
+
     def untitled(figure: Figure) -> None:
         fill(figure)
         # The page has a title, and a title may be longer than a figure is wide.
         for axes in figure.axes:
             axes.set_title("")
+        if marked:
+            marks.extend(marked(figure))
 
-    return Picture(svg(untitled), caption, caption)
+    return Picture(svg(untitled), caption, caption, marks)
+
+
+def _marks(figure: Figure, data: xr.Dataset, chosen: list[int]) -> _Marks:
+    """Return the points of ``chosen`` steps on the curves of a figure, as shares from top left.
+
+    The labels of axes tell which variables they show.
+    """
+    numbers = (data[name] for name in _numbers(data))
+    values = {
+        shown.head: v.values[chosen] * shown.scale.factor
+        for v in numbers
+        for shown in (wording(v),)
+    }
+    across = figure.axes[-1].get_xlabel()
+    marks: _Marks = [[] for _ in chosen]
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        x, y = values.get(across), values.get(axes.get_ylabel())
+        if x is None or y is None:
+            continue
+        pixels = axes.transData.transform(np.column_stack([x, y]))
+        shares = figure.transFigure.inverted().transform(pixels)
+        for points, (left, bottom) in zip(marks, shares.tolist(), strict=True):
+            if np.isfinite([left, bottom]).all():
+                points.append((left, 1 - bottom))
+    return marks
 
 
 def _inputs(fields: list[Input]) -> Table:
     columns = [Column(head, words=True) for head in ("of", "input", "value", "meaning")]
     rows = [
-        [i.part, "type" if i.words == i.part else i.words, i.value, i.meaning]
+        [i.part, "type" if i.words == i.part else i.words, _shortened(i.value), i.meaning]
         for i in fields
         if i.name != "title" and not i.name.startswith("outputs.")
     ]
     return Table("All inputs that determine the result, defaults included.", columns, rows)
+
+
+def _shortened(text: str) -> str:
+    """Return a text with the first eight digits of hashes."""
+    return re.sub(r"\b([0-9a-f]{8})[0-9a-f]{24,}\b", r"\1…", text)
 
 
 def _varied(table: xr.Dataset, fields: list[Input]) -> list[Input]:
@@ -475,7 +564,7 @@ def _origin(attributes: dict[str, str], configuration: dict[str, Any]) -> Iterat
     facts = [
         ("versions", attributes["versions"]),
         ("date", attributes["date"]),
-        ("identity", attributes.get("identity", "")),
+        ("identity", _shortened(attributes.get("identity", ""))),
     ]
     heads = [Column("what", words=True), Column("value", words=True)]
     yield Table("Versions, date and identity.", heads, [list(fact) for fact in facts if fact[1]])

@@ -14,8 +14,10 @@ from pellicle import hookimpl
 from pellicle.components import Output, Runs
 from pellicle.model.expression import names_in
 from pellicle.report.plotting import diverging, extent, outline_contact, save_figure
+from pellicle.report.style import NO_CONTACT, add_colour_bar
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
+from pellicle.results.variables import WALL_PRESSURE, words_of_name
 from pellicle.units import axis_unit
 
 from .base import Label, TableFigure, scaled
@@ -26,13 +28,14 @@ if TYPE_CHECKING:
 
 _PANEL = 2.7
 _COLUMNS = 4
+_ONLY_IN_CONTACT = "pressure", WALL_PRESSURE
 
 
 class Maps(TableFigure):
     """A field over the domain, one panel for each value of an axis.
 
     Other axes of a study are at their first value, steps at the last. ``field`` is
-    arithmetic over the fields and numbers of a run: ``contact`` is drawn black on white, and
+    arithmetic over the fields and numbers of a run: ``contact`` is drawn black on grey, and
     ``displacement - depth - gap`` is the profile of the indenter. Where an interaction pulls,
     colours of an expression with ``pressure`` are centred at 0, a line encloses the contact, and a
     dotted line the zone in which a traction acts.
@@ -50,7 +53,7 @@ class Maps(TableFigure):
 
         panels = []
         for name, run in self.steps(runs):
-            # Truth values become numbers in arithmetic; alone they are drawn black on white.
+            # Truth values become numbers in arithmetic; alone they are drawn black on grey.
             field = run.get(self.field.strip())
             if field is None or field.dtype != bool:
                 field = as_array(self.field, run)
@@ -60,7 +63,11 @@ class Maps(TableFigure):
         down = ceil(max(len(panels), 1) / across)
         size = (_PANEL * across + 1.2, _PANEL * down + 1.0) if len(panels) > 1 else (5.4, 4.2)
         return save_figure(
-            lambda figure: self._fill(figure, panels, down, across), stem, self.formats, size
+            lambda figure: self._fill(figure, panels, down, across),
+            stem,
+            self.formats,
+            size,
+            self.style,
         )
 
     def _fill(
@@ -70,6 +77,8 @@ class Maps(TableFigure):
         down: int,
         across: int,
     ) -> None:
+        from matplotlib.colors import ListedColormap
+
         all_axes = figure.subplots(down, across, squeeze=False).ravel()
         for axes in all_axes[len(panels) :]:
             axes.set_axis_off()
@@ -86,14 +95,21 @@ class Maps(TableFigure):
         if low == high:
             # matplotlib would centre a scale without range on its only value.
             low, high = min(low, 0.0), max(high, 0.0 if low else 1.0)
-        colours = {"cmap": "binary" if is_bool else "viridis", "vmin": low, "vmax": high}
+        blank = self.field.strip() in _ONLY_IN_CONTACT
+        colours = {"cmap": "viridis", "vmin": low, "vmax": high}
+        if is_bool:
+            colours["cmap"] = ListedColormap([NO_CONTACT, "black"])
         pulls = any(has_interaction(run) for _, run, _ in panels) and not is_bool
         if pulls and low < 0 and "pressure" in names_in(self.field):
             colours = diverging(values)
         for axes, (title, run, field) in zip(all_axes, panels, strict=False):
             length, unit = axis_unit(np.append(run["x"].values, run["y"].values), "m")
+            shown = field.transpose("y", "x").values * factor
+            if blank:
+                shown = np.ma.masked_where(shown == 0, shown)
+                axes.set_facecolor(NO_CONTACT)
             image = axes.imshow(
-                field.transpose("y", "x").values * factor,
+                shown,
                 origin="lower",
                 extent=extent(run["x"].values * length, run["y"].values * length),
                 **colours,
@@ -106,9 +122,25 @@ class Maps(TableFigure):
             axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
             axes.set_title(title.words, fontsize="medium")
             axes.label_outer()
-        if not is_bool:
-            figure.colorbar(image, ax=list(all_axes), label=name, shrink=0.85)
+        if is_bool:
+            _name_colours(figure, self.field.strip())
+        else:
+            add_colour_bar(all_axes[min(across, len(panels)) - 1], image, name)
         figure.suptitle(self.title)
+
+
+def _name_colours(figure: Figure, field: str) -> None:
+    """Name black and grey below the panels of a field of truth values."""
+    from matplotlib.patches import Patch
+
+    words = words_of_name(field)
+    figure.legend(
+        [Patch(color="black"), Patch(color=NO_CONTACT)],
+        [words, f"no {words}"],
+        loc="outside lower center",
+        ncols=2,
+        fontsize="small",
+    )
 
 
 @hookimpl

@@ -12,6 +12,7 @@ from pydantic import Field
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.report.plotting import extent, save_figure
+from pellicle.report.style import MARKERS, NO_CONTACT, colour
 from pellicle.results.result import Result
 from pellicle.units import axis_unit
 
@@ -48,7 +49,13 @@ class Patches(TableFigure):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
         curves = [(name, step, self._patches(step)) for name, step in self.steps(runs)]
-        files = save_figure(lambda figure: self._fill(figure, curves), stem, self.formats, _SIZE)
+        files = save_figure(
+            lambda figure: self._fill(figure, curves, self.is_ordered(runs)),
+            stem,
+            self.formats,
+            _SIZE,
+            self.style,
+        )
         rows = [row for curve in curves for row in _rows(*curve)]
         return (*files, write_csv(stem, rows, _HEADS))
 
@@ -56,17 +63,26 @@ class Patches(TableFigure):
         return analysis.patches(step["contact"], Result(step).grid, self.connectivity)
 
     def _fill(
-        self, figure: Figure, curves: list[tuple[Label, xr.Dataset, analysis.Patches]]
+        self,
+        figure: Figure,
+        curves: list[tuple[Label, xr.Dataset, analysis.Patches]],
+        ordered: bool,
     ) -> None:
         left, right = figure.subplots(1, 2)
         if curves:
             _map(left, *curves[-1])
         largest = [patches.area[0] for *_, patches in curves if patches.count]
         factor, unit = axis_unit(np.array(largest), "m2")
-        for name, _, patches in curves:
+        for number, (name, _, patches) in enumerate(curves):
             rank = np.arange(1, patches.count + 1)
             right.step(
-                patches.area * factor, rank, where="post", marker=".", label=name.words or None
+                patches.area * factor,
+                rank,
+                where="post",
+                color=colour(number, len(curves), ordered=ordered),
+                marker=MARKERS[number % len(MARKERS)],
+                markersize=3,
+                label=name.words or None,
             )
         right.set(xlabel=f"area of a patch [{unit}]", ylabel="patches at least as large")
         if largest:
@@ -88,6 +104,7 @@ def _map(axes: Axes, name: Label, step: xr.Dataset, patches: analysis.Patches) -
         interpolation="nearest",
         interpolation_stage="data",
     )
+    axes.set_facecolor(NO_CONTACT)
     axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
     axes.set_title(f"{name.words}\n{patches.count} patches".lstrip(), fontsize="medium")
 

@@ -5,11 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal
 
+import numpy as np
 from pydantic import Field
 
 from pellicle import hookimpl
+from pellicle.arrays import Mask
 from pellicle.components import Output, Runs
+from pellicle.model.expression import names_in
+from pellicle.report.plotting import EDGE_CELLS, edge_cells, smooth
+from pellicle.report.style import LINES, MARKERS, colour
 from pellicle.results.derived import as_array
+from pellicle.results.path import has_interaction
 from pellicle_plugins.analytic.reference import exact_line
 
 from .base import Label, Reference, XYFigure, scaled, set_scales
@@ -44,34 +50,61 @@ class Profiles(XYFigure):
         lines = [(n, run.isel({across: run.sizes[across] // 2})) for n, run in self.steps(runs)]
         curves = [(name, line, *self._columns(line)) for name, line in lines]
         factors = self._name_axes(axes, curves) if curves else (1.0, 1.0)
+        ordered, marked = self.is_ordered(runs), False
         for number, (name, line, x, y) in enumerate(curves):
-            axes.plot(
-                x.values * factors[0],
-                y.values * factors[1],
-                "o" if self.reference else "-",
-                color=f"C{number}",
-                markersize=3.5,
-                markerfacecolor="white",
-                markevery=max(1, x.size // _MARKERS) if self.reference else None,
-                linewidth=1.2,
-                label=name.words or None,
-            )
+            hue = colour(number, len(curves), ordered=ordered)
+            drawn_x, drawn_y = x.values * factors[0], y.values * factors[1]
+            edge = self._edge(line)
+            marked |= bool(edge.any())
+            axes.plot(drawn_x[edge], drawn_y[edge], ".", color=hue, markersize=3)
+            drawn_y = np.where(edge, np.nan, drawn_y)
+            if self.reference:
+                axes.plot(
+                    drawn_x[:: self._every(x)],
+                    drawn_y[:: self._every(x)],
+                    MARKERS[number % len(MARKERS)],
+                    color=hue,
+                    markersize=3.5,
+                    markerfacecolor="white",
+                    label=name.words or None,
+                )
+            else:
+                axes.plot(
+                    *smooth(drawn_x, drawn_y),
+                    LINES[number % len(LINES)],
+                    color=hue,
+                    linewidth=1.2,
+                    label=name.words or None,
+                )
             yield from _rows(name.key, "run", x, y)
             if self.reference:
                 x, y = self._columns(exact_line(line))
                 axes.plot(
                     x.values * factors[0],
                     y.values * factors[1],
-                    color=f"C{number}",
-                    linewidth=1.0,
+                    color="black",
+                    linewidth=0.8,
                     zorder=1,
                 )
                 yield from _rows(name.key, "semi-analytic", x, y)
         if self.reference:
-            axes.plot([], [], color="0.4", linewidth=1.0, label="semi-analytic")
+            axes.plot([], [], color="black", linewidth=0.8, label="semi-analytic")
+        if marked:
+            axes.plot([], [], ".", color="0.4", markersize=3, label=EDGE_CELLS)
         set_scales(axes, ())
         if axes.get_legend_handles_labels()[1]:
             axes.legend(frameon=False, fontsize="small")
+
+    def _edge(self, line: xr.Dataset) -> Mask:
+        """Return which cells are at the edge of contact, for a pressure without a pull."""
+        contact = line["contact"].values
+        shows = "pressure" in names_in(self.y) and not has_interaction(line)
+        return edge_cells(contact) if shows else np.zeros_like(contact)
+
+    @staticmethod
+    def _every(x: xr.DataArray) -> int:
+        """Return the distance of markers in cells: cells on both sides of the centre alike."""
+        return max(1, x.size // _MARKERS)
 
     def _name_axes(
         self,

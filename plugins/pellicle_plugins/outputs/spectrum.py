@@ -11,6 +11,7 @@ import numpy as np
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.report.plotting import save_figure
+from pellicle.report.style import colour
 from pellicle.results.result import Result
 
 from .base import Label, TableFigure, write_csv
@@ -40,11 +41,14 @@ class Spectrum(TableFigure):
         """Write the figure and its numbers."""
         curves = [(name, _spectra(step)) for name, step in self.steps(runs)]
         files = save_figure(
-            lambda figure: self._fill(figure.add_subplot(), curves), stem, self.formats
+            lambda figure: self._fill(figure.add_subplot(), curves, self.is_ordered(runs)),
+            stem,
+            self.formats,
+            style=self.style,
         )
         return (*files, write_csv(stem, list(_rows(curves)), _HEADS))
 
-    def _fill(self, axes: Axes, curves: _Curves) -> None:
+    def _fill(self, axes: Axes, curves: _Curves, ordered: bool) -> None:
         highest = max(
             (one.density.max(initial=0.0) for _, spectra in curves for one in spectra.values()),
             default=0.0,
@@ -57,12 +61,19 @@ class Spectrum(TableFigure):
                     spectrum.wavenumber[shown],
                     spectrum.density[shown],
                     _STYLES[surface],
-                    color=f"C{number}",
+                    color=colour(number, len(curves), ordered=ordered),
                     linewidth=1.2,
                     label=name.words or None if surface == "displacement" else None,
                 )
         for surface, style in _STYLES.items():
-            axes.plot([], [], style, color="0.4", linewidth=1.2, label=surface)
+            axes.plot(
+                [],
+                [],
+                style,
+                color="0.4" if len(curves) > 1 else "C0",
+                linewidth=1.2,
+                label=surface,
+            )
         axes.set(
             xlabel="wavenumber q [rad/m]",
             ylabel="power spectral density [m⁴]",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import itertools
 import json
 import os
 import re
@@ -22,6 +24,7 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.runs import steps
+from pellicle.version import CITATION
 from tests.pictures import colourfulness
 
 if TYPE_CHECKING:
@@ -176,7 +179,8 @@ def test_inputs_and_provenance(ran: tuple[Path, xr.Dataset]) -> None:
     assert inputs["loading", "depth"] == "5, 10 µm"
     assert inputs["solver", "type"] == "active set"
     facts = {row["what"]: row["value"] for row in page.table("Versions, date")}
-    assert facts == {name: data.attrs[name] for name in ("versions", "date", "identity")}
+    shortened = {"identity": f"{data.attrs['identity'][:8]}…"}
+    assert facts == {name: data.attrs[name] for name in ("versions", "date")} | shortened
     origins = {row["used as"]: row for row in page.table("Origin of the")}
     assert origins["kernel"]["entry point"] == "kernel.tensed_membrane"
     assert origins["kernel"]["version"] == pl.__version__
@@ -202,6 +206,87 @@ def test_maps_are_the_fields(ran: tuple[Path, xr.Dataset]) -> None:
         assert frame["fields"][0]["high"] == pytest.approx(data["pressure"].values[index].max())
         assert frame["fields"][1]["high"] == pytest.approx(data["gap"].values[index].max() * 1e6)
     assert [field["unit"] for field in page_maps["fields"]] == ["Pa", "µm"]
+
+
+def test_the_answer_comes_first(ran: tuple[Path, xr.Dataset]) -> None:
+    """It is a sentence with the numbers of the last step; the maps precede the tables."""
+    path, data = ran
+    page = Page(path)
+    answers = [frame["note"] for frame in page.maps["frames"]]
+    assert answers[1] in page.texts["p"][:3]
+    for index, answer in enumerate(answers):
+        step = data.isel(step=index)
+        match = re.fullmatch(
+            r"At depth (\S+) µm: force (\S+) µN, contact radius (\S+) µm\.", answer
+        )
+        assert match, answer
+        names = ("depth", "force", "contact_radius")
+        for text, name in zip(match.groups(), names, strict=True):
+            assert float(text) == pytest.approx(step[name].item() * 1e6, rel=5.1e-3)
+    tags = [tag for tag, _ in page.tags]
+    assert tags.index("canvas") < tags.index("table")
+
+
+def test_marks_are_on_the_curves(ran: tuple[Path, xr.Dataset]) -> None:
+    """Each mapped step is marked where its marker is drawn, in both curves over the steps."""
+    tags = Page(ran[0]).tags
+    pictures = [i for i, (tag, attrs) in enumerate(tags) if (attrs.get("src") or "")[:4] == "data"]
+    marked = 0
+    for begin, end in itertools.pairwise([*pictures, len(tags)]):
+        marks = [attrs for tag, attrs in tags[begin:end] if "data-mark" in attrs]
+        svg = base64.b64decode((tags[begin][1]["src"] or "").partition(",")[2]).decode()
+        width, height = map(float, re.findall(r'viewBox="0 0 (\S+) (\S+)"', svg)[0])
+        drawn = [(float(x), float(y)) for x, y in re.findall(r'<use [^>]*x="(\S+)" y="(\S+)"', svg)]
+        for attrs in marks:
+            left, top = map(float, re.findall(r"([\d.]+)%", attrs["style"] or ""))
+            at = (left / 100 * width, top / 100 * height)
+            assert min(np.hypot(x - at[0], y - at[1]) for x, y in drawn) < 1.0
+        marked += len(marks) == 2
+        assert sorted(attrs["data-mark"] or "" for attrs in marks) in ([], ["0", "1"])
+    assert marked == 2
+
+
+def test_what_was_prescribed_is_named(tmp_path: Path) -> None:
+    """The list of steps, the caption of the maps and the answer name a prescribed force."""
+    page = page_of(tmp_path, loading={"force": ["1 uN", "2 uN"]})
+    assert [frame["label"] for frame in page.maps["frames"]] == ["1: force 1 µN", "2: force 2 µN"]
+    assert "Contact pressure and gap at prescribed force, in each load step." in page.words
+    assert re.match(r"At force 2 µN: depth \S+ µm, contact radius", page.maps["frames"][1]["note"])
+
+
+def test_a_rough_contact_has_no_ellipse(tmp_path: Path) -> None:
+    """Contact in several parts is told by its fraction of a periodic domain, not by a radius."""
+    rough = {
+        "type": "self_affine",
+        "rms_height": "2 um",
+        "hurst": 0.8,
+        "cutoff_wavelength": "60 um",
+        "roll_off_wavelength": "200 um",
+    }
+    grid = {**RUN["grid"], "boundary": "periodic"}
+    page = page_of(tmp_path, grid=grid, indenter=rough, loading={"mean_pressure": "5 Pa"})
+    (shape,) = page.table("Shape of the contact")
+    assert int(shape["patches"]) > 1
+    assert not [head for head in shape if "axis" in head or "radius" in head]
+    assert "At mean pressure 5 Pa: force" in page.words
+    assert re.search(r"contact fraction 0\.\d+\.", page.maps["frames"][0]["note"])
+
+
+def test_methods(ran: tuple[Path, xr.Dataset], studied: tuple[Path, xr.Dataset]) -> None:
+    """A paragraph has kernel, solver, tolerance, versions and how to cite; a study's no axis."""
+    path, data = ran
+    (text,) = (text for text in Page(path).texts["p"] if text.startswith("Normal contact"))
+    for part in (
+        "24 × 18 cells of 400 µm × 300 µm with free boundaries",
+        "Kernel: tensed membrane (reduced modulus 10 kPa, surface tension 100 mN/m)",
+        "indenter: paraboloid (radius 1 mm)",
+        f"Solver: active set, to a relative tolerance of {pl.Run(**RUN).solver.tolerance:g}.",
+        f"Computed with {data.attrs['versions']}.",
+        CITATION,
+    ):
+        assert part in text
+    (text,) = (text for text in Page(studied[0]).texts["p"] if text.startswith("Normal contact"))
+    assert "indenter: paraboloid;" in text or "indenter: paraboloid." in text
 
 
 def test_study(studied: tuple[Path, xr.Dataset]) -> None:
@@ -405,6 +490,15 @@ def picture(browser: Chrome, number: int = 0) -> str:
     return text
 
 
+def shown_marks(browser: Chrome) -> set[str]:
+    """Return the steps whose marks are seen on the curves."""
+    marks: list[str] = browser.execute_script(
+        "return [...document.querySelectorAll('[data-mark]')]"
+        ".filter((mark) => mark.offsetParent).map((mark) => mark.dataset.mark)"
+    )
+    return set(marks)
+
+
 def errors(browser: Chrome) -> list[Any]:
     """Return what the console says, but for what it says of the looking in `drawn`."""
     entries: list[Any] = browser.get_log("browser")  # type: ignore[no-untyped-call]
@@ -452,8 +546,11 @@ def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset]) -> N
     select = browser.find_element(By.CSS_SELECTOR, "select")
     assert select.text.splitlines() == ["1: depth 5 µm", "2: depth 10 µm"]
     before = picture(browser)
+    assert shown_marks(browser) == {"1"}
     select.send_keys(Keys.ARROW_UP)
     WebDriverWait(browser, 20).until(lambda _: picture(browser) != before)
+    assert shown_marks(browser) == {"0"}
+    assert browser.find_element(By.CSS_SELECTOR, ".note").text.startswith("At depth 5 µm: force")
     browser.find_element(By.CSS_SELECTOR, "input").click()
     assert errors(browser) == []
     # A map fills a good part of the window.

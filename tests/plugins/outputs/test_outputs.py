@@ -16,7 +16,7 @@ from matplotlib.colors import to_hex
 import pellicle as pl
 from tests.pictures import drawn_width, pixels
 
-BLUE, ORANGE = "#1f77b4", "#ff7f0e"
+BLUE, ORANGE = "#0072b2", "#d55e00"
 FIGURES = {
     "pressure": set[str](),
     "profile": {BLUE, ORANGE},
@@ -196,7 +196,7 @@ def test_names_of_files_of_a_study(tmp_path: Path) -> None:
     table = pl.run_study(study, tmp_path, progress=False)
     names = {path.name.removeprefix("study") for path in tmp_path.glob("study*")}
     of_study = NAMES - OF_RUNS | {".h5", ".csv"}
-    assert names == of_study | {"-force.png", "-contact_fraction.png"}
+    assert names == of_study | {"-force.png", "-contact_area.png"}
     runs = {path.name for path in (tmp_path / "runs").iterdir()}
     assert runs == {f"{run}{suffix}" for run in table["run"].values for suffix in OF_RUNS}
 

@@ -43,6 +43,8 @@ _INCOMPRESSIBLE = 0.5
 """Poisson's ratio of a layer, whose effect is that of another thickness to first order."""
 _THICKNESSES = (2.0, 10.0)
 """Thicknesses from which a search starts, over the range of positions."""
+_SHALLOW = 0.1
+"""Depth over radius up to which sphere and paraboloid are one shape."""
 _CONE = np.pi / 4
 """Half angle of a cone in place of a bead, which its modulus cannot be told from."""
 _SHARES = (0.0, 0.1)
@@ -217,19 +219,25 @@ def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
         yield Rival("thickness", "a thin layer", False, _layer, (THICKNESS,))
 
 
-def _shapes(members: Sequence[Likelihood]) -> Iterator[Rival]:
-    """Yield other shapes of the same size, without tension."""
-    indenters = [getattr(member.force_model, "indenter", None) for member in members]
-    if not all(isinstance(indenter, Indenter) for indenter in indenters):
+def _shapes(members: Sequence[Likelihood], deepest: float) -> Iterator[Rival]:
+    """Yield other shapes of the same size on a half-space without tension, down to a depth [m]."""
+    models = [member.force_model for member in members]
+    indenters = [model.indenter for model in models if isinstance(model, ClosedFormModel)]
+    if len(indenters) < len(models) or not all(isinstance(i, Indenter) for i in indenters):
         return
     types = {getattr(indenter, "type", "") for indenter in indenters}
     for name in ("paraboloid", "sphere", "cone"):
         if types == {name} or types == {"flat_punch"}:
             continue
+        # Shallow, they differ by less than what is known of the shape of a bead.
+        radii = [getattr(indenter, "radius", np.inf) for indenter in indenters]
+        if name != "cone" and deepest <= _SHALLOW * min(radii):
+            continue
         if all(_shape(name, indenter) is not None for indenter in indenters):
 
             def build(member: Likelihood, name: str = name) -> ForceModel:
-                shape = _shape(name, _elastic(member).indenter)  # type: ignore[attr-defined]
+                assert isinstance(member.force_model, ClosedFormModel)
+                shape = _shape(name, member.force_model.indenter)
                 assert shape is not None
                 return ClosedFormModel(shape)
 
@@ -253,11 +261,15 @@ NONE = Rival("none", "no tension", False, _same)
 TENSED = Rival("tension", "tension", True, _same)
 
 
-def rivals(chi_squared: ChiSquared) -> list[Rival]:
-    """Return the explanations of the curves without tension, then those with it."""
+def rivals(chi_squared: ChiSquared, parameters: Coordinates) -> list[Rival]:
+    """Return the explanations of the curves without tension, then those with it.
+
+    ``parameters`` are the best with a tension.
+    """
     members = chi_squared.members if isinstance(chi_squared, Pool) else (chi_squared,)
     likelihoods = [member for member in members if isinstance(member, Likelihood)]
-    effects = [*_single_effects(likelihoods), *_shapes(likelihoods)]
+    depths = [member.deepest(part) for member, part in chi_squared.curves(parameters)]
+    effects = [*_single_effects(likelihoods), *_shapes(likelihoods, max(depths))]
     pairs = [
         replace(
             effect,

@@ -1,0 +1,184 @@
+"""Colours, sizes and tick labels of figures, legible in print, in grey and to the colour-blind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import Field
+
+from pellicle.arrays import Array
+from pellicle.errors import ConfigError
+from pellicle.model.base import Model
+from pellicle.model.input_path import InputPath
+from pellicle.units import Quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+OKABE_ITO = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"
+"""Colours that the colour-blind tell apart (Okabe & Ito 2008), without the yellow."""
+NO_CONTACT = "0.93"
+"""Grey of cells without contact."""
+MARKERS = "os^Dv<>P"
+LINES = ("-", "--", "-.", ":")
+INCH = 0.0254
+"""An inch [m]."""
+_SMALL = 8.0
+_LIGHTEST = 0.8
+_LABELLED_DECADES = 2.2
+
+
+class FigureStyle(Model):
+    """How figures are set for print."""
+
+    width: Annotated[
+        float | None,
+        Quantity("m", at_least=0.02, at_most=1.0),
+        Field(description="width of the figure, such as 85 mm or 170 mm [m]"),
+    ] = None
+    font_size: Annotated[
+        float | None,
+        Field(
+            ge=3,
+            le=40,
+            description="size of the text in points; if absent 8 with a width, else as in file",
+        ),
+    ] = None
+    svg_text: Annotated[
+        bool,
+        Field(description="whether text in SVG stays text, which can be edited, or becomes paths"),
+    ] = True
+    file: Annotated[
+        InputPath | None, Field(description="a style file of matplotlib (.mplstyle)")
+    ] = None
+
+    def size(self, size: tuple[float, float]) -> tuple[float, float]:
+        """Return the size of a figure [inch], scaled to the width."""
+        if self.width is None:
+            return size
+        width = self.width / INCH
+        return width, size[1] * width / size[0]
+
+    @contextmanager
+    def applied(self) -> Iterator[None]:
+        """Apply the style to what is drawn inside the context.
+
+        Raises
+        ------
+        ConfigError
+            The style file cannot be read, or is not one.
+        """
+        import matplotlib.style
+        from cycler import cycler
+
+        house: dict[str, Any] = {
+            "axes.prop_cycle": cycler(color=OKABE_ITO),
+            "legend.frameon": False,
+            "pdf.fonttype": 42,
+        }
+        own: dict[str, Any] = {"svg.fonttype": "none" if self.svg_text else "path"}
+        font_size = _SMALL if self.font_size is None and self.width else self.font_size
+        if font_size is not None:
+            own["font.size"] = font_size
+        with matplotlib.style.context(["default", house, self._from_file(), own]):
+            yield
+
+    def _from_file(self) -> dict[str, Any]:
+        import matplotlib as mpl
+
+        if self.file is None:
+            return {}
+        try:
+            # Unknown keys are logged; bad values raise.
+            values: Any = mpl.rc_params_from_file(self.file, True, False)
+            return dict(values)
+        except (OSError, ValueError) as error:
+            raise ConfigError(
+                f"{self.file} cannot be read as a style file of matplotlib: {error}", "style.file"
+            ) from None
+
+
+def colour(number: int, count: int, *, ordered: bool = False) -> Any:
+    """Return the colour of one of ``count`` curves.
+
+    The colours of ordered values get lighter evenly; the others are those of the cycle.
+    """
+    import matplotlib as mpl
+
+    if count > len(mpl.rcParams["axes.prop_cycle"]) or (ordered and count > 2):
+        return mpl.colormaps["viridis"](_LIGHTEST * number / max(count - 1, 1))
+    return f"C{number}"
+
+
+def is_ordered(table: xr.Dataset, dim: str | None) -> bool:
+    """Whether the values along a dimension are numbers to compare, which seeds are not."""
+    return (
+        dim is not None
+        and dim in table.coords
+        and table[dim].dtype.kind in "if"
+        and not dim.endswith("seed")
+    )
+
+
+def is_log_spaced(values: Array) -> bool:
+    """Whether at least three positive values over half a decade grow by about even factors.
+
+    Rounded series such as 1, 2, 5, 10 or 1, 3, 10 count too.
+    """
+    if values.size < 3 or values.min() <= 0 or values.max() < 4 * values.min():
+        return False
+    steps = np.diff(np.log(np.sort(values)))
+    return bool(steps.max() <= 1.5 * steps.min())
+
+
+def label_log_axes(figure: Figure) -> None:
+    """Label also ticks between the powers of ten on logarithmic axes of about two decades."""
+    from matplotlib.ticker import FuncFormatter, LogLocator
+
+    for axes in figure.axes:
+        for axis, scale in ((axes.xaxis, axes.get_xscale()), (axes.yaxis, axes.get_yscale())):
+            if scale != "log" or not isinstance(axis.get_minor_locator(), LogLocator):
+                continue
+            low, high = sorted(axis.get_view_interval())
+            decades = np.log10(high / low)
+            if decades > _LABELLED_DECADES or not 1e-3 <= low <= high <= 1e5:
+                continue
+            few = decades < 0.8
+            axis.set_minor_locator(LogLocator(subs=range(2, 10) if few else (2, 5), numticks=50))
+            for formatter in (axis.set_major_formatter, axis.set_minor_formatter):
+                formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def clear_legends(figure: Figure) -> None:
+    """Move legends that lie on a curve beside their axes."""
+    legends = [(axes, legend) for axes in figure.axes if (legend := axes.get_legend())]
+    if not legends:
+        return
+    figure.draw_without_rendering()
+    for axes, legend in legends:
+        if _covers(axes, legend.get_window_extent()):
+            legend.set_loc("upper left")
+            legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
+
+
+def _covers(axes: Axes, box: Any) -> bool:
+    lines = [(line, line.get_transform()) for line in axes.lines if line.get_visible()]
+    paths = [line.get_path().transformed(transform) for line, transform in lines]
+    paths += [patch.get_path().transformed(patch.get_transform()) for patch in axes.patches]
+    for path in paths:
+        finite = np.isfinite(path.vertices).all(axis=1)
+        if finite.any() and path.intersects_bbox(box, filled=False):
+            return True
+    return False
+
+
+def add_colour_bar(axes: Axes, image: Any, label: str) -> None:
+    """Add a bar of colours beside a map, as high as it."""
+    figure = axes.get_figure()
+    if figure is not None:
+        figure.colorbar(image, cax=axes.inset_axes((1.04, 0.0, 0.05, 1.0)), label=label)

@@ -1,0 +1,164 @@
+"""Sentences that begin and end the page of a result: the answer, and how it was computed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pellicle.config.describe import inputs
+from pellicle.config.loading import prescribed_in
+from pellicle.errors import ConfigError
+from pellicle.loading import OPTIONS
+from pellicle.results.path import has_interaction, has_times
+from pellicle.results.variables import VARIABLES, wording
+from pellicle.units import DIGITS, readable
+from pellicle.version import CITATION
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_ANSWER_DIGITS = 3
+
+
+def prescribed_of(configuration: Mapping[str, Any]) -> str:
+    """Return the name of what the load steps of a run prescribe; empty if it is not installed."""
+    loading = {k: v for k, v in configuration["loading"].items() if k not in OPTIONS}
+    try:
+        return prescribed_in(loading)
+    except ConfigError:
+        return ""
+
+
+def shown_variable(data: xr.Dataset, prescribed: str) -> str:
+    """Return the variable that names load steps: what is prescribed, else the depth."""
+    return prescribed if prescribed in data else "depth"
+
+
+def has_one_shape(data: xr.Dataset) -> bool:
+    """Whether the contact is never in several parts, so that its radius and ellipse describe it."""
+    return "patches" in data and not bool((data["patches"] > 1).any())
+
+
+def label_of_step(data: xr.Dataset, index: int, prescribed: str) -> str:
+    """Return what a load step prescribes: "depth 3 µm", "1 s, force 5 nN"."""
+    name = shown_variable(data, prescribed)
+    label = wording(data[name]).text(data[name].values[index].item())
+    if has_times(data):
+        label = f"{readable(data['time'].values[index].item(), 's', DIGITS)}, {label}"
+    return label
+
+
+def answer_of_step(data: xr.Dataset, index: int, boundary: str, prescribed: str) -> str:
+    """Return a sentence like "At depth 3 µm: force 904 nN, contact radius 4.5 µm" for a load step.
+
+    A contact in several parts has its fraction of a periodic domain, or its area on a free one,
+    instead of its radius.
+    """
+    step = data.isel(step=index)
+    heading = f"At {label_of_step(data, index, prescribed)}"
+    if not np.isfinite(step["force"].item()):
+        return f"{heading}: no result."
+    size = "contact_fraction" if boundary == "periodic" else "contact_area"
+    if has_one_shape(data) and "contact_radius" in data:
+        size = "contact_radius"
+    named = shown_variable(data, prescribed)
+    names = [name for name in ("force", "depth", size) if name != named]
+    if named == "depth" or has_times(data):
+        names = [name for name in names if name != "depth"]
+    if step["contact_area"].item() <= 0:
+        names = [name for name in names if name != size]
+    parts = [_value(step[name]) for name in names]
+    parts += ["no contact"] if step["contact_area"].item() <= 0 else []
+    marked = "" if step["converged"].item() else " (NOT CONVERGED)"
+    return f"{heading}: {', '.join(parts)}{marked}."
+
+
+def _value(variable: xr.DataArray) -> str:
+    return replace(wording(variable), digits=_ANSWER_DIGITS).text(variable.item())
+
+
+def answer_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
+    """Return the range of the force over the load steps, and the pull-off force; may be empty."""
+    sentences = []
+    if data.sizes["step"] > 1 and not has_interaction(data):
+        sentences.append(f"Over {data.sizes['step']} load steps: {_range(data['force'])}.")
+    names = [n for n in ("pull_off", "pull_off_depth") if np.isfinite(summary.get(n, np.nan))]
+    if names:
+        texts = [f"{VARIABLES[n].words} {_number(summary[n], n)}" for n in names]
+        sentences.append(f"On the path: {', '.join(texts)}.")
+    return " ".join(sentences)
+
+
+def answer_of_study(table: xr.Dataset, count: int) -> str:
+    """Return the range of the force over all steps of a study; empty if there is none."""
+    if "force" not in table or not np.isfinite(table["force"].values).any():
+        return ""
+    axes = [
+        shown.words + " " + shown.listing(axis.values.tolist())
+        for name, axis in table.coords.items()
+        if name != "step"
+        for shown in (wording(axis),)
+    ]
+    over = f" with {'; '.join(axes)}" if axes else ""
+    return f"{count} runs{over}: {_range(table['force'])}."
+
+
+def _range(variable: xr.DataArray) -> str:
+    shown = replace(wording(variable), digits=_ANSWER_DIGITS)
+    finite = variable.values[np.isfinite(variable.values)]
+    if not finite.size:
+        return f"no {shown.words}"
+    low, high = shown.number(finite.min().item()), shown.number(finite.max().item())
+    if low == high:
+        return f"{shown.words} {shown.scale.with_unit(low)}"
+    return f"{shown.words} from {low} to {shown.scale.with_unit(high)}"
+
+
+def _number(value: float, name: str) -> str:
+    return readable(value, VARIABLES[name].unit, _ANSWER_DIGITS)
+
+
+def methods(configuration: Mapping[str, Any], versions: str, varied: tuple[str, ...] = ()) -> str:
+    """Return a paragraph for the methods section of a paper.
+
+    Values at the dotted paths ``varied`` differ between the runs of a study.
+    """
+    known = {i.name: i for i in inputs(configuration)}
+    grid = configuration["grid"]
+    points = " × ".join(str(n) for n in grid["points"])
+    size = " × ".join(readable(edge, "m", DIGITS) for edge in grid["size"])
+    parts = {
+        name: known[name].value
+        for name in ("kernel", "indenter", "interaction", "solver")
+        if name in known and f"{name}.type" not in varied
+    }
+    values = {
+        name: ", ".join(
+            f"{i.words} {i.value}"
+            for i in known.values()
+            if i.name.startswith(f"{name}.")
+            and i.value not in ("", "false", "False")
+            and not any(f"{i.name}.".startswith(f"{axis}.") for axis in varied)
+        )
+        for name in ("kernel", "indenter", "interaction")
+    }
+    described = [
+        f"{name}: {value}{f' ({values[name]})' if values[name] else ''}"
+        for name, value in parts.items()
+        if name in values
+    ]
+    tolerance = configuration["solver"].get("tolerance")
+    ending = f", to a relative tolerance of {tolerance:g}" if tolerance is not None else ""
+    solver = parts.get("solver", "several solvers")
+    domain = "" if any(axis.startswith("grid") for axis in varied) else f" of {size}"
+    cells = "" if any(axis.startswith("grid") for axis in varied) else f" on {points} cells"
+    return (
+        "Normal contact of a rigid indenter with a linear solid was solved by a boundary element "
+        f"method with fast Fourier transforms{cells}{domain} with {grid['boundary']} boundaries. "
+        f"{'; '.join(described)[:1].upper()}{'; '.join(described)[1:]}. "
+        f"Solver: {solver}{ending}. "
+        f"Computed with {versions}. To cite: {CITATION}."
+    )

@@ -1,0 +1,177 @@
+"""Other explanations of a curve: force models against closed forms, verdicts, and their words."""
+
+from __future__ import annotations
+
+import fit_rivals
+import numpy as np
+import pytest
+from fit_rivals import KINDS, MODULUS_, RADIUS, Sample, fitted, path
+from numpy.typing import NDArray
+from scipy.special import beta
+
+import pellicle as pl
+from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
+from pellicle.fitting.models.drag import DRAG, DragModel
+from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
+from pellicle.fitting.models.history import History, constant_speed
+from pellicle.fitting.models.relaxing import (
+    EXPONENT,
+    RELAXATION_TIME,
+    SHARE,
+    PowerLawModel,
+    StandardLinearModel,
+)
+from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Values
+from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle_plugins.analytic.adhesion import Adhesion
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+
+Array = NDArray[np.float64]
+BEAD = Paraboloid(radius=RADIUS)
+ELASTIC = ClosedFormModel(BEAD)
+DEPTH = 0.08 * RADIUS
+ROWS = path("both")
+HISTORY = History.of(ROWS.depth * DEPTH, ROWS.time)
+
+
+def sample(name: str, seed: int = 1) -> Sample:
+    """Return a solid of a kind with noise."""
+    random = np.random.default_rng(seed)
+    return Sample(KINDS[name](random), random)
+
+
+@pytest.mark.parametrize("alpha", [0.1, 0.3])
+def test_power_law_pressed_at_constant_speed(alpha: float) -> None:
+    """Loading is that of Lee & Radok (1960), and contact is lost where Ting (1966) has it lost."""
+    model = PowerLawModel(ELASTIC, HISTORY)
+    values = {MODULUS: MODULUS_, TENSION: 0.0, EXPONENT: alpha, CONTACT_POINT: 0.0}
+    force = model.force(ROWS.depth * DEPTH, values).force
+    time = np.maximum(ROWS.time, 0.0)
+    exact = 1.5 * beta(1.5, 1 - alpha) * time ** (1.5 - alpha)
+    loading = ROWS.sense > 0
+    scale = MODULUS_ * 4 / 3 * np.sqrt(RADIUS) * DEPTH**1.5
+    assert force[loading] / scale == pytest.approx(exact[loading], abs=3e-4)
+    ratio = 2 ** (1 / (1 - alpha))
+    end = ratio / (ratio - 1)
+    last = ROWS.time[~loading][np.flatnonzero(force[~loading] > 1e-3 * scale)[-1]]
+    assert last == pytest.approx(end, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("model", "values"),
+    [
+        (PowerLawModel(ELASTIC, HISTORY), {TENSION: 1e-3, EXPONENT: 0.2}),
+        (StandardLinearModel(ELASTIC, HISTORY), {TENSION: 1e-3, SHARE: 0.3, RELAXATION_TIME: 0.3}),
+        (DragModel(ELASTIC, HISTORY), {TENSION: 1e-3, DRAG: 50.0}),
+        (
+            AdhesiveModel(ELASTIC, ROWS.sense < 0, np.zeros(ROWS.sense.size), 0.05),
+            {TENSION: 1e-3, WORK_OF_ADHESION: 1e-6},
+        ),
+    ],
+)
+@pytest.mark.parametrize("stiffness", [None, 0.05])
+def test_derivatives(model: ForceModel, values: Values, stiffness: float | None) -> None:
+    """The Jacobian agrees with differences of the residuals."""
+    force = np.maximum(ROWS.depth, 0.0) ** 1.5 * 1e-9
+    likelihood = Likelihood(
+        ROWS.depth * DEPTH, force, model, 1e-12, (), stiffness, ROWS.time, "both"
+    )
+    at = {CONTACT_POINT: 1e-10, MODULUS: np.log(MODULUS_), OFFSET: 0.0, SLOPE: 0.0}
+    at |= {p: p.coordinate(value) for p, value in values.items()}
+    jacobian = likelihood.jacobian(at)
+    for column, parameter in enumerate(likelihood.parameters):
+        step = 1e-5 * likelihood.ranges[parameter].scale
+        above, below = (
+            likelihood.residuals(at | {parameter: at[parameter] + s}) for s in (step, -step)
+        )
+        difference = (above - below) / (2 * step)
+        # Rows that touch or let go within the step are left out.
+        error = np.abs(difference - jacobian[:, column])
+        assert np.median(error) <= 2e-3 * np.median(np.abs(difference)) + 1e-12
+        inner = np.sort(error)[: int(0.97 * error.size)]
+        assert np.linalg.norm(inner) <= 0.02 * np.linalg.norm(difference)
+
+
+@pytest.mark.parametrize("tension", [0.0, 1e-3, 2e-2])
+def test_adhesive_branch_is_that_of_the_integral_equation(tension: float) -> None:
+    """Forces from master curves agree with superposition on solutions of the integral equation."""
+    work, stiffness = 2e-4, 0.02
+    depth = np.linspace(-2e-6, 0.8e-6, 300)
+    model = AdhesiveModel(ELASTIC, np.full(300, True), np.zeros(300), stiffness)
+    values = {MODULUS: MODULUS_, TENSION: tension, WORK_OF_ADHESION: work, CONTACT_POINT: 0.0}
+    theory = Adhesion(BEAD, MODULUS_, tension, work)
+    end = theory.instability(stiffness)
+    branch = theory.equilibrium(np.geomspace(float(end.contact_radius), 4e-6, 2000))
+    base = branch.depth + branch.force / stiffness
+    inside = depth > base[0] + 2e-8
+    exact = np.interp(depth[inside], base, branch.force)
+    force = model.force(depth, values).force
+    assert force[inside] == pytest.approx(exact, abs=1e-5 * float(exact.max()))
+    assert not force[depth < base[0] - 1e-9].any()
+    pull_off = float(theory.instability(0.0).force)
+    assert model.pull_off(values) == pytest.approx(pull_off, rel=1e-3)
+    assert -1.5001 <= pull_off / (np.pi * work * RADIUS) <= -0.999
+
+
+def test_jumps_decide_which_rows_touch() -> None:
+    """Rows of a retraction before its jump touch, and no others."""
+    force = np.concatenate([np.zeros(50), np.linspace(-1, 3, 100)])
+    force += 0.05 * np.random.default_rng(1).standard_normal(150)
+    states = attachment(np.arange(150.0), force, np.full(150, True))
+    assert states.tolist() == [-1.0] * 50 + [1.0] * 100
+    assert not attachment(np.arange(150.0), np.maximum(force, 0.0), np.full(150, True)).any()
+
+
+def test_time_at_constant_speed() -> None:
+    """Without times the approach takes 1 s, and the way back as long for as far."""
+    position = np.concatenate([np.linspace(0, 2, 21), np.linspace(2, 1, 11)[1:]])
+    time = constant_speed(position)
+    assert time[[0, 20, 30]] == pytest.approx([0, 1, 1.5])
+
+
+def test_clean_curve_is_never_told_to_measure_more() -> None:
+    """Hertz's curves with noise need no tension, and no other measurement."""
+    for result in fit_rivals.outcomes("no tension", 5, 7):
+        assert (result.verdict, result.named) == ("not shown", "")
+        assert result.covers
+
+
+@pytest.mark.parametrize("name", ["power law", "standard linear", "drag", "adhesion", "layer"])
+def test_no_tension_is_needed_for_what_bends_a_curve_otherwise(name: str) -> None:
+    """A tenth of tests/benchmarks/fit_rivals.py: no claim, and the right model among the best."""
+    for result in fit_rivals.outcomes(name, 1, 7, follow=False):
+        assert result.verdict != "needed"
+        assert result.right
+
+
+def test_both_passes_show_a_tension() -> None:
+    """A tension that an approach cannot tell from relaxation is shown by both passes."""
+    solid = sample("tension, 5 errors of an approach", 3)
+    fit = fitted(solid, solid.measured(path("both")), "both")
+    assert fit.tension_needed
+    assert fit.comparison.startswith("tension is needed")
+
+
+def test_two_speeds_show_relaxation() -> None:
+    """Two approaches of a solid that relaxes, at two speeds, need no tension."""
+    solid = sample("power law", 2)
+    curves = [solid.measured(path(rate=rate)) for rate in (1.0, 0.1)]
+    thin = [fit_rivals.Curve(*(column[::5] for column in curve)) for curve in curves]
+    pool = fit_rivals.pooled(solid, thin)
+    assert pool.rivals is not None
+    assert pool.rivals.verdict == "other"
+    assert pool.rivals.best.rival.code == "power_law"
+
+
+def test_comparison_in_full() -> None:
+    """All explanations have intervals, a line of the table and JSON; the order is that of AIC."""
+    solid = sample("tension, 5 errors of both passes", 4)
+    curve = solid.measured(path())
+    rows = slice(None, None, 5)
+    fit = pl.fit(curve.position[rows], curve.force[rows], indenter=BEAD, compare=True)
+    assert fit.rivals is not None
+    models = fit.to_dict()["rivals"]["models"]
+    assert {"none", "tension", "power_law", "tension+adhesion"} <= {m["name"] for m in models}
+    assert [m["delta_aic"] for m in models] == sorted(m["delta_aic"] for m in models)
+    assert models[0]["parameters"]["reduced_modulus"]["high"] is not None
+    assert len(fit.rivals.rows()) == len(models)
