@@ -245,6 +245,7 @@ def test_a_folder_of_several_results_is_refused(cli: Cli) -> None:
     for name in ("b.h5", "a.h5"):
         (folder / name).touch()
     for command in ("show", "plot"):
-        assert "several: holds several result files; give one of them: a.h5, b.h5" in cli(
-            command, "several", code=2
-        ).stderr
+        assert (
+            "several: holds several result files; give one of them: a.h5, b.h5"
+            in cli(command, "several", code=2).stderr
+        )

@@ -229,7 +229,10 @@ def test_matlab(tmp_path: Path, write: Callable[[Path], str], count: int) -> Non
         ("Z extension nm", "is not of the form"),
         ("", "is not of the form"),
         ("Z = piezo nm", "'piezo' is not a role; "),
-        ("Z = extension nN", "'nN', which is not a unit of extension; give it in m or a multiple, e.g. 'extension [nm]'"),
+        (
+            "Z = extension nN",
+            "'nN', which is not a unit of extension; give it in m or a multiple, e.g. 'extension [nm]'",
+        ),
         ("Z = force V", "a signal in volts is a column deflection"),
         ("a = force N, b = force N", "'a' and 'b' are both force"),
         ("a = force N, a = time s", "names a column twice"),
