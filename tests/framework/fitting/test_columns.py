@@ -231,7 +231,7 @@ def test_matlab(tmp_path: Path, write: Callable[[Path], str], count: int) -> Non
         ("Z = piezo nm", "'piezo' is not a role; "),
         (
             "Z = extension nN",
-            "'nN', which is not a unit of extension; give it in m or a multiple, e.g. 'extension [nm]'",
+            "'nN', not a unit of extension; give it in m or a multiple, e.g. 'extension [nm]'",
         ),
         ("Z = force V", "a signal in volts is a column deflection"),
         ("a = force N, b = force N", "'a' and 'b' are both force"),
