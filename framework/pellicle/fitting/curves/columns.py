@@ -78,14 +78,19 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
     """
     if not SIGNALS & columns.keys():
         raise ConfigError(
-            f"has no column force (columns: {', '.join(columns) or 'none that is known'}); give a "
-            f"header such as {EXAMPLE!r}, or name its columns (--columns on the command line)"
+            f"has no column force or deflection (columns: {', '.join(columns) or 'none that is known'}); give a "
+            f"header such as {EXAMPLE!r}, or name its columns (--columns on the command line), "
+            "which has to name each column that is read"
         )
     names = [name for name in ("position", "depth") if name in columns] or [
         name for name in OF_BASE if name in columns
     ]
     if len(names) != 1:
-        problem = f"both {' and '.join(names)}" if names else "no column position or depth"
+        problem = (
+            f"both {' and '.join(names)}"
+            if names
+            else "no column position or depth, nor extension or height"
+        )
         raise ConfigError(f"has {problem}; give one of them, e.g. {EXAMPLE!r}")
     (name,) = names
     position = factor(name, columns[name].unit) * columns[name].values
