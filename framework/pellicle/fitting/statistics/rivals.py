@@ -220,9 +220,10 @@ def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
 
 
 def _shapes(members: Sequence[Likelihood], deepest: float) -> Iterator[Rival]:
-    """Yield other shapes of the same size, without tension, for curves down to a depth [m]."""
-    indenters = [getattr(member.force_model, "indenter", None) for member in members]
-    if not all(isinstance(indenter, Indenter) for indenter in indenters):
+    """Yield other shapes of the same size on a half-space without tension, down to a depth [m]."""
+    models = [member.force_model for member in members]
+    indenters = [model.indenter for model in models if isinstance(model, ClosedFormModel)]
+    if len(indenters) < len(models) or not all(isinstance(i, Indenter) for i in indenters):
         return
     types = {getattr(indenter, "type", "") for indenter in indenters}
     for name in ("paraboloid", "sphere", "cone"):
@@ -235,7 +236,8 @@ def _shapes(members: Sequence[Likelihood], deepest: float) -> Iterator[Rival]:
         if all(_shape(name, indenter) is not None for indenter in indenters):
 
             def build(member: Likelihood, name: str = name) -> ForceModel:
-                shape = _shape(name, _elastic(member).indenter)  # type: ignore[attr-defined]
+                assert isinstance(member.force_model, ClosedFormModel)
+                shape = _shape(name, member.force_model.indenter)
                 assert shape is not None
                 return ClosedFormModel(shape)
 
