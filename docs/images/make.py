@@ -7,30 +7,36 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib.style
 import numpy as np
 from matplotlib.figure import Figure
 
 import pellicle as pl
+from pellicle.plotting import save_figure
+from pellicle.report.plotting import EDGE_CELLS, edge_cells
+from pellicle.report.style import OKABE_ITO
 from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 RADIUS, MODULUS, DEPTH = 1e-3, 10e3, 50e-6
-TENSIONS = {0.0: "C0", 0.1: "C2", 1.0: "C3"}
+TENSIONS = {0.0: (OKABE_ITO[0], "o"), 0.1: (OKABE_ITO[1], "s"), 1.0: (OKABE_ITO[2], "^")}
 POINTS, SIZE = 128, 0.5e-3
+_EDGE = 3
 
 
 def main() -> None:
-    """Solve, draw and write the picture next to this file."""
-    matplotlib.style.use("default")
-    figure = Figure(figsize=(6.4, 3.9), dpi=150, layout="constrained")
+    """Write the picture next to this file."""
+    save_figure(draw, Path(__file__).with_name("indent-profile"), ["png"], (6.4, 3.9))
+
+
+def draw(figure: Figure) -> None:
+    """Solve and draw."""
     axes = figure.add_subplot()
-    for tension, colour in TENSIONS.items():
+    for tension, (colour, marker) in TENSIONS.items():
         true = indent(Paraboloid(radius=RADIUS), MODULUS, tension, depth=DEPTH)
         r = np.linspace(0, 0.999999 * true.contact_radius, 400)
         r, p = np.append(r, true.contact_radius), np.append(true.pressure(r), 0.0)
         for side in (-1, 1):
-            axes.plot(side * r * 1e3, p * 1e-3, color=colour, linewidth=1.2)
+            axes.plot(side * r * 1e3, p * 1e-3, color="black", linewidth=0.8, zorder=1)
         result = pl.run(
             {
                 "grid": {"points": POINTS, "size": SIZE},
@@ -46,26 +52,30 @@ def main() -> None:
         )
         line = result.dataset.isel(step=0, y=POINTS // 2)
         line = line.isel(x=line["contact"].values)
+        edge = edge_cells(result.dataset.isel(step=0, y=POINTS // 2)["contact"].values)
+        at_edge = result.dataset.isel(step=0, y=POINTS // 2, x=edge)
+        axes.plot(at_edge["x"] * 1e3, at_edge["pressure"] * 1e-3, ".", color=colour, markersize=3)
+        line = line.isel(x=slice(_EDGE, -_EDGE))
         line = line.isel(x=slice(line.sizes["x"] // 2 % 3, None, 3))
         axes.plot(
             line["x"].values * 1e3,
             line["pressure"].values * 1e-3,
-            "o",
+            marker,
             color=colour,
             markersize=3.5,
             markerfacecolor="white",
             label=f"τ₀ = {tension:g} N/m",
         )
-    axes.plot([], [], color="0.4", linewidth=1.2, label="integral equation")
+    axes.plot([], [], color="black", linewidth=0.8, label="integral equation")
+    axes.plot([], [], ".", color="0.4", markersize=3, label=EDGE_CELLS)
     axes.set(
         xlabel="x [mm]",
         ylabel="contact pressure [kPa]",
         title="Paraboloid, R = 1 mm, E* = 10 kPa, depth 50 µm",
     )
-    axes.set_ylim(0.0, 4.0)
+    axes.set_ylim(0.0, 4.4)
     axes.set_xlim(-SIZE / 2 * 1e3, SIZE / 2 * 1e3)
     axes.legend(frameon=False, loc="upper center", ncols=2)
-    figure.savefig(Path(__file__).with_name("indent-profile.png"))
 
 
 if __name__ == "__main__":

@@ -57,6 +57,8 @@ def test_from_starter_file_to_figures(cli: Cli) -> None:
     assert "contact area, Yastrebov correction [mm²]" in shown
     assert shown.count("converged") == 2
     assert "contact:\nstep  mean contact pressure [kPa]  contact radius [µm]" in shown
+    assert cli("show", "indent").stdout == shown
+    assert {*_files_named(cli("plot", "indent").stdout)} < {*files}
     drawn = cli("plot", "indent/indent.h5", "-o", "drawn", "--format", "svg", "--format", "pdf")
     figures = _files_named(drawn.stdout)
     assert {figure.suffix for figure in figures} == {".svg", ".pdf"}
@@ -234,3 +236,16 @@ def test_module_is_the_command(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert done.stderr.startswith("error: none.toml: ")
     assert done.stdout == ""
+
+
+def test_a_folder_of_several_results_is_refused(cli: Cli) -> None:
+    """`show` and `plot` of a folder take its one result file, and name several."""
+    folder = Path("several")
+    folder.mkdir()
+    for name in ("b.h5", "a.h5"):
+        (folder / name).touch()
+    for command in ("show", "plot"):
+        assert (
+            "several: holds several result files; give one of them: a.h5, b.h5"
+            in cli(command, "several", code=2).stderr
+        )

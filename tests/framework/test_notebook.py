@@ -65,6 +65,13 @@ def test_a_plot_is_upright(result: pl.Result) -> None:
         result.plot("force", ax=axes)
 
 
+@pytest.mark.parametrize("step", [2, -3])
+def test_a_plot_of_a_missing_step_is_refused(result: pl.Result, step: int) -> None:
+    """An index beyond the two load steps gives a message with the range, not an IndexError."""
+    with pytest.raises(pl.ConfigError, match=rf"step: {step} is not the index of one of 2 load"):
+        result.plot("gap", step=step)
+
+
 def test_a_run_and_a_study_show_their_values() -> None:
     """Values stand with their unit and meaning; a study names what varies and counts its runs."""
     text = words(pl.Run(**RUN)._repr_html_())

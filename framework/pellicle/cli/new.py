@@ -39,7 +39,7 @@ def new(
     if path is None:
         raise ConfigError(f"is missing; for example: pellicle new --plugin {plugin} mine", "NAME")
     folder = write_plugin(plugin, str(path), Path())
-    echo(f"wrote {folder}; next: cd {folder}, pip install -e ., python -m pytest")
+    echo(f"wrote {folder}; next: cd {folder}, pip install -e '.[test]', python -m pytest")
 
 
 def _write_starter(path: Path) -> None:

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from .printing import echo
+from .results import file_of_run
 
 
 class Format(StrEnum):
@@ -23,7 +24,7 @@ def plot(
     results: Annotated[
         Path,
         typer.Argument(
-            metavar="RESULTS", help="Result file (.h5), or the folder or study.h5 of a study."
+            metavar="RESULTS", help="Folder of a run or study, result file (.h5) or study.h5."
         ),
     ],
     directory: Annotated[
@@ -45,7 +46,7 @@ def plot(
         table, folder = read(results)
         files = save_study_figures(table, directory or folder, "study", chosen)
     else:
-        folder = directory or results.parent
-        files = save_figures(load(results), folder, results.stem, chosen)
+        file = file_of_run(results)
+        files = save_figures(load(file), directory or file.parent, file.stem, chosen)
     for path in files:
         echo(f"wrote {path}")

@@ -12,6 +12,7 @@ from .printing import echo
 from .results import (
     exit_by_convergence,
     exit_by_status,
+    file_of_run,
     print_contact,
     print_origin,
     print_oscillations,
@@ -27,7 +28,7 @@ def show(
     results: Annotated[
         Path,
         typer.Argument(
-            metavar="RESULTS", help="Result file (.h5), or the folder or study.h5 of a study."
+            metavar="RESULTS", help="Folder of a run or study, result file (.h5) or study.h5."
         ),
     ],
     si: Annotated[bool, typer.Option("--si", help="Print numbers in SI units.")] = False,
@@ -51,7 +52,7 @@ def show(
             echo(message, err=True)
         exit_by_status(table)
         return
-    result = load(results)
+    result = load(file_of_run(results))
     total, done = result.planned_steps, result.dataset.sizes["step"]
     if json:
         print_result_json(result)

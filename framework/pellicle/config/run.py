@@ -158,8 +158,8 @@ class Run(FromFile):
         """
         if "study" in data:
             raise ConfigError(
-                "makes this a study: use run_study, or Study, in place of run, or leave the table "
-                "out",
+                "makes this a study: use run_study, or Study, in place of run (`pellicle run` in a "
+                "shell), or leave the table out",
                 "study",
             )
         return cls(**data)

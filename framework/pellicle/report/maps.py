@@ -124,6 +124,8 @@ class Maps:
                 {
                     "name": field.name,
                     "unit": unit,
+                    "si": field.unit,
+                    "per_si": scale,
                     "blank": field.blank,
                     "power": field.power,
                     **({"centred": True} if field.centred else {}),
@@ -134,6 +136,7 @@ class Maps:
             )
         return {
             "unit": length_unit,
+            "per_metre": length,
             "shared": self.shared,
             "fields": fields,
             "frames": [

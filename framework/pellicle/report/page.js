@@ -46,6 +46,14 @@ function ticks(low, high, most) {
   return numbers;
 }
 
+function download(blob, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
 function makeMaps(figure, data) {
   const select = figure.querySelector("select");
   const line = figure.querySelector("input[type=range]");
@@ -272,6 +280,35 @@ function makeMaps(figure, data) {
     0: () => look({ ...whole(), at: [0, 0] }),
   };
 
+  const named = (number, ending) =>
+    `${data.fields[number].name} ${frame.label}`.replace(/[^\p{L}\p{N}.]+/gu, "-") + `.${ending}`;
+  const save = {
+    // The map as it is seen, on the ground of the page.
+    png: (number) => {
+      const whole = document.createElement("canvas");
+      whole.width = canvases[number].width;
+      whole.height = canvases[number].height;
+      const pen = whole.getContext("2d");
+      pen.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--paper");
+      pen.fillRect(0, 0, whole.width, whole.height);
+      pen.drawImage(canvases[number], 0, 0);
+      whole.toBlob((blob) => download(blob, named(number, "png")));
+    },
+    // All pixels of the map with the positions of their centres, in SI.
+    csv: (number) => {
+      const field = data.fields[number], [nx, ny] = frame.shape;
+      const lines = [`x [m],y [m],${field.name} [${field.si}]`];
+      const at = (k, axis) => ((k + 0.5) * frame.pixel[axis] - frame.size[axis] / 2) / data.per_metre;
+      for (let i = 0; i < nx; i++)
+        for (let j = 0; j < ny; j++) {
+          const value = values[number][i * ny + j];
+          const text = Number.isNaN(value) ? "" : (value / field.per_si).toPrecision(6);
+          lines.push(`${at(i, 0).toPrecision(6)},${at(j, 1).toPrecision(6)},${text}`);
+        }
+      download(new Blob([lines.join("\n"), "\n"], { type: "text/csv" }), named(number, "csv"));
+    },
+  };
+
   for (const canvas of canvases) {
     // The position of an event as shares of the width and height of the view, from below.
     const share = (event) => {
@@ -301,7 +338,11 @@ function makeMaps(figure, data) {
       centre();
     });
   }
-  for (const button of figure.querySelectorAll("button")) button.addEventListener("click", keys[button.dataset.key]);
+  for (const button of figure.querySelectorAll("[data-save]")) {
+    const number = canvases.indexOf(button.closest(".panel").querySelector("canvas"));
+    button.addEventListener("click", () => save[button.dataset.save](number));
+  }
+  for (const button of figure.querySelectorAll("[data-key]")) button.addEventListener("click", keys[button.dataset.key]);
   select.addEventListener("change", () => show(Number(select.value)));
   line?.addEventListener("input", () => show(Number(line.value)));
   alone.addEventListener("change", paint);

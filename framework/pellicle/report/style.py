@@ -148,8 +148,8 @@ def label_log_axes(figure: Figure) -> None:
             decades = np.log10(high / low)
             if decades > _LABELLED_DECADES or not 1e-3 <= low <= high <= 1e5:
                 continue
-            few = decades < 0.8
-            axis.set_minor_locator(LogLocator(subs=range(2, 10) if few else (2, 5), numticks=50))
+            between = range(2, 10) if decades < 0.5 else (2, 3, 5, 7) if decades < 1 else (2, 5)
+            axis.set_minor_locator(LogLocator(subs=between, numticks=50))
             for formatter in (axis.set_major_formatter, axis.set_minor_formatter):
                 formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 

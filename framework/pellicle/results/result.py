@@ -139,7 +139,7 @@ class Result:
         variable
             Name of a field, such as pressure, displacement, gap or contact.
         step
-            Index of the load step; -1 is the last.
+            Index of the load step from 0, as for ``isel``; -1 is the last.
         **options
             Passed to `xarray.DataArray.plot.pcolormesh`, such as ``ax`` and ``cmap``.
 
@@ -151,13 +151,20 @@ class Result:
         Raises
         ------
         ConfigError
-            The variable is not a field of the result.
+            The variable is not a field of the result, or there is no such step.
         """
         fields = [name for name, data in self.dataset.items() if data.dims == ("step", "x", "y")]
         if variable not in fields:
             raise ConfigError(
                 f"{variable!r} is not a field; give one of {', '.join(map(str, fields))}",
                 "variable",
+            )
+        steps = self.dataset.sizes["step"]
+        if not -steps <= step < steps:
+            raise ConfigError(
+                f"{step} is not the index of one of {steps} load steps; give 0 for the first to "
+                f"{steps - 1} for the last, or -1 for the last",
+                "step",
             )
         data = self.dataset.isel(step=step)
         field = data[variable]

@@ -150,6 +150,8 @@ def methods(configuration: Mapping[str, Any], versions: str, varied: tuple[str, 
         for name, value in parts.items()
         if name in values
     ]
+    words = [known[name].words if name in known else name for name in varied]
+    changes = f"Varied: {', '.join(words)}. " if words else ""
     tolerance = configuration["solver"].get("tolerance")
     ending = f", to a relative tolerance of {tolerance:g}" if tolerance is not None else ""
     solver = parts.get("solver", "several solvers")
@@ -159,6 +161,6 @@ def methods(configuration: Mapping[str, Any], versions: str, varied: tuple[str, 
         "Normal contact of a rigid indenter with a linear solid was solved by a boundary element "
         f"method with fast Fourier transforms{cells}{domain} with {grid['boundary']} boundaries. "
         f"{'; '.join(described)[:1].upper()}{'; '.join(described)[1:]}. "
-        f"Solver: {solver}{ending}. "
+        f"{changes}Solver: {solver}{ending}. "
         f"Computed with {versions}. To cite: {CITATION}."
     )

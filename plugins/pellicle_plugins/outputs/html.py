@@ -82,6 +82,7 @@ from .answer import (
     prescribed_of,
     shown_variable,
 )
+from .setup_drawing import description, setup_drawing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -99,7 +100,7 @@ _STICKING = {
 }
 """The variables that are mapped where there is an interaction."""
 _CURVES = {
-    "profile": "Pressure and gap along x through the centre, in the step that is mapped first.",
+    "profile": "Pressure and gap along x through the centre, at {step}.",
     "force_depth": "Force against depth over the load steps.",
     "area_force": "Contact area, of the cells and corrected, against force over the load steps.",
     TIME: "Force, depth and contact area over time.",
@@ -148,7 +149,7 @@ class Html(Output):
             grid = Grid(**run["grid"])
             maps, chosen = self._maps_of_steps(result, grid)
             sections = [
-                Section("In short", [*_answer(result, grid), _status(result)]),
+                Section("In short", [*_answer(result, grid), _status(result), _setup(run)]),
                 Section("Maps", [maps]),
                 Section("Curves", _pictures_of(result, chosen)),
                 Section("Numbers", [*_steps(data), *_path(result), *_oscillations(result)]),
@@ -163,7 +164,9 @@ class Html(Output):
             answer = answer_of_study(table, len(rows))
             lead = [Text(answer, lead=True)] if answer else []
             sections = [
-                Section("In short", [*lead, _status_of_study(table, len(rows))]),
+                Section(
+                    "In short", [*lead, _status_of_study(table, len(rows)), _setup(run, varied)]
+                ),
                 Section("Maps", _maps_of_runs(table, list(frames.values()), len(rows))),
                 Section("Curves", _pictures_of_study(table)),
                 Section("Numbers", [_runs(table, rows, list(frames)), *_paths(table, rows)]),
@@ -201,8 +204,18 @@ class Html(Output):
         *first, last = [f"{field.name}" for field in mapped.values()]
         names = f"{', '.join(first)} and {last}".capitalize()
         words = wording(data[shown_variable(data, prescribed)]).words
-        caption = f"{names} at prescribed {words}, in {_some(len(chosen), steps, 'load step')}."
-        maps = Maps(caption, "load step", tuple(mapped.values()), frames, begin=max(begin, 0))
+        # Over the range of the last step the first ones would have one colour.
+        colours = ", each in colours over its own range" if len(chosen) > 1 else ""
+        shown_steps = _some(len(chosen), steps, "load step")
+        caption = f"{names} at prescribed {words}, in {shown_steps}{colours}."
+        maps = Maps(
+            caption,
+            "load step",
+            tuple(mapped.values()),
+            frames,
+            begin=max(begin, 0),
+            shared=False,
+        )
         return maps, chosen
 
     def _frames_of_runs(
@@ -275,6 +288,12 @@ def _answer(result: Result, grid: Grid) -> list[Text]:
     first = answer_of_step(data, shown, grid.boundary, prescribed)
     rest = answer_of_path(data, result.path_summary)
     return [Text(first, lead=True), *([Text(rest)] if rest else [])]
+
+
+def _setup(configuration: dict[str, Any], varied: tuple[str, ...] = ()) -> Picture:
+    return Picture(
+        setup_drawing(configuration, varied), "Set-up, not to scale.", description(configuration)
+    )
 
 
 def _status(result: Result) -> Notice:
@@ -461,8 +480,14 @@ def _pictures_of(result: Result, chosen: list[int]) -> list[Picture]:
     """Return the curves of a run, with marks at the ``chosen`` steps, which are mapped."""
     fills = {name: fill for name, fill in drawings(result).items() if name in _CURVES}
     several = result.dataset.sizes["step"] > 1
+    shown = default_step(result.dataset) % result.dataset.sizes["step"]
+    step = label_of_step(result.dataset, shown, prescribed_of(result.configuration))
     return [
-        _picture(fill, _CURVES[name], partial(_marks, data=result.dataset, chosen=chosen))
+        _picture(
+            fill,
+            _CURVES[name].format(step=step),
+            partial(_marks, data=result.dataset, chosen=chosen),
+        )
         for name, fill in fills.items()
         if several or name == "profile"
     ]

@@ -339,6 +339,7 @@ def test_retract_on_request() -> None:
         (("curve.csv", *OPTIONS, "--fix", "modulus=1"), "is not a parameter"),
         (("curve.csv", *OPTIONS, "--fix", "tension=-1"), "≥ 0"),
         (("curve.csv", *OPTIONS, "--fix", "tension=1 V"), "is a voltage, not a tension"),
+        (("curve.csv", *OPTIONS, "--spring-constant", "1 N"), "is a force, not a spring constant"),
         (("curve.csv", *OPTIONS, "--fix", "tension=1e300"), "≤ 1e+30 N/m"),
         (("curve.csv", *OPTIONS, "--fix", "reduced_modulus=1e300"), "≤ 1e+30 Pa"),
         (("curve.csv", *OPTIONS, "--fix", "contact_point=-1e300"), "≥ -1e+30 m"),

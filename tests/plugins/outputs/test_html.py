@@ -16,8 +16,10 @@ from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
 
 import numpy as np
+import pandas as pd
 import pint
 import pytest
 import xarray as xr
@@ -25,6 +27,7 @@ import xarray as xr
 import pellicle as pl
 from pellicle.runs import steps
 from pellicle.version import CITATION
+from pellicle_plugins.outputs.setup_drawing import setup_drawing
 from tests.pictures import colourfulness
 
 if TYPE_CHECKING:
@@ -250,7 +253,9 @@ def test_what_was_prescribed_is_named(tmp_path: Path) -> None:
     """The list of steps, the caption of the maps and the answer name a prescribed force."""
     page = page_of(tmp_path, loading={"force": ["1 uN", "2 uN"]})
     assert [frame["label"] for frame in page.maps["frames"]] == ["1: force 1 µN", "2: force 2 µN"]
-    assert "Contact pressure and gap at prescribed force, in each load step." in page.words
+    caption = "Contact pressure and gap at prescribed force, in each load step, "
+    assert caption + "each in colours over its own range." in page.words
+    assert "along x through the centre, at force 2 µN." in page.words
     assert re.match(r"At force 2 µN: depth \S+ µm, contact radius", page.maps["frames"][1]["note"])
 
 
@@ -272,6 +277,57 @@ def test_a_rough_contact_has_no_ellipse(tmp_path: Path) -> None:
     assert re.search(r"contact fraction 0\.\d+\.", page.maps["frames"][0]["note"])
 
 
+@pytest.mark.parametrize(
+    ("kernel", "counts"),
+    [
+        ({"type": "tensed_membrane", "tension": "0.1 N/m"}, {"tension": 2, "half-space": 1}),
+        ({"type": "tensed_membrane", "tension": 0}, {"tension": 0, "half-space": 1}),
+        (
+            {
+                "type": "coated",
+                "tension": "1 mN/m",
+                "substrate": {"type": "bonded_layer", "thickness": "20 um"},
+            },
+            {"tension": 2, "layer": 1, "base": 1, "half-space": 0},
+        ),
+        (
+            {
+                "type": "layered",
+                "layers": [
+                    {"thickness": "1 um", "reduced_modulus": "1 kPa", "poissons_ratio": 0.4}
+                ],
+                "substrate": {"reduced_modulus": "2 kPa", "poissons_ratio": 0.4},
+            },
+            {"tension": 0, "layer": 1, "base": 0, "half-space": 1},
+        ),
+        (
+            {
+                "type": "layered",
+                "layers": [
+                    {"thickness": "1 um", "reduced_modulus": "1 kPa", "poissons_ratio": 0.4},
+                    {"thickness": "2 um", "reduced_modulus": "2 kPa", "poissons_ratio": 0.4},
+                ],
+                "substrate": "rigid",
+            },
+            {"tension": 0, "layer": 2, "base": 1, "half-space": 0},
+        ),
+    ],
+)
+def test_drawing_of_the_set_up(kernel: dict[str, Any], counts: dict[str, int]) -> None:
+    """It has an arrow at each end of a tensed surface, the layers, and a base below them."""
+    elastic = {"reduced_modulus": "10 kPa"}
+    if kernel["type"] == "coated":
+        kernel["substrate"] |= {"youngs_modulus": "10 kPa", "poissons_ratio": 0.45}
+    elif kernel["type"] != "layered":
+        kernel = kernel | elastic
+    run = pl.Run(**{**RUN, "kernel": kernel})
+    drawing = setup_drawing(json.loads(run.to_json()))
+    shapes = [element.get("class") for element in ElementTree.fromstring(drawing)]
+    for name, count in {**counts, "indenter": 1, "surface": 1, "load": 1}.items():
+        assert shapes.count(name) == count, name
+    assert b"paraboloid, radius 1 mm" in drawing
+
+
 def test_methods(ran: tuple[Path, xr.Dataset], studied: tuple[Path, xr.Dataset]) -> None:
     """A paragraph has kernel, solver, tolerance, versions and how to cite; a study's no axis."""
     path, data = ran
@@ -286,7 +342,7 @@ def test_methods(ran: tuple[Path, xr.Dataset], studied: tuple[Path, xr.Dataset])
     ):
         assert part in text
     (text,) = (text for text in Page(studied[0]).texts["p"] if text.startswith("Normal contact"))
-    assert "indenter: paraboloid;" in text or "indenter: paraboloid." in text
+    assert "indenter: paraboloid. Varied: radius. Solver" in text
 
 
 def test_study(studied: tuple[Path, xr.Dataset]) -> None:
@@ -404,7 +460,8 @@ def test_what_is_left_out_or_coarser_is_said(tmp_path: Path) -> None:
     outputs = [{"type": "html", "points": 8, "frames": 2}]
     page = page_of(tmp_path, loading=loading, outputs=outputs)
     assert [frame["label"][0] for frame in page.maps["frames"]] == ["3", "5"]
-    assert "in 2 of 5 load steps. Each pixel is the mean over 3 × 3 cells." in page.words
+    assert "in 2 of 5 load steps, each in colours over its own range." in page.words
+    assert "Each pixel is the mean over 3 × 3 cells." in page.words
     assert len(page.table("Results of each")) == 5
 
 
@@ -490,6 +547,45 @@ def picture(browser: Chrome, number: int = 0) -> str:
     return text
 
 
+def saved(browser: Chrome, ending: str) -> list[int]:
+    """Return the bytes of the file that a click on the first button saves."""
+    content: list[int] = browser.execute_async_script(
+        """
+        const [ending, done] = arguments, address = URL.createObjectURL;
+        URL.createObjectURL = (blob) => {
+          URL.createObjectURL = address;
+          blob.arrayBuffer().then((buffer) => done([...new Uint8Array(buffer)]));
+          return "#";
+        };
+        document.querySelector(`[data-save=${ending}]`).click();
+        """,
+        ending,
+    )
+    return content
+
+
+def test_browser_shows_tables_whole_on_a_narrow_screen(
+    browser: Chrome, ran: tuple[Path, xr.Dataset]
+) -> None:
+    """At 400 px neither the page nor any table is wider than the window, each value with a head."""
+    size = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        show(browser, ran[0])
+        wide = browser.execute_script(
+            "return [document.documentElement, ...document.querySelectorAll('.scroll')]"
+            ".filter((part) => part.scrollWidth > part.clientWidth).length"
+        )
+        heads = browser.execute_script(
+            "return [...document.querySelectorAll('td')].map((cell) => cell.dataset.label)"
+        )
+    finally:
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert wide == 0
+    assert all(heads)
+    assert "depth [µm]" in heads
+
+
 def shown_marks(browser: Chrome) -> set[str]:
     """Return the steps whose marks are seen on the curves."""
     marks: list[str] = browser.execute_script(
@@ -543,6 +639,17 @@ def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset]) -> N
     assert picture(browser) != whole[0]
     assert "contact pressure" in readout.text
     other.send_keys("0")
+    assert saved(browser, "png")[:4] == [0x89, 0x50, 0x4E, 0x47]
+    table = pd.read_csv(BytesIO(bytes(saved(browser, "csv"))))
+    assert list(table) == ["x [m]", "y [m]", "contact pressure [Pa]"]
+    expected = data["pressure"].isel(step=1)
+    pressure_range = expected.max().item()
+    values = table["contact pressure [Pa]"].to_numpy().reshape(expected.shape)
+    np.testing.assert_allclose(values, expected, atol=2e-5 * pressure_range)
+    for axis in "xy":
+        np.testing.assert_allclose(
+            np.unique(table[f"{axis} [m]"]), expected[axis], rtol=1e-5, atol=1e-12
+        )
     select = browser.find_element(By.CSS_SELECTOR, "select")
     assert select.text.splitlines() == ["1: depth 5 µm", "2: depth 10 µm"]
     before = picture(browser)

@@ -17,7 +17,7 @@ from .curve import Curve
 from .origin import Origin
 from .roles import EXAMPLE, OF_BASE, POSITIONS, SIGNALS, TIME, ColumnMap, factor, is_voltage
 
-SpringConstant = Annotated[float, Quantity("N/m", above=0)]
+SpringConstant = Annotated[float, Quantity("N/m", above=0, noun="a spring constant")]
 """Spring constant of a cantilever [N/m]."""
 Speed = Annotated[float, Quantity("m/s", above=0)]
 """Speed of a cantilever's base, or of the indenter [m/s]."""
@@ -77,15 +77,21 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
         A column, a unit or a calibration is missing, or a unit measures something else.
     """
     if not SIGNALS & columns.keys():
+        known = ", ".join(columns) or "none that is known"
         raise ConfigError(
-            f"has no column force (columns: {', '.join(columns) or 'none that is known'}); give a "
-            f"header such as {EXAMPLE!r}, or name its columns (--columns on the command line)"
+            f"has no column force or deflection (columns: {known}); give a "
+            f"header such as {EXAMPLE!r}, or name its columns (--columns on the command line), "
+            "which has to name each column that is read"
         )
     names = [name for name in ("position", "depth") if name in columns] or [
         name for name in OF_BASE if name in columns
     ]
     if len(names) != 1:
-        problem = f"both {' and '.join(names)}" if names else "no column position or depth"
+        problem = (
+            f"both {' and '.join(names)}"
+            if names
+            else "no column position or depth, nor extension or height"
+        )
         raise ConfigError(f"has {problem}; give one of them, e.g. {EXAMPLE!r}")
     (name,) = names
     position = factor(name, columns[name].unit) * columns[name].values

@@ -30,6 +30,8 @@ LABEL = "curve"
 """Name of the column that tells the curves of one table apart."""
 _SI = {"force": "N", "time": "s"}
 """Units of columns that are not lengths."""
+_TYPICAL = {"m": "nm", "N": "nN", "s": "ms"}
+"""Units of the examples in messages."""
 OF_BASE = ("height", "extension")
 """Positions from which the deflection must be subtracted."""
 _MAP = "Z = extension nm, Defl = deflection nm"
@@ -138,5 +140,5 @@ def factor(name: str, unit: str) -> float:
     except ValueError:
         raise ConfigError(
             f"column {name} is in {shown(unit)}, which is not a unit of {name}; give it in "
-            f"{si} or a multiple, e.g. {EXAMPLE!r}{hint}"
+            f"{si} or a multiple, e.g. {f'{name} [{_TYPICAL[si]}]'!r}{hint}"
         ) from None
