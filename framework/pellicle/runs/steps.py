@@ -42,13 +42,14 @@ def solve_steps(
     origin = provenance(run)
     solid = Relaxation.of(run)
     for index in range(len(steps), len(run.loading.values)):
-        # Only the copy in ``steps`` outlives a solve; the next one starts from its state.
         here, others = replace(setting, state=steps.state), 0
         if solid:
             here = solid.setting(here, steps.field("pressure"), steps.field("displacement"))
             others = solid.applications
-        step = _solved_step(run, here, index, bar.step(index), others)
-        yield steps.append(step.assign_attrs(origin))
+        # Without a name for the solved step, only its copy in ``steps`` outlives the solve.
+        yield steps.append(
+            _solved_step(run, here, index, bar.step(index), others).assign_attrs(origin)
+        )
 
 
 def _solved_step(
