@@ -25,7 +25,7 @@ _STICKS = 41.0
 _STEP = 3 + 1 / 8
 # The same step in the compressed file that is assembled in memory. Blocks that the solver has freed
 # and that malloc keeps are too small for it.
-_SERIALISED = 2.3
+_SERIALISED = 2.6
 # Buffers and Python's own objects [bytes].
 _FIXED = 1e6
 
