@@ -384,7 +384,7 @@ def outcome(sample: Sample, segment: str = "approach", *, follow: bool = True) -
     seconds = process_time() - began
     verdict = verdict_of(fit)
     rivals = fit.rivals
-    tied = tuple(each.rival.code for each in rivals.tied) if rivals is not None else ("none",)
+    tied = tuple(tie.rival.code for tie in rivals.tied) if rivals is not None else ("none",)
     covers = any(holds(estimate) for estimate in moduli_of(fit))
     named = rivals.advice if rivals is not None else ""
     second = ""
@@ -399,7 +399,7 @@ def moduli_of(fit: pl.Fit) -> list[pl.Estimate]:
     if fit.rivals is None or fit.rivals.verdict == "not shown":
         return [fit.reduced_modulus]
     tied = fit.rivals.tied if fit.rivals.verdict == "undecided" else fit.rivals.fits[:1]
-    return [each.estimates["reduced_modulus"] for each in tied]
+    return [tie.estimates["reduced_modulus"] for tie in tied]
 
 
 def holds(estimate: pl.Estimate) -> bool:
@@ -426,7 +426,7 @@ def followed(sample: Sample, curve: Curve, named: str) -> str:
 
 def pooled(sample: Sample, curves: list[Curve], **options: Any) -> pl.PooledFit:
     """Return the pooled fit of several approaches."""
-    named = {str(number): (each.position, each.force) for number, each in enumerate(curves)}
+    named = {str(number): (curve.position, curve.force) for number, curve in enumerate(curves)}
     speeds = [float((c.position[-1] - c.position[0]) / (c.time[-1] - c.time[0])) for c in curves]
     return pl.fit_pooled(
         named, indenter=sample.truth.indenter, radius=RADIUS, speed=speeds, **options

@@ -99,22 +99,22 @@ def main() -> None:
     print(f"killed with {len(list(finished.glob('*.json')))} fits finished")
     for folder in (killed, once):
         ended = subprocess.run(command(path, folder), capture_output=True, text=True, check=False)
-        said = [line for line in ended.stdout.splitlines() if "done before" in line]
-        print(f"{folder.name}: exit code {ended.returncode}; {'; '.join(said)}")
+        lines = [line for line in ended.stdout.splitlines() if "done before" in line]
+        print(f"{folder.name}: exit code {ended.returncode}; {'; '.join(lines)}")
     expected = truth(given.pixels, given.pixels)
     for name in NAMES:
         image = np.load(once / "maps" / f"map-{name}.npy")
         resumed = np.load(killed / "maps" / f"map-{name}.npy")
         low, high = (np.load(once / "maps" / f"map-{name}_{end}.npy") for end in ("low", "high"))
-        there = np.isfinite(image)
+        known = np.isfinite(image)
         inside = (np.nan_to_num(low, nan=-np.inf) <= expected[name]) & (
             expected[name] <= np.nan_to_num(high, nan=np.inf)
         )
-        error = np.median(np.abs(image - expected[name])[there])
+        error = np.median(np.abs(image - expected[name])[known])
         print(
             f"{name}: resumed {'equal' if np.array_equal(image, resumed, True) else 'DIFFERENT'}, "
-            f"{int((~there).sum())} NaN, median error {error:.3g}, "
-            f"{100 * inside[there].mean():.1f} % inside the interval"
+            f"{int((~known).sum())} NaN, median error {error:.3g}, "
+            f"{100 * inside[known].mean():.1f} % inside the interval"
         )
 
 

@@ -233,11 +233,11 @@ def test_the_example_of_a_type_is_valid(
     """`explain` shows every field with its meaning, and an example that makes the component."""
     monkeypatch.chdir(tmp_path)
     np.savetxt("heights.txt", np.zeros((4, 4)))
-    (explained,) = explanations(f"{family}.{type_}", {})
+    (explanation,) = explanations(f"{family}.{type_}", {})
     component = pl.registry().components[family][type_].component
-    assert {row.name for row in explained.fields} >= {*component.model_fields} - {"type"}
-    assert all(row.meaning and row.default for row in explained.fields)
-    data = tomllib.loads(explained.example)
+    assert {row.name for row in explanation.fields} >= {*component.model_fields} - {"type"}
+    assert all(row.meaning and row.default for row in explanation.fields)
+    data = tomllib.loads(explanation.example)
     if family == "prescription":
         assert pl.Loading(**data["loading"]).prescribed == type_
         return
@@ -261,9 +261,9 @@ def test_the_example_of_a_type_is_valid(
 )
 def test_tables_are_explained(cli: Cli, word: str, name: str) -> None:
     """The tables of a run file have their fields and an example of TOML."""
-    (explained,) = json.loads(cli("explain", word, "--json").stdout)
-    assert name in [row["name"] for row in explained["fields"]]
-    data = tomllib.loads(explained["example"])
+    (explanation,) = json.loads(cli("explain", word, "--json").stdout)
+    assert name in [row["name"] for row in explanation["fields"]]
+    data = tomllib.loads(explanation["example"])
     if word == "grid":
         assert pl.Grid(**data["grid"]).points == (256, 256)
     elif word == "fit":

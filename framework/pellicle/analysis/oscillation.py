@@ -64,11 +64,13 @@ def oscillations(
     # A leg begins where the count of cycles does, or begins anew.
     begins = np.isfinite(cycles) & ~(np.diff(cycles, prepend=nan) > 0)
     ends = np.flatnonzero(np.diff(np.isfinite(cycles).astype(int), append=0) < 0) + 1
-    found = []
+    responses = []
     for first in np.flatnonzero(begins):
         after = [*np.flatnonzero(begins[first + 1 :]) + first + 1, *ends[ends > first]]
-        found.append(_response(slice(int(first), int(min(after))), t, cycles, delta, load, good))
-    return found
+        responses.append(
+            _response(slice(int(first), int(min(after))), t, cycles, delta, load, good)
+        )
+    return responses
 
 
 def _response(

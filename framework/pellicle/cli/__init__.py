@@ -86,8 +86,8 @@ app = typer.Typer(
 )
 
 
-def _print_version(asked: bool) -> None:
-    if asked:
+def _print_version(requested: bool) -> None:
+    if requested:
         echo(f"pellicle {__version__}")
         echo(f"to cite it: {CITATION}")
         raise typer.Exit

@@ -29,14 +29,14 @@ def explain(
     from pellicle.config.explain import explanations
     from pellicle.fitting.config import FitConfig
 
-    found = explanations(type_, {"fit": FitConfig})
-    found = [
-        e._replace(example=_FIT) if e.name == "fit" and e.kind == "table" else e for e in found
+    listed = explanations(type_, {"fit": FitConfig})
+    listed = [
+        e._replace(example=_FIT) if e.name == "fit" and e.kind == "table" else e for e in listed
     ]
     if json:
-        print_json([e._asdict() | {"fields": [row._asdict() for row in e.fields]} for e in found])
+        print_json([e._asdict() | {"fields": [row._asdict() for row in e.fields]} for e in listed])
         return
-    for number, explanation in enumerate(found):
+    for number, explanation in enumerate(listed):
         if number:
             echo("")
         origin = f", from {explanation.origin}" if explanation.origin else ""

@@ -60,7 +60,7 @@ CONTACT_POINT = Parameter("contact_point", "m")
 """Position of first touch."""
 MODULUS = Parameter("reduced_modulus", "Pa", logarithmic=True, shared=True, plausible=(1.0, 1e12))
 """E*."""
-TENSION = Parameter("tension", "N/m", minimum=0.0, shared=True, plausible=(0.0, 10.0))
+TENSION = Parameter("tension", "N/m", minimum=0.0, shared=True, plausible=(0.0, 1.0))
 """τ₀."""
 THICKNESS = Parameter("thickness", "m", logarithmic=True, shared=True, plausible=(1e-9, 1.0))
 """h of a layer."""

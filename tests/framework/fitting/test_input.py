@@ -254,7 +254,7 @@ def test_wrong_radius_is_noticed(factor: float) -> None:
 
 def test_sphere_is_not_sunk() -> None:
     """The sphere's curve ends at its equator."""
-    with pytest.raises(pl.ConfigError, match="is the radius right"):
+    with pytest.raises(pl.ConfigError, match="are radius and units right"):
         pl.fit(*_curve(), indenter="sphere", radius=RADIUS / 1000)
 
 

@@ -120,13 +120,13 @@ def keys(texts: list[str], configuration: dict[str, Any]) -> set[str]:
     paths = {path for path, _, _ in walk(configuration) if "." in path}
     words = {*paths, *(name for name in VARIABLES if "_" in name), "contact_area_yastrebov"}
     snake = re.compile(r"(?<![\w/.-])[a-z]+(?:[_.][a-z0-9]+)*_[a-z0-9]+")
-    found = {word for text in texts for word in words if re.search(rf"\b{re.escape(word)}\b", text)}
+    named = {word for text in texts for word in words if re.search(rf"\b{re.escape(word)}\b", text)}
     # The provenance names entry points, such as kernel.half_space.
     entry_points = re.compile(r"^\w+\.\w+$")
     rest = {
         match[0] for text in texts if not entry_points.match(text) for match in snake.finditer(text)
     }
-    return found | rest
+    return named | rest
 
 
 @pytest.fixture(scope="module")

@@ -152,7 +152,7 @@ def check_depth(model: ForceModel, depth: float, parameters: Coordinates) -> Non
         )
     raise ConfigError(
         f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at "
-        f"{model.depth_limit:.3g} m; is the radius right? If so, leave out the deepest part",
+        f"{model.depth_limit:.3g} m; are radius and units right? If so, leave out the deepest part",
         "indenter",
     )
 

@@ -103,12 +103,18 @@ def _measurements(likelihood: Likelihood, point: float) -> Iterator[Measurement]
     speed = float(np.ptp(base)) / duration
     known = likelihood.time is not None
     forth = np.linspace(0, duration, _ROWS)
-    both, there = np.concatenate([down, down[::-1]]), np.concatenate([forth, duration + forth])
+    there_and_back, times_of_both = (
+        np.concatenate([down, down[::-1]]),
+        np.concatenate([forth, duration + forth]),
+    )
     if likelihood.segment == "approach":
-        yield Measurement("the retraction", both, there, "both")
-    held = np.concatenate([down, np.full(_ROWS, down[-1])])
+        yield Measurement("the retraction", there_and_back, times_of_both, "both")
+    dwell = np.concatenate([down, np.full(_ROWS, down[-1])])
     yield Measurement(
-        f"a dwell of {_duration(duration, known)} at the largest depth", held, there, "both"
+        f"a dwell of {_duration(duration, known)} at the largest depth",
+        dwell,
+        times_of_both,
+        "both",
     )
     for factor in (0.1, 10.0):
         words = f"of {_speed(factor * speed)}" if known else f"{factor:g} times as fast"
