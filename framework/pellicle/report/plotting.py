@@ -530,7 +530,11 @@ def _figure(
             text.set_text(for_document(text.get_text()))
         label_log_axes(figure)
         clear_legends(figure)
-        yield figure
+        try:
+            yield figure
+        finally:
+            # Artists refer to each other, so the fields that they draw would outlive the figure.
+            figure.clear()
 
 
 def _parts(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Dataset]:

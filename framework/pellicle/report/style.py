@@ -37,8 +37,7 @@ class FigureStyle(Model):
     """How figures are set for print."""
 
     width: Annotated[
-        float | None,
-        Quantity("m", at_least=0.02, at_most=1.0),
+        Annotated[float, Quantity("m", at_least=0.02, at_most=1.0)] | None,
         Field(description="width of the figure, such as 85 mm or 170 mm [m]"),
     ] = None
     font_size: Annotated[
