@@ -40,7 +40,7 @@ def test_runs_and_is_on_record(pellicle: Command, tmp_path: Path) -> None:
     again = pellicle(*run, "outputs=[{type='hdf5'}]")
     assert again.returncode == 0, again.stderr
     shown = pellicle("show", str(tmp_path / "squeeze.h5"))
-    assert "mean_gap [m]" in shown.stdout
+    assert "mean gap [µm]" in shown.stdout
 
 
 def test_is_in_the_schema(pellicle: Command) -> None:

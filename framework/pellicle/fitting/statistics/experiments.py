@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.errors import ConvergenceError, PellicleError
+from pellicle.errors import PellicleError
 from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.parameters import CONTACT_POINT, Coordinates
 
@@ -150,20 +150,22 @@ def _duration(value: float, known: bool) -> str:
 def _separation(
     likelihood: Likelihood, measurement: Measurement, truth: Explanation, guess: Explanation
 ) -> float:
-    """Return the least χ² of a model on what another predicts, now and by a measurement."""
+    """Return the least χ² of a model on what another predicts, now and by a measurement.
+
+    A measurement that cannot be predicted, as by a cantilever that jumps, is worth nothing.
+    """
     rival, parameters = truth
-    curves = [
-        _predicted(rival, likelihood.thinned(_ROWS), parameters),
-        _predicted(rival, _planned(likelihood, measurement), parameters | {CONTACT_POINT: 0.0}),
-    ]
     other, start = guess
-    pool = Pool.of([_member(other, curve) for curve in curves])
-    starts = [other.start(member, start) for member in pool.members]
-    starts[1][CONTACT_POINT] = 0.0
-    worth = np.inf
-    with suppress(ConvergenceError, PellicleError):
-        worth = pool.minimise(pool.joined(starts), rough=True).chi_squared
-    return worth
+    with suppress(PellicleError):
+        curves = [
+            _predicted(rival, likelihood.thinned(_ROWS), parameters),
+            _predicted(rival, _planned(likelihood, measurement), parameters | {CONTACT_POINT: 0.0}),
+        ]
+        pool = Pool.of([_member(other, curve) for curve in curves])
+        starts = [other.start(member, start) for member in pool.members]
+        starts[1][CONTACT_POINT] = 0.0
+        return pool.minimise(pool.joined(starts), rough=True).chi_squared
+    return 0.0
 
 
 def _member(rival: Rival, curve: Likelihood) -> Likelihood:
