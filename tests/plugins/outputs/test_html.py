@@ -5,13 +5,11 @@ from __future__ import annotations
 import base64
 import itertools
 import json
-import os
 import re
 import shlex
-import shutil
 import tomllib
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
@@ -476,39 +474,6 @@ def test_study_with_failures(tmp_path: Path) -> None:
     assert re.search(r"iteration limit 2 \(file \w{8}…\): the surface", page.words)
     statuses = [row["status"] for row in page.table("The last load step")]
     assert statuses == ["NOT CONVERGED", "converged"]
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
-    """Return a Chromium without a window."""
-    from selenium.webdriver import Chrome, ChromeOptions, ChromeService
-
-    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
-    if chromium is None or driver is None:
-        message = "no browser: apt-get install chromium chromium-driver"
-        if os.environ.get("PELLICLE_BROWSER") == "required":
-            pytest.fail(message)
-        pytest.skip(message)
-    options = ChromeOptions()
-    options.binary_location = chromium
-    for switch in (
-        "headless",
-        "no-sandbox",
-        "disable-gpu",
-        "disable-quic",
-        "no-first-run",
-        "disable-background-networking",
-        "disable-component-update",
-        "disable-sync",
-        "window-size=1280,900",
-        f"user-data-dir={tmp_path_factory.mktemp('chromium')}",
-    ):
-        options.add_argument(f"--{switch}")
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    opened = Chrome(options=options, service=ChromeService(driver))
-    opened.set_script_timeout(20)
-    yield opened
-    opened.quit()
 
 
 def show(browser: Chrome, path: Path) -> None:
