@@ -12,10 +12,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.config.run import Run
 from pellicle.results.result import Result
-from pellicle.results.step import Steps
-from pellicle.runs.compose import compose
-from pellicle.runs.progress import Progress
-from pellicle.runs.steps import solve_steps
+from pellicle.runs.runner import solve
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,15 +52,10 @@ def solved(document: Mapping[str, Any]) -> Frame:
     ConfigError, PluginError
         The document is not a run, or it cannot be executed.
     """
-    import scipy.fft
-
     run = Run.from_mapping(document)
-    steps = Steps(count := len(run.loading.values))
-    with warnings.catch_warnings(record=True) as caught, scipy.fft.set_workers(1):
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        for _ in solve_steps(run, compose(run), steps, Progress(count, enabled=False)):
-            pass
-    result = Result(steps.joined())
+        result = solve(run)
     step = int(np.argmax(result.dataset["force"].values))
     deepest = result.dataset.isel(step=step)
     row = int(np.argmax(np.max(deepest["displacement"].values, axis=0)))

@@ -24,12 +24,13 @@ from bokeh.plotting import figure
 from pellicle.arrays import Array
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError, PellicleError
+from pellicle.report.style import OKABE_ITO
 from pellicle.units import axis_unit, readable
 
 from .controls import Control, changed, controls, document, letting_go, sticking
 from .frames import Frame, solved
 
-_BLUE, _ORANGE, _GREY = "#0072B2", "#D55E00", "#767676"
+_BLUE, _ORANGE, _GREY = *OKABE_ITO[:2], "#767676"
 _STEP = 0.01
 """Step of a slider in decades."""
 _SAVE = """
