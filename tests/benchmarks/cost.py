@@ -72,8 +72,9 @@ def measure(
     import scipy.fft
 
     import pellicle as pl
+    from pellicle.numerics import operators
     from pellicle.problem import measure as measure_pressure
-    from pellicle_plugins.solvers.preconditioner import Preconditioner
+    from pellicle_plugins.solvers import circulant_stiffness
 
     with scipy.fft.set_workers(threads):
         # What is imported on the way is not the solve's.
@@ -85,8 +86,8 @@ def measure(
         operator(np.ones(given.grid.shape))
         one = _median(lambda: operator(np.ones(given.grid.shape)), threads)
         transforms: Counter[tuple[tuple[int, ...], str]] = Counter()
-        _count(type(operator), "_apply", transforms, _plane_of_operator)
-        _count(Preconditioner, "_stiffen", transforms, lambda it: it._plane)
+        for module in (operators, circulant_stiffness):
+            _count(module, transforms)
         used = operator.applications
         clock = time.process_time if threads == 1 else time.perf_counter
         started = clock()
@@ -110,24 +111,20 @@ def measure(
         "ratio": seconds / double,
         "own": seconds / own,
         "setup": setup / one,
-        "peak": peak / (8 * np.prod(_plane_of_operator(operator))),
+        "peak": peak / (8 * np.prod(operator.padded)),
         "contact": float(state.contact.mean()),
     }
 
 
-def _plane_of_operator(operator: Any) -> tuple[int, ...]:
-    return tuple(getattr(operator, "_padded", None) or operator.grid.shape)
+def _count(module: Any, counts: Counter[tuple[tuple[int, ...], str]]) -> None:
+    """Count the pairs of transforms that a module asks for, by their shape and type."""
+    original = module.convolve
 
+    def counted(field: Any, symbol: Any, padded: tuple[int, int], *others: Any) -> object:
+        counts[padded, str(field.dtype)] += 1
+        return original(field, symbol, padded, *others)
 
-def _count(owner: type, method: str, counts: Counter[Any], shape: Callable[[Any], object]) -> None:
-    """Count the calls of a method by the shape and type of their transforms."""
-    original = getattr(owner, method)
-
-    def counted(self: object, field: Any) -> object:
-        counts[shape(self), str(field.dtype)] += 1
-        return original(self, field)
-
-    setattr(owner, method, counted)
+    module.convolve = counted
 
 
 def _bare_pair(shape: tuple[int, ...], dtype: str) -> Callable[[], object]:

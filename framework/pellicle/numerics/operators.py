@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import copy
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, Protocol, Self, TypeVar, runtime_checkable
 
@@ -21,14 +20,12 @@ from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import Grid
 
 from .closed_form import disagreement
+from .convolution import Workspace, convolve
 from .grid_checks import warn_of_cells
 from .hankel import Tabulated
 from .influence import cell_coefficients
 
 Float = TypeVar("Float", np.float32, np.float64)
-
-# Padded cells in a block of rows that is transformed at once, few enough for the cache.
-_BLOCK = 2**17
 
 # Least displacement of a cell under its own pressure, over that of the finest wave.
 _LEAST_OWN = 0.25
@@ -97,18 +94,22 @@ def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
     return call
 
 
-class Operator(ABC):
+class Operator:
     """The linear map from pressure [Pa] to displacement [m], both of the grid's shape.
 
     It is linear, symmetric and positive; `applications` counts its uses.
     """
 
     _symbol: _Symbol
+    padded: tuple[int, int]
+    """Number of points of the transform along x and y."""
     _has_mean: bool
 
     def __init__(self, kernel: HasCompliance, grid: Grid) -> None:
         self.kernel = kernel
         self.grid = grid
+        self.workspace = Workspace()
+        """Memory of the transforms, shared with `scaled` copies and preconditioners."""
         # Shared with `scaled` copies.
         self._count = [0]
         self._factor = 1.0
@@ -179,24 +180,27 @@ class Operator(ABC):
 
     def parts(self) -> dict[str, object]:
         """Return the attributes by name, to detect changes by comparison."""
-        return {**vars(self), "class": type(self), "symbol": self._symbol["D"]}
+        return {**vars(self), "class": type(self), "symbol": self._symbol.double}
 
-    def __call__(self, pressure: NDArray[Float]) -> NDArray[Float]:
-        """Return the displacement [m] under a pressure [Pa], as a new array.
+    def __call__(
+        self, pressure: NDArray[Float], out: NDArray[Float] | None = None
+    ) -> NDArray[Float]:
+        """Return the displacement [m] under a pressure [Pa], in ``out`` or a new array.
 
-        A pressure in single precision is transformed in single precision, in half the time.
+        ``out`` may be ``pressure``. A pressure in single precision is transformed in single
+        precision, in half the time.
         """
         self._count[0] += 1
-        displacement = np.asarray(self._apply(pressure), dtype=pressure.dtype)
+        deflection = 0.0
+        if self._spring_compliance:
+            deflection = self.deflection(float(pressure.sum(dtype=np.float64)))
+        symbol = self._symbol[pressure.dtype]
+        displacement = convolve(pressure, symbol, self.padded, self.workspace, out)
         if (unit := self._symbol.unit * self._factor) != 1:
             displacement *= unit
-        if self._spring_compliance:
-            displacement += self.deflection(float(pressure.sum(dtype=np.float64)))
+        if deflection:
+            displacement += deflection
         return displacement
-
-    @abstractmethod
-    def _apply(self, pressure: NDArray[Any]) -> object:
-        """Return the displacement over the unit of the symbol and the factor, a new array."""
 
 
 def _power_of_two(number: float) -> float:
@@ -214,9 +218,9 @@ class _Symbol:
         self.double = read_only(values)
         self._single: NDArray[np.float32] | None = None
 
-    def __getitem__(self, kind: str) -> NDArray[Any]:
-        """Return the symbol for transforms of a complex type; single precision on demand."""
-        if kind == "D":
+    def __getitem__(self, precision: np.dtype[Any]) -> NDArray[Any]:
+        """Return the symbol in the precision of a field; single precision on demand."""
+        if precision == np.float64:
             return self.double
         if self._single is None:
             self._single = read_only(self.double.astype(np.float32))
@@ -249,11 +253,7 @@ class PeriodicOperator(Operator):
             )
         _refuse_growth(kernel, compliance, float(q.max()))
         self._symbol = _Symbol(symbol)
-
-    def _apply(self, pressure: NDArray[Any]) -> object:
-        transform = scipy.fft.rfft2(pressure)
-        transform *= self._symbol[transform.dtype.char]
-        return scipy.fft.irfft2(transform, s=self.grid.shape, overwrite_x=True)
+        self.padded = grid.shape
 
 
 class FreeOperator(Operator):
@@ -288,33 +288,10 @@ class FreeOperator(Operator):
                 "use more points",
                 "grid.points",
             )
-        self._padded = tuple(scipy.fft.next_fast_len(2 * n - 1, real=True) for n in grid.shape)
+        px, py = (scipy.fft.next_fast_len(2 * n - 1, real=True) for n in grid.shape)
+        self.padded = px, py
         # Even in both directions, so the transform of the wrapped coefficients is real.
-        self._symbol = _Symbol(scipy.fft.rfft2(_wrap(cells, self._padded)).real.copy())
-        # Allocating this array for each application would take longer than the transforms.
-        self._work = np.empty((self._padded[0], self._padded[1] // 2 + 1), dtype=np.complex128)
-
-    def _apply(self, pressure: NDArray[Any]) -> object:
-        (nx, ny), py = self.grid.shape, self._padded[1]
-        rows = max(1, _BLOCK // py)
-        blocks = [slice(start, start + rows) for start in range(0, nx, rows)]
-        transform = self._room(np.result_type(pressure, np.complex64))
-        # Row by row, so that the rows of zeros are never transformed along y.
-        for block in blocks:
-            transform[:nx][block] = scipy.fft.rfft(pressure[block], n=py, axis=1)
-        transform[nx:] = 0
-        transform = scipy.fft.fft(transform, axis=0, overwrite_x=True)
-        transform *= self._symbol[transform.dtype.char]
-        columns = scipy.fft.ifft(transform, axis=0, overwrite_x=True)[:nx]
-        displacement = np.empty(self.grid.shape, columns.real.dtype)
-        for block in blocks:
-            displacement[block] = scipy.fft.irfft(columns[block], n=py, axis=1)[:, :ny]
-        return displacement
-
-    def _room(self, kind: np.dtype[Any]) -> NDArray[Any]:
-        """Return the work array, or half of it for single precision."""
-        number = self._work.size
-        return self._work.reshape(-1).view(kind)[:number].reshape(self._work.shape)
+        self._symbol = _Symbol(scipy.fft.rfft2(_wrap(cells, self.padded)).real.copy())
 
 
 def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.fft
 from numpy.typing import NDArray
 
 from pellicle.grid import Grid
+from pellicle.numerics.convolution import convolve
 from pellicle.numerics.operators import Operator
 
 Field = NDArray[np.float32]
@@ -32,13 +32,14 @@ class Stiffness:
         stiffness = 1 / operator.compliance(q)
         stiffness[0, 0] /= 2
         self.shape = shape
+        self._workspace = operator.workspace
         self.greatest = float(stiffness.max())
         """The stiffness of the stiffest wave [Pa/m]."""
         self._symbol = np.asarray(stiffness / self.greatest, dtype=np.float32)
 
-    def __call__(self, field: Field) -> Field:
-        """Return K applied to a field; for a field in m the pressure is `greatest` times this."""
-        transform = scipy.fft.rfft2(field)
-        transform *= self._symbol
-        force = scipy.fft.irfft2(transform, s=self.shape, overwrite_x=True)
-        return np.asarray(force, dtype=np.float32)
+    def __call__(self, field: Field, out: Field | None = None) -> Field:
+        """Return K applied to a field, in ``out``, which may be ``field``, or a new array.
+
+        For a field in m the pressure is `greatest` times this.
+        """
+        return convolve(field, self._symbol, self.shape, self._workspace, out)
