@@ -47,7 +47,7 @@ python_maximum_signature_line_length = 88
 napoleon_use_rtype = False
 napoleon_use_ivar = True
 nitpicky = True
-# Names in signatures that the reference does not describe: those of other packages, written as their
+# Names in signatures that the reference does not describe: those of other packages, as their
 # authors import them, and types that users only hand on.
 nitpick_ignore_regex = [
     ("py:class", r"(xarray|xr|numpy|np|matplotlib|pathlib|collections|pydantic|pellicle)\..*"),
