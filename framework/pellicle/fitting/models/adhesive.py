@@ -123,46 +123,60 @@ class AdhesiveModel:
         work, modulus = values[WORK_OF_ADHESION], values[MODULUS]
         tiny = float(np.finfo(float).tiny) ** 0.25
         scale = max(deepest, work / modulus, tiny)
-        top = np.log(scale)
-        for _ in range(200):
-            position, force = self._equilibria(np.array([np.exp(top)]), values)
-            if position[0] > deepest and force[0] > 0:
-                break
-            top += 0.3
-        else:
-            raise ConfigError(
-                f"of {work:.3g} J/m² pulls a solid of {modulus:.3g} Pa out without end",
-                "work_of_adhesion",
-            )
+        top = self._top(float(np.log(scale)), deepest, values)
         grid = np.linspace(top - _DECADES * np.log(10), top, _SEARCH)
         position, _ = self._equilibria(np.exp(grid), values)
         index = int(np.argmin(position))
         start = float(grid[index])
         if 0 < index < _SEARCH - 1:
             width = float(grid[1] - grid[0])
-            for _ in range(3):
-                at = start + width * np.array([-1.0, 0.0, 1.0])
-                below, middle, above = self._equilibria(np.exp(at), values)[0].tolist()
+            around = position[index - 1 : index + 2]
+            for number in range(3):
+                if number:
+                    at = start + width * np.array([-1.0, 0.0, 1.0])
+                    around, _ = self._equilibria(np.exp(at), values)
+                below, middle, above = around.tolist()
                 bend = below - 2 * middle + above
                 if bend > 0:
                     start += width * float(np.clip((below - above) / (2 * bend), -1.0, 1.0))
                 width /= 10
         nodes = np.exp(start + (top - start) * np.linspace(0, 1, _NODES) ** 2)
-        position, force = self._equilibria(nodes, values)
-        changes = []
-        for parameter in (MODULUS, TENSION):
-            step = _STEP * values[parameter]
-            if parameter == TENSION:
-                step = max(step, 1e-5 * modulus * scale)
-            other = {**values, parameter: values[parameter] + step}
-            varied = self._equilibria(nodes, other)
-            changes.append(((varied[0] - position) / step, (varied[1] - force) / step))
-        elastic, retraction = self._superposed(nodes, values)
-        by_work = -retraction / (2 * work)
-        by_force = elastic.by_depth * modulus * by_work
         softness = 0.0 if self.stiffness is None else 1 / self.stiffness
-        changes.append((by_work + softness * by_force, by_force))
-        return _Branch(position, force, tuple(changes))
+        elastic, retraction = self._superposed(nodes, values)
+        force = modulus * (elastic.force - elastic.by_depth * retraction)
+        tension = values[TENSION]
+        step = max(_STEP * tension, 1e-5 * modulus * scale)
+        varied, other = self._superposed(nodes, {**values, TENSION: tension + step})
+        by_tension = (
+            -(other - retraction) / step,
+            (modulus * (varied.force - varied.by_depth * other) - force) / step,
+        )
+        by_work = -retraction / (2 * work), -elastic.by_depth * modulus * retraction / (2 * work)
+        # At equal depths forces are homogeneous in E*, τ₀ and w, of degree 1, and D of degree 0.
+        depth_by, force_by = (
+            (tension * t + work * w) / modulus
+            for t, w in zip(by_tension, by_work, strict=True)
+        )
+        by_modulus = -depth_by, force / modulus - force_by
+        changes = tuple(
+            (depth + softness * change, change)
+            for depth, change in (by_modulus, by_tension, by_work)
+        )
+        return _Branch(nodes - retraction + softness * force, force, changes)
+
+    def _top(self, start: float, deepest: float, values: Values) -> float:
+        """Return the logarithm of a depth without adhesion that lies beyond a base position [m]."""
+        for first in range(0, 200, 8):
+            tops = start + 0.3 * np.arange(first, first + 8)
+            position, force = self._equilibria(np.exp(tops), values)
+            beyond = np.flatnonzero((position > deepest) & (force > 0))
+            if beyond.size:
+                return float(tops[beyond[0]])
+        raise ConfigError(
+            f"of {values[WORK_OF_ADHESION]:.3g} J/m² pulls a solid of {values[MODULUS]:.3g} Pa out "
+            "without end",
+            "work_of_adhesion",
+        )
 
     def _superposed(self, depth: Array, values: Values) -> tuple[Any, Array]:
         """Return the contact without adhesion over E*, and the retraction D [m]."""
