@@ -25,6 +25,8 @@ _OF_MANY = 12.0
 """Difference of AIC by which the best of many rivals must beat no effect at all."""
 _FIRST_TENSIONS = (0.03, 0.3)
 """Tensions from which a search for one starts, over modulus and depth."""
+_FINE = 0.1
+"""Error of the condensed χ² of which intervals are sought, in its unit."""
 Verdict = Literal["needed", "not shown", "undecided", "other"]
 
 
@@ -245,6 +247,10 @@ def _estimates(
     """Return what is fitted beside contact point and baseline, with intervals if requested."""
     estimates = {}
     bounds = chi_squared.deviations(minimum.parameters)
+    thin, near = chi_squared, minimum
+    if threshold is not None:
+        thin = chi_squared.condensed(minimum.parameters, _FINE)
+        near = minimum if thin is chi_squared else thin.minimise(minimum.parameters, rough=True)
     for p in chi_squared.parameters:
         if p.name in (CONTACT_POINT.name, OFFSET.name, SLOPE.name):
             continue
@@ -252,7 +258,7 @@ def _estimates(
             continue
         ends: Ends = None, None
         if threshold is not None and p in chi_squared.free:
-            ends = _interval(chi_squared, minimum, p, threshold)
+            ends = _interval(thin, near, p, threshold)
         estimates[p.name] = estimate_of(p, chi_squared, minimum, ends, bounds)
     return estimates
 

@@ -21,8 +21,8 @@ WORK_OF_ADHESION = Parameter(
     "work_of_adhesion", "J/m^2", logarithmic=True, shared=True, plausible=(1e-7, 10.0)
 )
 """w."""
-_SEARCH, _NODES = 160, 120
-"""Nodes of the search for the instability, and of the branch above it."""
+_SEARCH, _BEYOND, _NODES = 160, 24, 120
+"""Nodes of the search for the instability, below and above a depth, and of the branch above it."""
 _DECADES = 6.0
 """Range of depths without adhesion that is searched, below the largest."""
 _STEP = 1e-4
@@ -67,6 +67,8 @@ class AdhesiveModel:
     """Spring constant of the cantilever [N/m]; None if it is infinite or not known."""
     parameters: ClassVar[tuple[Parameter, ...]] = (MODULUS, TENSION, WORK_OF_ADHESION)
     coarse: ClassVar[None] = None
+    is_sudden: ClassVar[bool] = True
+    """The rows at first touch weigh so much that χ² depends on which of them touch."""
     on_base: ClassVar[bool] = True
     accuracy: ClassVar[float] = 1e-5
 
@@ -123,15 +125,12 @@ class AdhesiveModel:
         work, modulus = values[WORK_OF_ADHESION], values[MODULUS]
         tiny = float(np.finfo(float).tiny) ** 0.25
         scale = max(deepest, work / modulus, tiny)
-        top = self._top(float(np.log(scale)), deepest, values)
-        grid = np.linspace(top - _DECADES * np.log(10), top, _SEARCH)
-        position, _ = self._equilibria(np.exp(grid), values)
-        index = int(np.argmin(position))
-        start = float(grid[index])
-        if 0 < index < _SEARCH - 1:
-            width = float(grid[1] - grid[0])
+        grid, position = self._searched(float(np.log(scale)), deepest, values)
+        top, index = float(grid[-1]), int(np.argmin(position))
+        start, width = float(grid[index]), float(grid[1] - grid[0])
+        if 0 < index < grid.size - 1:
             around = position[index - 1 : index + 2]
-            for number in range(3):
+            for number in range(2):
                 if number:
                     at = start + width * np.array([-1.0, 0.0, 1.0])
                     around, _ = self._equilibria(np.exp(at), values)
@@ -154,8 +153,7 @@ class AdhesiveModel:
         by_work = -retraction / (2 * work), -elastic.by_depth * modulus * retraction / (2 * work)
         # At equal depths forces are homogeneous in E*, τ₀ and w, of degree 1, and D of degree 0.
         depth_by, force_by = (
-            (tension * t + work * w) / modulus
-            for t, w in zip(by_tension, by_work, strict=True)
+            (tension * t + work * w) / modulus for t, w in zip(by_tension, by_work, strict=True)
         )
         by_modulus = -depth_by, force / modulus - force_by
         changes = tuple(
@@ -164,14 +162,17 @@ class AdhesiveModel:
         )
         return _Branch(nodes - retraction + softness * force, force, changes)
 
-    def _top(self, start: float, deepest: float, values: Values) -> float:
-        """Return the logarithm of a depth without adhesion that lies beyond a base position [m]."""
-        for first in range(0, 200, 8):
-            tops = start + 0.3 * np.arange(first, first + 8)
-            position, force = self._equilibria(np.exp(tops), values)
-            beyond = np.flatnonzero((position > deepest) & (force > 0))
-            if beyond.size:
-                return float(tops[beyond[0]])
+    def _searched(self, start: float, deepest: float, values: Values) -> tuple[Array, Array]:
+        """Return logarithms of depths without adhesion, and base positions [m] up to one beyond."""
+        step = _DECADES * float(np.log(10)) / _SEARCH
+        grid = np.asarray(start + step * np.arange(-_SEARCH, _BEYOND), dtype=np.float64)
+        for _ in range(80):
+            position, force = self._equilibria(np.exp(grid), values)
+            beyond = (position > deepest) & (force > 0)
+            last = _SEARCH + int(np.argmax(beyond[_SEARCH:]))
+            if beyond[last]:
+                return grid[: last + 1], position[: last + 1]
+            grid = grid + step * (_BEYOND - 1)
         raise ConfigError(
             f"of {values[WORK_OF_ADHESION]:.3g} J/m² pulls a solid of {values[MODULUS]:.3g} Pa out "
             "without end",

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Parameter, Values
@@ -106,6 +107,10 @@ class RelaxingModel(ABC):
             path = self._path(varied, depth) - self._path(course, depth)
             derivatives[parameter] = (change + by_path * path) / step
         return ModelForce(force, by_depth, derivatives)
+
+    def at_rows(self, rows: NDArray[np.intp]) -> RelaxingModel:
+        """Return the model of some of the rows."""
+        return replace(self, history=self.history.at_rows(rows))
 
     def _path(self, course: Course, depth: Array) -> Array:
         """Return the depth [m] at which the growing contact was as large as at each row."""

@@ -14,9 +14,11 @@ from scipy.optimize import least_squares
 from pellicle.arrays import Array, Mask
 from pellicle.errors import ConvergenceError
 from pellicle.fitting.curves.curve import Segment
-from pellicle.fitting.models.force_model import ForceModel
+from pellicle.fitting.models.force_model import ForceModel, HasRows
 from pellicle.fitting.models.history import History, constant_speed, last_row_of_loading
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, Parameter
+
+from .condensed import Condensation, Rows
 
 REACH = np.log(100.0)
 """Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""
@@ -31,6 +33,10 @@ _METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 60), ("
 _TOLERANCE = 1e-10
 _ROUGH_METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 30), ("trf", 60))
 _ROUGH_TOLERANCE = 1e-7
+_LARGEST_STEP = 3.0
+"""Largest change of a logarithm by extrapolation."""
+_NODES = 32
+"""Half the number of nodes that a condensation tries first."""
 _SLOWEST = np.log(30.0)
 """Logarithm of the ratio of a relaxation time, either way, to the one that a search starts from."""
 _BALANCE_STEPS = 200
@@ -124,6 +130,14 @@ class ChiSquared(ABC):
     def coarse(self) -> ChiSquared | None:
         """Return the same with force curves from coarser grids; None if none is simulated."""
 
+    def condensed(self, parameters: Coordinates, tolerance: float) -> ChiSquared:
+        """Return the same χ² from a model that is evaluated at fewer rows, if it is that smooth.
+
+        At ``parameters`` the change of the model is at most ``tolerance`` in the unit of χ, which
+        moves no estimate by more than that many standard errors.
+        """
+        return self
+
     @cached_property
     def _column(self) -> dict[Parameter, int]:
         return {parameter: column for column, parameter in enumerate(self.parameters)}
@@ -174,15 +188,44 @@ class ChiSquared(ABC):
         variances = np.where(variances > 0, variances, np.inf)
         return bounds | dict(zip(free, (np.sqrt(variances) * scale).tolist(), strict=True))
 
+    def along(self, parameters: Coordinates, parameter: Parameter, change: float) -> Coordinates:
+        """Return the coordinates where one changes by ``change`` and the others follow.
+
+        The one itself is returned as it is; the others are those of least χ², to first order.
+        """
+        others = [p for p in self.free if p != parameter and parameters[p] != p.minimum]
+        scale = np.array([self.ranges[p].scale for p in others])
+        jacobian = self.jacobian(parameters)
+        column = jacobian[:, self.columns([parameter])[0]] * change
+        steps = np.linalg.lstsq(jacobian[:, self.columns(others)] * scale, -column, rcond=None)[0]
+        moved = zip(others, (steps * scale).tolist(), strict=True)
+        return self.limited(parameters | {p: parameters[p] + step for p, step in moved}, parameters)
+
+    def limited(self, parameters: Coordinates, near: Coordinates) -> Coordinates:
+        """Return the coordinates within their ranges, and logarithms not far from others."""
+        limited = dict(parameters)
+        for p in self.free:
+            _, low, high = self.ranges[p]
+            if p.logarithmic and not p.is_length:
+                low, high = near[p] - _LARGEST_STEP, near[p] + _LARGEST_STEP
+            limited[p] = min(max(parameters[p], low), high)
+        return limited
+
     def without(self, parameter: Parameter, best: Minimum) -> Minimum:
         """Return the minimum of χ² near ``best`` with a parameter at its least value."""
         return self.minimise(best.parameters | {parameter: parameter.minimum}, (parameter,))
 
     def minimise(
-        self, start: Coordinates, fixed: Sequence[Parameter] = (), *, rough: bool = False
+        self,
+        start: Coordinates,
+        fixed: Sequence[Parameter] = (),
+        *,
+        tolerance: float = _TOLERANCE,
+        rough: bool = False,
     ) -> Minimum:
         """Return the minimum of χ² near ``start``, where the parameters in ``fixed`` stay.
 
+        ``tolerance`` is the relative change of χ² and of the parameters at which a search ends.
         A ``rough`` search ends sooner, and where it has come to; its χ² is an upper bound.
 
         Raises
@@ -209,7 +252,7 @@ class ChiSquared(ABC):
 
         u = np.clip([start[p] for p in free], lowest, highest) / scale
         # Dogbox is faster at active bounds, but makes small steps along curved valleys.
-        tolerance = _ROUGH_TOLERANCE if rough else _TOLERANCE
+        tolerance = _ROUGH_TOLERANCE if rough else tolerance
         for method, most in _ROUGH_METHODS if rough else _METHODS:
             solution = least_squares(
                 lambda u: linearised(u.tobytes())[0],
@@ -253,6 +296,8 @@ class Likelihood(ChiSquared):
     """Time of each row [s], of shape (n,); None if it is not known."""
     segment: Segment = "approach"
     """Pass that was measured; rows of one are sorted by position, those of both by time."""
+    condensation: Condensation | None = None
+    """Sum of squares over more rows, of which those here are the nodes."""
 
     @cached_property
     def history(self) -> History:
@@ -364,6 +409,40 @@ class Likelihood(ChiSquared):
         coarse = self.force_model.coarse
         return None if coarse is None else self.with_models([coarse])
 
+    def condensed(self, parameters: Coordinates, tolerance: float) -> Likelihood:
+        """Return the same χ² from a model that is evaluated at fewer rows, if it is that smooth."""
+        if getattr(self.force_model, "is_sudden", False):
+            return self
+        force, _ = self._balanced(parameters)
+        groups, count = self._smooth(parameters[CONTACT_POINT]), _NODES
+        while 4 * count <= self.force.size:
+            condensation = Condensation.of(groups, self.force, count)
+            if condensation.error(force) <= tolerance * self.noise:
+                rows, model = condensation.nodes, self.force_model
+                return replace(
+                    self,
+                    position=self.position[rows],
+                    force=self.force[rows],
+                    time=None if self.time is None else self.time[rows],
+                    force_model=model.at_rows(rows) if isinstance(model, HasRows) else model,
+                    condensation=condensation,
+                )
+            count *= 2
+        return self
+
+    def _smooth(self, point: float) -> list[tuple[Rows, Array, float | None]]:
+        """Return rows of loading, dwell and unloading, a coordinate, and where models bend."""
+        size, time = self.force.size, self.history.time
+        kind = np.zeros(size)
+        if self.segment == "both":
+            kind = np.where(self.first_pass, np.where(time < self.history.top, 0.0, 1.0), 2.0)
+        groups: list[tuple[Rows, Array, float | None]] = []
+        for value in np.unique(kind):
+            rows = np.flatnonzero(kind == value)
+            dwells = value == 1
+            groups.append((rows, (time if dwells else self.base)[rows], None if dwells else point))
+        return groups
+
     def depth(self, parameters: Coordinates) -> Array:
         """Return the position relative to the contact point [m]."""
         depth: Array = self.position - parameters[CONTACT_POINT]
@@ -417,7 +496,10 @@ class Likelihood(ChiSquared):
     def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return (model − force)/noise, of shape (n,), and its Jacobian."""
         force, jacobian = self._balanced(parameters)
-        return (force - self.force) / self.noise, jacobian / self.noise
+        if self.condensation is None:
+            return (force - self.force) / self.noise, jacobian / self.noise
+        residuals, jacobian = self.condensation.residuals(force, jacobian)
+        return residuals / self.noise, jacobian / self.noise
 
     def _balanced(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return force and Jacobian at the exact position of the base rather than the noisy tip.
