@@ -33,8 +33,6 @@ _METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 60), ("
 _TOLERANCE = 1e-10
 _ROUGH_METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 30), ("trf", 60))
 _ROUGH_TOLERANCE = 1e-7
-_LARGEST_STEP = 3.0
-"""Largest change of a logarithm by extrapolation."""
 _NODES = 32
 """Half the number of nodes that a condensation tries first."""
 _SLOWEST = np.log(30.0)
@@ -188,44 +186,15 @@ class ChiSquared(ABC):
         variances = np.where(variances > 0, variances, np.inf)
         return bounds | dict(zip(free, (np.sqrt(variances) * scale).tolist(), strict=True))
 
-    def along(self, parameters: Coordinates, parameter: Parameter, change: float) -> Coordinates:
-        """Return the coordinates where one changes by ``change`` and the others follow.
-
-        The one itself is returned as it is; the others are those of least χ², to first order.
-        """
-        others = [p for p in self.free if p != parameter and parameters[p] != p.minimum]
-        scale = np.array([self.ranges[p].scale for p in others])
-        jacobian = self.jacobian(parameters)
-        column = jacobian[:, self.columns([parameter])[0]] * change
-        steps = np.linalg.lstsq(jacobian[:, self.columns(others)] * scale, -column, rcond=None)[0]
-        moved = zip(others, (steps * scale).tolist(), strict=True)
-        return self.limited(parameters | {p: parameters[p] + step for p, step in moved}, parameters)
-
-    def limited(self, parameters: Coordinates, near: Coordinates) -> Coordinates:
-        """Return the coordinates within their ranges, and logarithms not far from others."""
-        limited = dict(parameters)
-        for p in self.free:
-            _, low, high = self.ranges[p]
-            if p.logarithmic and not p.is_length:
-                low, high = near[p] - _LARGEST_STEP, near[p] + _LARGEST_STEP
-            limited[p] = min(max(parameters[p], low), high)
-        return limited
-
     def without(self, parameter: Parameter, best: Minimum) -> Minimum:
         """Return the minimum of χ² near ``best`` with a parameter at its least value."""
         return self.minimise(best.parameters | {parameter: parameter.minimum}, (parameter,))
 
     def minimise(
-        self,
-        start: Coordinates,
-        fixed: Sequence[Parameter] = (),
-        *,
-        tolerance: float = _TOLERANCE,
-        rough: bool = False,
+        self, start: Coordinates, fixed: Sequence[Parameter] = (), *, rough: bool = False
     ) -> Minimum:
         """Return the minimum of χ² near ``start``, where the parameters in ``fixed`` stay.
 
-        ``tolerance`` is the relative change of χ² and of the parameters at which a search ends.
         A ``rough`` search ends sooner, and where it has come to; its χ² is an upper bound.
 
         Raises
@@ -252,7 +221,7 @@ class ChiSquared(ABC):
 
         u = np.clip([start[p] for p in free], lowest, highest) / scale
         # Dogbox is faster at active bounds, but makes small steps along curved valleys.
-        tolerance = _ROUGH_TOLERANCE if rough else tolerance
+        tolerance = _ROUGH_TOLERANCE if rough else _TOLERANCE
         for method, most in _ROUGH_METHODS if rough else _METHODS:
             solution = least_squares(
                 lambda u: linearised(u.tobytes())[0],

@@ -21,8 +21,6 @@ Ends = tuple[float | None, float | None]
 CONFIDENCE = 0.95
 _ACCURACY = 2e-3
 """Accuracy of an end, relative to its distance from the best value."""
-_TOLERANCE = 1e-8
-"""Relative change of χ² at which the search for a minimum with one parameter fixed ends."""
 _FIRST = 1e-2
 """First trial, as a share of the way to the limit, where the bound lies beyond the limit."""
 _LEAST = 1e-12
@@ -217,25 +215,13 @@ def _end(
     span = limit - value
     if not span:
         return None
-    # Searches that start further away may end in another valley, so each goes on from the last.
+    # Searches that start further away may end in another valley, so each starts from the last.
     path = {0.0: best.parameters}
-
-    def start_at(share: float) -> Coordinates:
-        """Return a start on the line through two minima, at first on the tangent of the profile."""
-        here = {parameter: value + share * span}
-        inside = max(nearer for nearer in path if nearer <= share)
-        if others := [other for other in path if other != inside]:
-            other = min(others, key=lambda other: (other < share, abs(other - share)))
-            ratio = (share - inside) / (other - inside)
-            line = {p: x + ratio * (path[other][p] - x) for p, x in path[inside].items()}
-            return likelihood.limited(line, path[inside]) | here
-        # The force may be far from linear over the interval.
-        tangent = likelihood.along(best.parameters, parameter, share * span)
-        return min((tangent | here, path[inside] | here), key=likelihood.chi_squared)
 
     def excess(share: float) -> float:
         """Return √Δχ² − √threshold, which is nearly linear in the distance."""
-        minimum = likelihood.minimise(start_at(share), (parameter,), tolerance=_TOLERANCE)
+        start = path[max(nearer for nearer in path if nearer <= share)]
+        minimum = likelihood.minimise(start | {parameter: value + share * span}, (parameter,))
         if minimum.chi_squared < best.chi_squared - _IMPROVEMENT:
             raise ImprovedMinimum(minimum)
         path[share] = minimum.parameters
