@@ -59,12 +59,27 @@ return curve?.data.force.length > 1;
 
 
 @contextlib.contextmanager
-def served(checkout: Path) -> Iterator[tuple[psutil.Process, str]]:
-    """Run the explorer of a checkout; yield its process and address."""
-    paths = os.pathsep.join(str(checkout / folder) for folder in ("framework", "plugins"))
-    command = [sys.executable, "-m", "pellicle", "explore", "--no-browser"]
+def served(
+    checkout: Path, *options: str, log: Path | None = None, folder: Path | None = None
+) -> Iterator[tuple[psutil.Process, str]]:
+    """Run the explorer of a checkout in a folder; yield its process and address.
+
+    Its messages go to a file ``log``, if one is given.
+    """
+    paths = os.pathsep.join(str(checkout / name) for name in ("framework", "plugins"))
+    command = [sys.executable, "-m", "pellicle", "explore", "--no-browser", *options]
     environment = {**os.environ, "PYTHONPATH": paths, "PYTHONUNBUFFERED": "1"}
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as process:
+    with (
+        open(log or os.devnull, "w", encoding="utf-8") as messages,
+        subprocess.Popen(
+            command,
+            stdout=subprocess.PIPE,
+            stderr=messages if log else None,
+            text=True,
+            env=environment,
+            cwd=folder,
+        ) as process,
+    ):
         try:
             assert process.stdout is not None
             yield psutil.Process(process.pid), process.stdout.readline().strip()
@@ -82,6 +97,7 @@ def opened(address: str, folder: str) -> Chrome:
     for switch in ("headless", "no-sandbox", "disable-gpu", "window-size=1280,900"):
         options.add_argument(f"--{switch}")
     options.add_argument(f"--user-data-dir={folder}")
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     browser = Chrome(options=options, service=ChromeService("/usr/bin/chromedriver"))
     browser.set_script_timeout(60)
     browser.get(address)

@@ -153,13 +153,17 @@ class Page:
         self.explorer = Explorer(run, None, self.document)
         self.explorer.show()
 
+    def step(self) -> None:
+        """Wait for the run that is being solved, and call what is to be called then."""
+        self.explorer._worker.submit(lambda: None).result()
+        for entry in self.document.session_callbacks:
+            entry.callback()
+
     def rest(self) -> None:
         """Go on until nothing is left to be solved or shown."""
-        self.explorer._worker.submit(lambda: None).result()
-        while callbacks := self.document.session_callbacks:
-            for entry in callbacks:
-                entry.callback()
-            self.explorer._worker.submit(lambda: None).result()
+        self.step()
+        while self.document.session_callbacks or self.explorer._is_working:
+            self.step()
 
     def type(self, title: str, text: str) -> None:
         """Type a text into the field of a quantity."""
@@ -220,6 +224,30 @@ def test_a_text_that_is_not_a_value_stays_refused(start: pl.Run) -> None:
     page.type("tension", "8 mN/m")
     page.rest()
     assert not page.errors
+
+
+def test_an_impossible_change_leaves_the_run_before(
+    start: pl.Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The picture of a drag that ends at an impossible run is finished: it is what is saved."""
+    page = Page(start)
+    page.rest()
+    page.type("tension", "6 mN/m")
+    page.step()
+    assert page.explorer._frame is not None
+    assert page.explorer._frame.is_preview
+
+    def refuses(*_: object) -> None:
+        raise ConfigError("is not possible", "kernel.substrate.thickness")
+
+    with monkeypatch.context() as impossible:
+        impossible.setattr(type(start.kernel), "compliance", refuses)
+        page.type("thickness", "1 nm")
+        page.step()
+    page.rest()
+    assert page.errors == ["is not possible"]
+    assert page.saved["kernel"]["tension"] == "6 mN/m"
+    np.testing.assert_array_equal(page.explorer._frame.force, solved(page.saved).force)
 
 
 def test_at_rest_the_picture_is_the_run_of_the_file(start: pl.Run) -> None:

@@ -66,6 +66,7 @@ class Explorer:
         self._rows: dict[str, ControlRow] = {}
         self._panel = column(sizing_mode="stretch_width")
         self._frame: Frame | None = None
+        self._shown: Mapping[str, Any] | None = None
         self._answer, self._message, self._remarks = (
             Div(styles=styles, sizing_mode="stretch_width") for styles in (ANSWER, ERROR, REMARK)
         )
@@ -164,13 +165,13 @@ class Explorer:
         """Solve the present run, once the one that is being solved is finished."""
         self._is_stale = True
         if not self._is_working:
-            self._start(self._frame)
+            self._start(self._document, self._frame)
 
-    def _start(self, start: Frame | None) -> None:
-        """Solve the present run in the other thread, as a preview if there is a ``start``."""
+    def _start(self, configuration: Mapping[str, Any], start: Frame | None) -> None:
+        """Solve a run in the other thread, as a preview if there is a ``start``."""
         if not self._is_closed:
             self._is_working, self._is_stale = True, False
-            self._worker.submit(self._solve, self._document, start)
+            self._worker.submit(self._solve, configuration, start)
 
     def _solve(self, configuration: Mapping[str, Any], start: Frame | None) -> None:
         outcome: Frame | Exception
@@ -185,47 +186,48 @@ class Explorer:
     def _show(self, configuration: Mapping[str, Any], outcome: Frame | Exception) -> None:
         """Show a frame or an error, and go on to what is next."""
         self._is_working = False
-        try:
-            for entry in self._rows.values():
-                entry.blame("")
-            if isinstance(outcome, Frame):
-                self._draw(configuration, outcome)
-            else:
-                self._blame(outcome)
-        finally:
-            if self._is_stale:
-                self._start(self._frame)
-            elif isinstance(outcome, Frame) and outcome.is_preview:
-                rest = partial(self._finish, configuration)
-                self._target.add_timeout_callback(rest, _REST)
+        is_finished = configuration is self._shown
+        if configuration is self._document:
+            self._blame(outcome if isinstance(outcome, Exception) else None)
+        if isinstance(outcome, Frame):
+            self._draw(configuration, outcome)
+        if self._is_stale:
+            self._start(self._document, self._frame)
+        elif self._frame is not None and self._frame.is_preview and not is_finished:
+            self._target.add_timeout_callback(partial(self._finish, self._shown), _REST)
 
-    def _finish(self, configuration: Mapping[str, Any]) -> None:
-        """Solve the run of a preview in full, if it is still the present one."""
-        if configuration is self._document and not self._is_working:
-            self._start(None)
+    def _finish(self, configuration: Mapping[str, Any] | None) -> None:
+        """Solve the run of a preview in full, if it is still shown.
+
+        It may not be the present one: a change that is not possible leaves the picture before.
+        """
+        if configuration and configuration is self._shown and not self._is_working:
+            self._start(configuration, None)
 
     def _draw(self, configuration: Mapping[str, Any], frame: Frame) -> None:
-        self._frame = frame
+        self._frame, self._shown = frame, configuration
         self._plots.draw(frame, self._share)
         self._answer.text = answer(frame)
-        self._message.text = ""
         if not frame.is_preview:
             self._remarks.text = lines(frame.remarks)
             self._text.text = tomli_w.dumps(configuration)
 
-    def _blame(self, error: Exception) -> None:
-        """Show an error beside the control that it names, or above the plots."""
-        if not isinstance(error, PellicleError):
-            notes = getattr(error, "__notes__", ())
-            texts = ["; ".join([f"{type(error).__name__}: {error}", *notes])]
-            _LOG.error("a component failed", exc_info=error)
-        elif isinstance(error, ConfigError):
-            texts = []
+    def _blame(self, error: Exception | None) -> None:
+        """Show an error beside the controls that it names, or above the plots; None clears it."""
+        beside: dict[str, str] = {}
+        above: list[str] = []
+        if isinstance(error, ConfigError):
             for problem in error.problems:
                 if problem.field in self._rows:
-                    self._rows[problem.field].blame(problem.message)
+                    beside[problem.field] = problem.message
                 else:
-                    texts.append(str(problem))
-        else:
-            texts = [str(error)]
-        self._message.text = lines(texts)
+                    above.append(str(problem))
+        elif isinstance(error, PellicleError):
+            above = [str(error)]
+        elif error is not None:
+            notes = getattr(error, "__notes__", ())
+            above = ["; ".join([f"{type(error).__name__}: {error}", *notes])]
+            _LOG.error("a component failed", exc_info=error)
+        for path, entry in self._rows.items():
+            entry.blame(beside.get(path, ""))
+        self._message.text = lines(above)
