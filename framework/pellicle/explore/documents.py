@@ -56,7 +56,7 @@ def sticking(given: Mapping[str, Any], work_of_adhesion: str) -> dict[str, Any]:
     """
     key = Run.from_mapping(given).loading.prescribed
     steps = given["loading"][key]
-    back = [-steps[-1] * share / 4 for share in (0, 1, 2)]
+    back = [0.0, -steps[-1] / 4, -steps[-1] / 2]
     path = [*steps, *reversed(steps[:-1]), *back]
     loaded = dict(replaced(given, f"loading.{key}", path))
     return loaded | {"interaction": {"type": "jkr", "work_of_adhesion": work_of_adhesion}}

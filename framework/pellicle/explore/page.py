@@ -209,7 +209,7 @@ class Explorer:
         self._plots.draw(frame, self._share)
         self._answer.text = answer(frame)
         if not frame.is_preview:
-            self._remarks.text = lines(frame.remarks)
+            _fill(self._remarks, lines(frame.remarks))
             self._text.text = tomli_w.dumps(configuration)
 
     def _blame(self, error: Exception | None) -> None:
@@ -230,4 +230,9 @@ class Explorer:
             _LOG.error("a component failed", exc_info=error)
         for path, entry in self._rows.items():
             entry.blame(beside.get(path, ""))
-        self._message.text = lines(above)
+        _fill(self._message, lines(above))
+
+
+def _fill(part: Div, markup: str) -> None:
+    """Show markup, or nothing in its place if it is empty."""
+    part.text, part.visible = markup, bool(markup)
