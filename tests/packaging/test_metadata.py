@@ -63,7 +63,7 @@ def test_what_the_owner_has_to_fill_in_is_marked(project: dict[str, Any]) -> Non
 
 
 def test_every_python_of_the_workflow_is_allowed(project: dict[str, Any]) -> None:
-    """The workflow tests every Python that the package names, the lowest first, on three systems."""
+    """The workflow tests each Python that the package names, lowest first, on three systems."""
     workflow = text(".github/workflows/tests.yml")
     (versions,) = re.findall(r"python: \[(.+)\]", workflow)
     lowest = project["requires-python"].removeprefix(">=")
