@@ -6,6 +6,7 @@ import http.client
 import threading
 import tomllib
 from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,6 +36,11 @@ MODELS = "const models = [...(window.Bokeh?.documents[0]?._all_models ?? new Map
 FIELDS = """const fields = {}; for (const model of models) if (model.type === "TextInput") {
   fields[model.title] = model; }"""
 
+SAVE = """const press = node => { for (const element of node.querySelectorAll("*")) {
+  if (element.shadowRoot) press(element.shadowRoot);
+  if (element.tagName === "BUTTON" && element.textContent.includes("Save")) element.click(); } };
+press(document);"""
+
 
 @pytest.fixture(scope="module")
 def start() -> pl.Run:
@@ -43,18 +49,26 @@ def start() -> pl.Run:
     return pl.Run.from_toml(path, ["grid.points=24"])
 
 
+@contextmanager
+def serving(server: Server) -> Iterator[Server]:
+    """Run a server in another thread."""
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    try:
+        yield server
+    finally:
+        server.stop()
+        thread.join(20)
+    assert not thread.is_alive()
+
+
 @pytest.fixture(scope="module")
 def server(start: pl.Run) -> Iterator[Server]:
-    """Return a server of the explorer that runs in another thread."""
+    """Return a running server of the explorer."""
     position = np.linspace(-1e-6, 2e-6, 50)
     measured = Measured(position, 0.04 * np.maximum(position, 0.0) ** 1.5 * 1e3)
-    served = Server(lambda target: Explorer(start, measured, target).show())
-    thread = threading.Thread(target=served.run)
-    thread.start()
-    yield served
-    served.stop()
-    thread.join(20)
-    assert not thread.is_alive()
+    with serving(Server(lambda target: Explorer(start, measured, target).show())) as running:
+        yield running
 
 
 def test_every_quantity_of_the_run_has_a_control(start: pl.Run) -> None:
@@ -318,6 +332,23 @@ def test_nobody_enters_without_the_token_or_by_another_name(server: Server) -> N
         assert answer(server, path, Cookie=known, Host="127.0.0.1").status == 403
 
 
+def test_the_ticket_of_the_browser_serves_once() -> None:
+    """It stands in the command that opens the browser, which other users of the machine can see."""
+    with serving(Server(lambda target: None)) as server:
+        parts = urlsplit(server.ticket_address)
+        assert urlsplit(server.address).query.partition("=")[2] not in parts.query
+        assert answer(server, "/?ticket=").status == 403
+        entered = answer(server, f"/?{parts.query}")
+        assert entered.status == 302
+        known = str(entered.getheader("Set-Cookie")).partition(";")[0]
+        assert answer(server, f"/?{parts.query}").status == 403
+        assert answer(server, "/", Cookie=known).status == 200
+        assert (
+            answer(server, "/", Cookie=known.partition("=")[0] + "=" + parts.query[7:]).status
+            == 403
+        )
+
+
 def cookie(server: Server) -> str:
     """Return the cookie of a visitor with the token."""
     entered = answer(server, f"/?{urlsplit(server.address).query}")
@@ -382,8 +413,17 @@ def test_a_port_that_is_taken_is_said(server: Server) -> None:
         Server(lambda target: None, port or 0)
 
 
-def test_sliders_change_the_curves(server: Server, browser: Chrome, start: pl.Run) -> None:
-    """A drag brings the numbers of the changed run; a bad value is said beside its field."""
+def test_sliders_change_the_curves(
+    server: Server,
+    browser: Chrome,
+    start: pl.Run,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A drag brings the numbers of the changed run; a bad value is said beside its field.
+
+    The file is saved where the browser saves, and nothing is written where the server runs.
+    """
     from selenium.webdriver.support.ui import WebDriverWait
 
     def wait_for(script: str) -> Any:
@@ -391,6 +431,11 @@ def test_sliders_change_the_curves(server: Server, browser: Chrome, start: pl.Ru
             lambda _: browser.execute_script(f"{MODELS} {FIELDS} {script}")
         )
 
+    work, downloads = tmp_path / "work", tmp_path / "downloads"
+    work.mkdir()
+    monkeypatch.chdir(work)
+    behavior = {"behavior": "allow", "downloadPath": str(downloads)}
+    browser.execute_cdp_cmd("Browser.setDownloadBehavior", behavior)
     force = 'models.find(m => m.type === "ColumnDataSource" && "force" in m.data).data.force'
     browser.get(server.address)
     wait_for(
@@ -409,6 +454,10 @@ def test_sliders_change_the_curves(server: Server, browser: Chrome, start: pl.Ru
     text = 'models.find(m => m.type === "PreText").text'
     saved = wait_for(f"return {text}.includes('6.295 mN/m') && {text}")
     assert tomllib.loads(saved) == given
+    browser.execute_script(SAVE)
+    WebDriverWait(browser, 30).until(lambda _: (downloads / "explored.toml").exists())
+    assert tomllib.loads((downloads / "explored.toml").read_text("utf-8")) == given
+    assert not list(work.iterdir())
     drawn = wait_for(f"return Array.from({force})")
     np.testing.assert_allclose(np.array(drawn) / drawn[-1], expected / expected[-1], rtol=1e-12)
     browser.execute_script(f"{MODELS} {FIELDS} fields['tension'].value = '5 mN'")

@@ -51,7 +51,7 @@ def explore(
     server = Server(lambda document: Explorer(run, measured, document).show(), port)
     echo(f"{server.address}\nopen it in a browser on this machine; Ctrl-C ends it")
     if browser:
-        webbrowser.open(server.address)
+        webbrowser.open(server.ticket_address)
     try:
         server.run()
     except KeyboardInterrupt:
