@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _STYLES = {"indenter": "--", "displacement": "-"}
 _HEADS = "curve", "series", "wavenumber [rad/m]", "density [m4]", "wave_vectors"
 _ROUND_OFF = 1e-18
-"""Density over the highest below which a ring holds round-off: waves 1e-9 as high as the highest."""
+"""Density over the highest below which a ring holds round-off: waves 1e-9 times as high."""
 _Curves = list[tuple[Label, dict[str, analysis.Spectrum]]]
 
 
