@@ -94,9 +94,9 @@ def jump_energy(before: xr.Dataset | None, equilibrium: Equilibrium) -> float:
     """Return the energy [J] that jumps have lost since the step ``before``; 0 if it cannot be told.
 
     Without a jump the energy changes by the work ∫F dδ of the step, whatever is prescribed; a jump
-    loses the rest. That counts if it is more than the trapezoidal rule may miss, so every jump shows
-    once the steps are small enough. NaN where the energy is not known, or the last step did not
-    converge.
+    loses the rest. That counts if it is more than the trapezoidal rule may miss, so every jump
+    shows once the steps are small enough. NaN where the energy is not known, or the last step did
+    not converge.
     """
     if before is None or not before["converged"].item():
         return float("nan")
