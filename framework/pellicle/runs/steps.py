@@ -24,6 +24,7 @@ from pellicle.numerics.problem import Equilibrium, Stiffness, equilibrium_of, me
 from pellicle.numerics.solution import Stop
 from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable
+from pellicle.results.variables import corrected_fraction
 
 from .adhesion import force_error, greatest_pull
 from .progress import Bar
@@ -77,6 +78,7 @@ def _solved_step(
     }
     scalars = {
         **{variable.name: area for variable, area in areas.items()},
+        **{corrected_fraction(v).name: area / run.grid.area for v, area in areas.items()},
         **report,
         **({"stiffness": stiffness.value} if stiffness else {}),
         **({"time": run.loading.times[index]} if run.loading.times else {}),
@@ -90,7 +92,7 @@ def _solved_step(
         "status": message,
         "wall_time": time.perf_counter() - started,
     }
-    added = (*areas, *prescription.variables)
+    added = (*areas, *map(corrected_fraction, areas), *prescription.variables)
     return step_dataset(run.grid, index + 1, step.equilibrium, scalars, added)
 
 

@@ -349,7 +349,7 @@ def test_study(studied: tuple[Path, xr.Dataset]) -> None:
     page = Page(path)
     rows = page.table("The last load step of each run")
     assert len(rows) == 2
-    flat = [table.isel({"indenter.radius": index, "step": -1}) for index in range(2)]
+    flat = [table.isel(indenter_radius=index, step=-1) for index in range(2)]
     for row, run in zip(rows, flat, strict=True):
         assert run["run"].item().startswith(row["file"].removesuffix("…"))
         assert (row["steps"], row["status"]) == ("2/2", "converged")
