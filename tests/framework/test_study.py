@@ -120,7 +120,8 @@ def test_table_is_that_of_its_runs() -> None:
 def test_a_parameter_is_selected_by_a_name_or_its_path(tmp_path: Path) -> None:
     """Dimensions have names of Python, also in the file; a dotted path still finds its values."""
     zipped = [{RADIUS: [1e-3, 2e-3], "grid.size": [4e-4, 8e-4]}]
-    table = carry_out(study({TENSION: [0.0, 1.0]}, zip=zipped), tmp_path)
+    plan = pl.Study(run=RUN, vary={TENSION: [0.0, 1.0]}, zip=zipped)
+    table = carry_out(plan, tmp_path)
     assert table["force"].dims == ("kernel_tension", "indenter_radius", "step")
     chosen = table.sel(kernel_tension=1.0, grid_size=8e-4)
     assert chosen["run"].item() == table["run"].values[1, 1]
@@ -290,6 +291,7 @@ def test_fields_are_read_where_they_are_used(
     assert table["pressure"].attrs["units"] == "Pa"
     assert read == []
     name = table["run"].values[0, 1]
+    assert plain(tmp_path / "runs" / f"{name}.h5", ["contact"], 0)[1][0].dtype == bool
     alone = pl.load(tmp_path / "runs" / f"{name}.h5").dataset
     for field in ("pressure", "displacement", "gap", "contact"):
         part = table[field][0, 1].isel(x=slice(None, None, -3), y=[5, 2, 9])

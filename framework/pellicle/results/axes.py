@@ -39,10 +39,12 @@ def with_paths(table: xr.Dataset) -> xr.Dataset:
     axes, names = _axes_and_names(table)
     renamed = {names[dim]: dim for dim in axes if names[dim] != dim and names[dim] in table.dims}
     copies = [name for key, name in names.items() if name != key and name in table.coords]
-    return table.drop_vars(copies).swap_dims(renamed)
+    # An index keeps the dimension with which it was made; swap_dims makes a new one.
+    stale = [dim for dim in renamed.values() if dim in table.xindexes]
+    return table.drop_vars(copies).drop_indexes(stale).swap_dims(renamed)
 
 
 def _axes_and_names(table: xr.Dataset) -> tuple[dict[str, list[str]], dict[str, str]]:
     """Return the parameters along each dimension, and the name in Python of each parameter."""
-    axes: dict[str, list[str]] = json.loads(table.attrs["axes"])
+    axes: dict[str, list[str]] = json.loads(table.attrs.get("axes", "{}"))
     return axes, python_names([key for keys in axes.values() for key in keys])
