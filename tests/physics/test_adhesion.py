@@ -55,6 +55,34 @@ def test_approach_and_retraction_are_one_curve(
     force = path["force"].values / FORCE
     np.testing.assert_allclose(force[4:], force[2::-1], atol=most)
     assert np.ptp(force[:4]) > 0.1
+    assert not path["jumped"].values[1:].any()
+
+
+def test_a_jump_of_one_asperity_is_named() -> None:
+    """Of two bumps the lower one jumps in after and off before the other; the sum is the loss."""
+    x = (np.arange(40) + 0.5) / 10 - 2
+    bumps = [-((x[:, None] - at) ** 2 + x**2) / 12 - low for at, low in ((1.0, 0.0), (-1.0, 0.025))]
+    down = np.arange(-0.01, 0.051, 0.01)
+    path = solved(
+        40, 0.0, [*down, *np.arange(0.04, -0.071, -0.01)], size=4.0,
+        interaction={"type": "jkr", "work_of_adhesion": 0.0025, "estimate_error": False},
+        indenter={"type": "heights", "values": np.maximum(*bumps).tolist(), "unit": 1.0},
+    )  # fmt: skip
+    patches = path["patches"].values
+    jumps = np.flatnonzero(path["jumped"].values)
+    # Both jump in and off again, one after the other.
+    assert patches[jumps].tolist() == [1, 2, 1, 0]
+    assert np.flatnonzero(np.diff(patches)).tolist() == (jumps - 1).tolist()
+    codes = path["status_code"].values
+    assert codes[jumps].tolist() == ["CONVERGED", "JUMPED", "JUMPED", "CONVERGED"]
+    assert "JUMPED" not in np.delete(codes, jumps)
+    assert path["converged"].values.all()
+    message = str(path["status"].values[jumps[2]])
+    assert "a part of the contact jumped after the last step and lost" in message
+    force, depth, energy = (path[name].values for name in ("force", "depth", "energy"))
+    work = float((0.5 * (force[1:] + force[:-1]) * np.diff(depth)).sum())
+    lost = work - (energy[-1] - energy[0])
+    assert np.nansum(path["jump_energy"].values) == pytest.approx(lost, rel=0.02)
 
 
 def test_pull_off_is_that_of_jkr() -> None:

@@ -26,7 +26,7 @@ from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable
 from pellicle.results.variables import corrected_fraction
 
-from .adhesion import force_error, greatest_pull
+from .adhesion import asperity_jumped, force_error, greatest_pull, jump_energy
 from .progress import Bar
 from .relaxation import Relaxation
 from .target_search import Reached, reach
@@ -49,17 +49,18 @@ def solve_steps(
             others = solid.applications
         # Without a name for the solved step, only its copy in ``steps`` outlives the solve.
         yield steps.append(
-            _solved_step(run, here, index, bar.step(index), others).assign_attrs(origin)
+            _solved_step(run, here, steps, bar.step(index), others).assign_attrs(origin)
         )
 
 
 def _solved_step(
-    run: Run, setting: Setting, index: int, monitor: Monitor, applications: int
+    run: Run, setting: Setting, steps: Steps, monitor: Monitor, applications: int
 ) -> xr.Dataset:
-    """Return load step ``index``, counted from 0, solved and judged.
+    """Return the load step after ``steps``, solved and judged.
 
     ``applications`` is the number of operator applications that ``setting`` took.
     """
+    index = len(steps)
     started = time.perf_counter()
     applied = setting.operator.applications
     value, prescription = run.loading.values[index], run.loading.prescription
@@ -67,7 +68,10 @@ def _solved_step(
     used = setting.operator.applications - applied + applications
     error = force_error(run, step.equilibrium, monitor)
     stiffness = _stiffness(run, step.equilibrium, monitor) if run.loading.stiffness else None
-    status, message = judge(run, index, step, stiffness)
+    lost = jump_energy(steps.last, step.equilibrium) if setting.law else 0.0
+    jumped = step.jumped or lost > 0 or asperity_jumped(setting.state, step.equilibrium)
+    in_part = jumped and not step.jumped and bool(step.equilibrium.contact.any())
+    status, message = judge(run, index, step, stiffness, lost if in_part else None)
     report = report_of(prescription, setting, step.equilibrium)
     report |= {v.name: step.missed for v in prescription.variables if v.name not in report}
     areas = {
@@ -83,7 +87,7 @@ def _solved_step(
         **({"stiffness": stiffness.value} if stiffness else {}),
         **({"time": run.loading.times[index]} if run.loading.times else {}),
         **({"cycle": run.loading.samples[index].cycle} if run.loading.oscillates else {}),
-        **({"jumped": step.jumped} if setting.law else {}),
+        **({"jumped": jumped, "jump_energy": lost} if setting.law else {}),
         **({} if error is None else {"force_error": error}),
         "iterations": step.iterations,
         "operator_applications": used,
