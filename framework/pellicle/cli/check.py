@@ -80,7 +80,7 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
     from pellicle.units import readable
 
     names = run_names(StudyTable(study).dataset())
-    checked: list[tuple[str, Advice, int]] = []
+    checked: list[tuple[str, Advice, float]] = []
     for name, point in zip(names, study.points, strict=True):
         try:
             checked.append((name, advise(point.run, error), _memory(point.run)))
