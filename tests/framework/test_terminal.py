@@ -20,9 +20,11 @@ import pellicle as pl
 from pellicle.cli import app, new
 from pellicle.cli.exits import CRASHED
 from pellicle.cli.printing import Column, table_lines
-from pellicle.components import FAMILIES
+from pellicle.components import FAMILIES, Case
 from pellicle.config.explain import explanations
 from pellicle.fitting.config import FitConfig
+from pellicle.runs import validation
+from pellicle.runs.validation import Verdict
 
 RUN: dict[str, Any] = {
     "title": "Δ layer",
@@ -158,6 +160,28 @@ def test_version_tells_how_to_cite(cli: Cli) -> None:
     assert first == f"pellicle {pl.__version__}"
     assert second.startswith(f"to cite it: pellicle {pl.__version__}")
     assert "Yuan" in second
+
+
+@pytest.mark.parametrize("wrong", [0, 1])
+def test_validate_ends_with_what_it_covers(
+    cli: Cli, monkeypatch: pytest.MonkeyPatch, wrong: int
+) -> None:
+    """Its last line counts the cases and names the kernels that none is about."""
+
+    def verdicts() -> Iterator[Verdict]:
+        for number in range(2):
+            kernel = {"kernel": {"type": "half_space"}}
+            case = Case(f"case {number}", kernel, lambda _: 0.0, 2e-7, "m²", 1e-3, "Hertz 1882")
+            yield Verdict(case, 3e-7 if number < wrong else 2e-7, True)
+
+    monkeypatch.setattr(validation, "validate", verdicts)
+    shown = cli("validate", code=int(wrong > 0), COLUMNS="120").stdout
+    assert "0.2 mm²" in shown
+    last = shown.splitlines()[-1]
+    assert last.startswith("1 of 2 cases failed" if wrong else "all 2 cases passed")
+    kernels = set(last.partition("no case is about the kernels ")[2].split(", "))
+    assert kernels >= {"tensed_membrane", "winkler"}
+    assert "half_space" not in kernels
 
 
 @pytest.mark.parametrize("command", ["run", "fit", "show", "plot", "new", "validate", "explain"])

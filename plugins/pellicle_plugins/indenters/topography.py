@@ -10,7 +10,6 @@ from typing import Annotated, ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.polynomial.legendre import legvander
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
-from scipy.interpolate import make_interp_spline
 
 from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
@@ -142,6 +141,8 @@ class Topography(FromHeights):
         UserWarning
             Cells are finer than the points of the scan.
         """
+        from scipy.interpolate import make_interp_spline
+
         axes = UniformAxis.of(x.ravel()), UniformAxis.of(y.ravel())
         pitch = [edge / n for edge, n in zip(self._size, self._heights.shape, strict=True)]
         if any(axis.spacing < 0.99 * step for axis, step in zip(axes, pitch, strict=True)):

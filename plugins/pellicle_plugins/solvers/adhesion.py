@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 import scipy.fft
-from scipy.ndimage import distance_transform_edt
 
 from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
@@ -366,6 +365,8 @@ def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> Array
     along the front resist with w|κ|; on the plane this is the potential of charges in two
     dimensions.
     """
+    from scipy.ndimage import distance_transform_edt
+
     problem, contact = state.problem, state.contact
     law, grid = problem.law, problem.grid
     assert law
