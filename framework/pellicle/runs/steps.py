@@ -26,7 +26,7 @@ from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable
 from pellicle.results.variables import corrected_fraction
 
-from .adhesion import asperity_jumped, force_error, greatest_pull, jump_energy
+from .adhesion import asperity_jumped, force_limit, greatest_pull, jump_energy
 from .progress import Bar
 from .relaxation import Relaxation
 from .target_search import Reached, reach
@@ -66,7 +66,7 @@ def _solved_step(
     value, prescription = run.loading.values[index], run.loading.prescription
     step = solve_step(run, setting, value, monitor)
     used = setting.operator.applications - applied + applications
-    error = force_error(run, step.equilibrium, monitor)
+    limit = force_limit(run, step.equilibrium, monitor)
     stiffness = _stiffness(run, step.equilibrium, monitor) if run.loading.stiffness else None
     lost = jump_energy(steps.last, step.equilibrium) if setting.law else 0.0
     jumped = step.jumped or lost > 0 or asperity_jumped(setting.state, step.equilibrium)
@@ -88,7 +88,7 @@ def _solved_step(
         **({"time": run.loading.times[index]} if run.loading.times else {}),
         **({"cycle": run.loading.samples[index].cycle} if run.loading.oscillates else {}),
         **({"jumped": jumped, "jump_energy": lost} if setting.law else {}),
-        **({} if error is None else {"force_error": error}),
+        **({"force_extrapolated": limit[0], "force_error": limit[1]} if limit else {}),
         "iterations": step.iterations,
         "operator_applications": used,
         "converged": status.converged,
