@@ -24,8 +24,9 @@ from pellicle.numerics.problem import Equilibrium, Stiffness, equilibrium_of, me
 from pellicle.numerics.solution import Stop
 from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable
+from pellicle.results.variables import corrected_fraction
 
-from .adhesion import asperity_jumped, force_error, greatest_pull, jump_energy
+from .adhesion import asperity_jumped, force_limit, greatest_pull, jump_energy
 from .progress import Bar
 from .relaxation import Relaxation
 from .target_search import Reached, reach
@@ -65,7 +66,7 @@ def _solved_step(
     value, prescription = run.loading.values[index], run.loading.prescription
     step = solve_step(run, setting, value, monitor)
     used = setting.operator.applications - applied + applications
-    error = force_error(run, step.equilibrium, monitor)
+    limit = force_limit(run, step.equilibrium, monitor)
     stiffness = _stiffness(run, step.equilibrium, monitor) if run.loading.stiffness else None
     lost = jump_energy(steps.last, step.equilibrium) if setting.law else 0.0
     jumped = step.jumped or lost > 0 or asperity_jumped(setting.state, step.equilibrium)
@@ -81,12 +82,13 @@ def _solved_step(
     }
     scalars = {
         **{variable.name: area for variable, area in areas.items()},
+        **{corrected_fraction(v).name: area / run.grid.area for v, area in areas.items()},
         **report,
         **({"stiffness": stiffness.value} if stiffness else {}),
         **({"time": run.loading.times[index]} if run.loading.times else {}),
         **({"cycle": run.loading.samples[index].cycle} if run.loading.oscillates else {}),
         **({"jumped": jumped, "jump_energy": lost} if setting.law else {}),
-        **({} if error is None else {"force_error": error}),
+        **({"force_extrapolated": limit[0], "force_error": limit[1]} if limit else {}),
         "iterations": step.iterations,
         "operator_applications": used,
         "converged": status.converged,
@@ -94,7 +96,7 @@ def _solved_step(
         "status": message,
         "wall_time": time.perf_counter() - started,
     }
-    added = (*areas, *prescription.variables)
+    added = (*areas, *map(corrected_fraction, areas), *prescription.variables)
     return step_dataset(run.grid, index + 1, step.equilibrium, scalars, added)
 
 

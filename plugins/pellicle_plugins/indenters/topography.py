@@ -20,6 +20,7 @@ from pellicle.model.input_path import InputPath
 from pellicle.units import Length, Quantity
 
 from .from_heights import FromHeights
+from .height_unit import HeightUnit
 from .sampling import UniformAxis
 from .topography_reader import Scan, library, read_scan, require_memory
 
@@ -54,8 +55,8 @@ class Topography(FromHeights):
         str | None, Field(description="name of the data set in a file that holds several")
     ] = None
     unit: Annotated[
-        Length | None,
-        Field(description="length that 1 stands for [m], where the file has no unit: '1 um'"),
+        HeightUnit | None,
+        Field(description="length that 1 stands for [m], where the file has no unit: 'um'"),
     ] = None
     size: Annotated[
         tuple[Length, Length] | None,

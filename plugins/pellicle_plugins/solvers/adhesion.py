@@ -93,12 +93,13 @@ class _Round:
         contact, gap = self.contact, self.gap
         closed = np.abs(gap[contact])
         error = max(float(closed.max(initial=0.0)), -float(gap.min(initial=0.0, where=~contact)))
-        magnitude = float(np.abs(self.wall + self.traction).sum())
+        # The law attracts even where the wall bears it all and there is no pressure.
+        magnitude = max(
+            float(np.abs(self.wall + self.traction).sum()), float(np.abs(self.exerted).sum())
+        )
         missed = work = 0.0
         if magnitude:
             work = float((np.abs(self.wall[contact]) * closed).sum()) / magnitude / self.scale
-        # Without any pressure the law may still attract.
-        if magnitude := max(magnitude, float(np.abs(self.exerted).sum())):
             missed = float(np.abs(self.missed).sum()) / magnitude
         return max(error / self.scale, missed, work, 0.0 if self.settled else _UNSETTLED)
 
