@@ -326,6 +326,21 @@ def test_two_pages_leave_the_warnings_in_order(start: pl.Run) -> None:
     assert list(warnings.filters) == before
 
 
+def test_a_load_of_nothing_is_refused(start: pl.Run) -> None:
+    """Load steps keep their proportion, which 0 would take from them; a tiny one may stick."""
+    page = Page(start)
+    page.type("largest depth", "0 m")
+    assert "above 0" in page.errors[0]
+    page.type("largest depth", "1 nm")
+    page.rest()
+    assert page.frame.force.max() == 0
+    switch = page.document.select_one({"type": Checkbox})
+    assert isinstance(switch, Checkbox)
+    switch.active = True
+    page.rest()
+    assert page.saved["interaction"]["work_of_adhesion"] == "1 mJ/m^2"
+
+
 def test_rows_are_used_again(start: pl.Run) -> None:
     """Bokeh keeps every part that was on a page, so switches must not make new ones."""
     page = Page(start)
