@@ -54,6 +54,8 @@ class Path(NamedTuple):
     sense: Array
     rate: float = 1.0
     """Speed over that of the first approach."""
+    radius: float = 1.0
+    """Radius of the indenter over that of the first approach."""
 
     @property
     def top(self) -> float:
@@ -62,13 +64,14 @@ class Path(NamedTuple):
 
 
 def path(
-    segment: str = "approach", rate: float = 1.0, dwell: bool = False, deepest: float = 1.0
+    segment: str = "approach",
+    rate: float = 1.0,
+    dwell: bool = False,
+    deepest: float = 1.0,
+    radius: float = 1.0,
 ) -> Path:
     """Return the rows of an approach, a retraction, both, or an approach and a dwell."""
-    down = np.linspace(-BEFORE, 1.0, POINTS)
-    if deepest != 1:
-        down = deepest * down
-        return Path(down, down / rate, np.ones(POINTS), rate)
+    down = deepest * np.linspace(-BEFORE, 1.0, POINTS)
     if dwell:
         held = np.linspace(0, 1 + BEFORE, POINTS)
         return Path(
@@ -78,7 +81,7 @@ def path(
             rate,
         )
     if segment == "approach":
-        return Path(down, down / rate, np.ones(POINTS), rate)
+        return Path(down, down / rate, np.ones(POINTS), rate, radius)
     return Path(
         np.concatenate([down, down[::-1]]),
         np.concatenate([down, 2 - down[::-1]]) / rate,
@@ -103,17 +106,18 @@ class Truth(NamedTuple):
     """Over the largest force; drawn if None."""
 
 
-def _hertz(depth: Array) -> Array:
-    return np.maximum(depth, 0.0) ** 1.5
+def _hertz(path: Path) -> Array:
+    return np.asarray(np.sqrt(path.radius) * np.maximum(path.depth, 0.0) ** 1.5)
 
 
 def _clean(random: np.random.Generator) -> Truth:
-    return Truth(lambda path: _hertz(path.depth), ("none",))
+    return Truth(_hertz, ("none",))
 
 
 def _tensed_at(ratio: float) -> Truth:
     def force(path: Path) -> Array:
-        curve = _shape("paraboloid").force_curve(path.depth * DEPTH * RADIUS, ratio * RADIUS)
+        shape = _shape("paraboloid", path.radius)
+        curve = shape.force_curve(path.depth * DEPTH * RADIUS, ratio * RADIUS)
         return curve.force / _scale(DEPTH)
 
     return Truth(force, ("tension",), tension=ratio)
@@ -186,7 +190,7 @@ def _relaxed(
         growth = primitive(t - middle) - 2 * primitive(t - top)
         low, high = np.where(growth > 0, middle, low), np.where(growth > 0, high, middle)
     last[out] = np.maximum(low, 0.0)
-    force = path.rate**1.5 * response(time, last)
+    force = np.sqrt(path.radius) * path.rate**1.5 * response(time, last)
     return np.where(path.time > 0, force, 0.0)
 
 
@@ -223,8 +227,8 @@ def _drag(random: np.random.Generator) -> Truth:
     share = random.uniform(0.02, 0.15)
 
     def force(path: Path) -> Array:
-        inside = np.maximum(path.depth, 0.0)
-        return inside**1.5 + share * path.rate * path.sense * np.sqrt(inside)
+        radius = np.sqrt(path.radius * np.maximum(path.depth, 0.0))
+        return _hertz(path) + share * path.rate * path.sense * radius
 
     return Truth(force, ("drag",))
 
@@ -233,7 +237,7 @@ def _drift(random: np.random.Generator) -> Truth:
     across = float(random.choice([-1, 1]) * random.uniform(0.01, 0.05))
 
     def force(path: Path) -> Array:
-        return _hertz(path.depth) + across * (path.depth + BEFORE) / (1 + BEFORE)
+        return _hertz(path) + across * (path.depth + BEFORE) / (1 + BEFORE)
 
     return Truth(force, ("baseline_slope",))
 
@@ -243,9 +247,8 @@ def _layer(random: np.random.Generator) -> Truth:
     chi = 1 / random.uniform(3.0, 10.0)
 
     def force(path: Path) -> Array:
-        inside = np.maximum(path.depth, 0.0)
-        x = chi * np.sqrt(inside)
-        return inside**1.5 * (1 + 1.133 * x + 1.283 * x**2 + 0.769 * x**3 + 0.0975 * x**4)
+        x = chi * np.sqrt(path.radius * np.maximum(path.depth, 0.0))
+        return _hertz(path) * (1 + 1.133 * x + 1.283 * x**2 + 0.769 * x**3 + 0.0975 * x**4)
 
     return Truth(force, ("thickness",))
 
@@ -254,14 +257,14 @@ def _ball(random: np.random.Generator) -> Truth:
     deepest = random.uniform(0.2, 0.8)
 
     def force(path: Path) -> Array:
-        curve = _shape("sphere").force_curve(path.depth * deepest * RADIUS, 0.0)
+        curve = _shape("sphere", path.radius).force_curve(path.depth * deepest * RADIUS, 0.0)
         return curve.force / _scale(deepest)
 
     return Truth(force, ("sphere",), depth=deepest)
 
 
 def _pink_noise(random: np.random.Generator) -> Truth:
-    return Truth(lambda path: _hertz(path.depth), ("none",), coloured=True)
+    return Truth(_hertz, ("none",), coloured=True)
 
 
 def _adhesion(tensed: bool) -> Callable[[np.random.Generator], Truth]:
@@ -269,15 +272,14 @@ def _adhesion(tensed: bool) -> Callable[[np.random.Generator], Truth]:
         share = random.uniform(0.02, 0.1)
         ratio = float(np.exp(random.uniform(np.log(0.03), np.log(1.0)))) if tensed else 0.0
         top = MODULUS_ * _scale(DEPTH)
-        indenter: Any = _shape("paraboloid")
         tension = ratio * RADIUS * MODULUS_ / 2
         work = share * top / (1.5 * np.pi * RADIUS)
-        theory = Adhesion(indenter, MODULUS_, tension, work)
-        end = theory.instability(np.inf)
-        radii = np.geomspace(float(end.contact_radius), RADIUS, 3000)
-        branch = theory.equilibrium(radii)
 
         def force(path: Path) -> Array:
+            indenter: Any = _shape("paraboloid", path.radius)
+            theory = Adhesion(indenter, MODULUS_, tension, work)
+            end = theory.instability(np.inf)
+            branch = theory.equilibrium(np.geomspace(float(end.contact_radius), RADIUS, 3000))
             depth = path.depth * DEPTH * RADIUS
             touches = np.where(path.sense < 0, depth > branch.depth[0], depth > 0)
             return np.where(touches, np.interp(depth, branch.depth, branch.force), 0.0) / top
@@ -288,8 +290,9 @@ def _adhesion(tensed: bool) -> Callable[[np.random.Generator], Truth]:
 
 
 @cache
-def _shape(type_: str) -> HasForceCurve:
-    indenter = pl.indenter(type_, radius=RADIUS)
+def _shape(type_: str, radius: float = 1.0) -> HasForceCurve:
+    """Return a shape of a radius over the first."""
+    indenter = pl.indenter(type_, radius=radius * RADIUS)
     assert isinstance(indenter, HasForceCurve)
     return indenter
 
@@ -333,6 +336,8 @@ class Curve(NamedTuple):
     force: Array
     time: Array
     segment: str = "approach"
+    radius: float = 1.0
+    """Of the indenter, over the first."""
 
 
 @dataclass
@@ -361,6 +366,7 @@ class Sample:
             scale * (force + self.noise * top * noise),
             rows.time + 1.0,
             "approach" if rows.sense.min() > 0 else "both",
+            rows.radius,
         )
 
 
@@ -459,11 +465,11 @@ def holds(estimate: pl.Estimate) -> bool:
 
 
 def followed(sample: Sample, curves: Sequence[Curve], named: str) -> str:
-    """Return the verdict with the measurement that a fit names; "not tried" for another radius."""
+    """Return the verdict with the measurement that a fit names."""
     count = int(named.split()[0]) if "curves of this kind" in named else 1
     more = named_path(sample, named)
     if more is None:
-        return "no measurement" if named.startswith("no other") else "not tried"
+        return "none is named"
     if count == 1 and len(curves) == 1 and more.sense.min() <= 0:
         # One measurement has the approach in it.
         curve = sample.measured(more)
@@ -482,6 +488,8 @@ def named_path(sample: Sample, named: str) -> Path | None:
         return path(rate=10.0 if float(speed[1]) * 1e-6 > deepest else 0.1)
     if depth := re.search(r"curve, to ([\d.e+-]+) µm", named):
         return path(deepest=float(depth[1]) * 1e-6 / deepest)
+    if radius := re.search(r"second radius, ([\d.e+-]+) µm", named):
+        return path(radius=float(radius[1]) * 1e-6 / RADIUS)
     return None
 
 
@@ -492,7 +500,11 @@ def pooled(sample: Sample, curves: Sequence[Curve], **options: Any) -> pl.Pooled
         indenter=sample.truth.indenter, radius=RADIUS, segment=segment, pool=True, **options
     )
     sources = [
-        Source(str(n), read_curve.Curve(curve.position, curve.force, time=curve.time), {})
+        Source(
+            str(n),
+            read_curve.Curve(curve.position, curve.force, time=curve.time),
+            {"radius": curve.radius * RADIUS},
+        )
         for n, curve in enumerate(curves)
     ]
     return pool_sources(config, sources, progress=False)
@@ -526,7 +538,7 @@ def row(name: str, results: Sequence[Outcome]) -> str:
         Counter(" ".join(result.named.split()[:4]) for result in results if result.named),
     ]
     cells = [", ".join(f"{n} {key}" for key, n in count.items()) for count in columns]
-    second = [result for result in results if result.second]
+    second = [r for r in results if r.second not in ("", "none is named")]
     settled = [result.settled(needed) for result in second]
     claims = [needed or "needed" not in (result.verdict, result.second) for result in results]
     decided = [result.covers for result in results if result.decided]
