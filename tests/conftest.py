@@ -38,6 +38,14 @@ def _floating_point_errors_raise() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(autouse=True)
+def _no_figure_stays_open() -> Iterator[None]:
+    """Close what a test has drawn, or the next one on the same worker would draw into it."""
+    yield
+    if pyplot := sys.modules.get("matplotlib.pyplot"):
+        pyplot.close("all")
+
+
 StartDask = Callable[..., AbstractContextManager[str]]
 
 

@@ -13,7 +13,7 @@ from .printing import echo
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
-    from pellicle.explore.page import Measured
+    from pellicle.explore.measured import Measured
 
 
 def explore(
@@ -70,7 +70,7 @@ def _run(file: Path | None, overrides: list[str]) -> Run:
 
 
 def _measured(path: Path) -> Measured:
-    from pellicle.explore.page import Measured
+    from pellicle.explore.measured import Measured
     from pellicle.fitting.curves.columns import Calibration
     from pellicle.fitting.curves.curve import clean
     from pellicle.fitting.curves.readers import SourceStream, gather

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import secrets
 import socket
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 from urllib.parse import urlencode
 
 from bokeh.application import Application
@@ -21,6 +22,8 @@ from tornado.web import RequestHandler
 from pellicle.errors import ConfigError
 
 ADDRESS = "127.0.0.1"
+# bokeh would also serve a script by which other pages embed this one.
+_SERVED: Final = re.compile(r"/(ws|favicon\.ico|static/.*)?$")
 
 
 class _Refused(RequestHandler):
@@ -57,7 +60,7 @@ class _Guarded(BokehTornado):
         super().__init__(applications, extra_websocket_origins=[host])
 
     def find_handler(self, request: HTTPServerRequest, **options: Any) -> Any:
-        if request.host != self._host:
+        if request.host != self._host or not _SERVED.match(request.path):
             return self.get_handler_delegate(request, _Refused)
         arguments = request.query_arguments.get("token", [])
         if request.path == "/" and any(self._knows(value.decode("latin-1")) for value in arguments):
@@ -89,7 +92,7 @@ class Server:
     """
 
     def __init__(self, fill: Callable[[Document], None], port: int = 0) -> None:
-        self.loop = IOLoop()
+        self.loop = IOLoop(make_current=False)
         try:
             listener = socket.create_server((ADDRESS, port))
         except OSError as error:
@@ -103,13 +106,14 @@ class Server:
         token = secrets.token_urlsafe(32)
         self.address = f"http://{host}/?{urlencode({'token': token})}"
         application = _Guarded({"/": Application(FunctionHandler(fill))}, host, token)
-        http = HTTPServer(application)
-        http.add_socket(listener)
-        self._server = BaseServer(self.loop, application, http)
+        self._http, self._listener = HTTPServer(application), listener
+        self._server = BaseServer(self.loop, application, self._http)
 
     def run(self) -> None:
         """Serve until `stop` is called from another thread, or the process is interrupted."""
-        self._server.start()
+        # Socket and timers go to the loop that is current, which is this one once it runs.
+        self.loop.add_callback(self._http.add_socket, self._listener)
+        self.loop.add_callback(self._server.start)
         try:
             self.loop.start()
         finally:
