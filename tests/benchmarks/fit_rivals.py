@@ -432,7 +432,7 @@ def outcome(sample: Sample, protocol: str = "approach", *, follow: bool = True) 
         fit = pooled(sample, curves)
     else:
         curves = [sample.measured(path(protocol))]
-        fit = fitted(sample, *curves, protocol)
+        fit = fitted(sample, curves[0], protocol)
     seconds = process_time() - began
     verdict = verdict_of(fit)
     rivals = fit.rivals
