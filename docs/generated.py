@@ -16,7 +16,7 @@ from pydantic.fields import FieldInfo
 import pellicle as pl
 from pellicle.model import Model
 from pellicle.results.variables import VARIABLES, Variable
-from pellicle.units import Quantity, quantity_of
+from pellicle.units import Quantity, quantity_of, readable
 
 _HEADINGS = {
     "kernel": "Kernels",
@@ -113,11 +113,15 @@ def _prescribed() -> Iterable[Variable]:
 def cases() -> str:
     """Return a table of the cases that ``pellicle validate`` solves."""
     rows = [
-        (case.name, f"{case.expected:.6g} {case.unit}", f"{case.tolerance:.0e}", _cell(case.source))
+        (case.name, _value(case.expected, case.unit), f"{case.tolerance:.0e}", _cell(case.source))
         for suite in pl.registry().suites
         for case in suite()
     ]
     return _table(("case", "expected", "allowed", "source"), rows)
+
+
+def _value(value: float, unit: str) -> str:
+    return readable(value, unit.translate({ord("²"): "2", ord("³"): "3"}))
 
 
 def statuses() -> str:

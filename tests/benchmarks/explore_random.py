@@ -45,7 +45,9 @@ SHOWN = (
     + """
 const curves = all.filter(m => m.type === "ColumnDataSource" && "force" in m.data);
 const path = curves.find(m => m.data.force.length < 40);
-return [all.find(m => m.type === "PreText")?.text ?? "", Array.from(path?.data.force ?? [])];
+const texts = all.filter(m => m.type === "Div" && m.visible).map(m => m.text);
+return [all.find(m => m.type === "PreText")?.text ?? "", Array.from(path?.data.force ?? []),
+        texts.some(text => text.includes("≈"))];
 """
 )
 BUTTONS = """
@@ -148,17 +150,17 @@ class Visitor:
     def rest(self) -> None:
         """Wait until nothing changes for 3 s, and compare what is shown with the run itself."""
         started = changed = time.monotonic()
-        shown: Any = None
-        while time.monotonic() - changed < 3:
+        shown: Any = [None, None, False]
+        while time.monotonic() - changed < 3 or shown[2]:
             now = self.browser.execute_script(SHOWN)
             if now != shown:
                 shown, changed = now, time.monotonic()
             if time.monotonic() - started > 90:
-                self.problems.append("not at rest after 90 s")
+                self.problems.append(f"not at rest after 90 s:\n{shown[0]}")
                 return
             time.sleep(0.1)
         self.rests.append(changed - started)
-        text, force = shown
+        text, force, _ = shown
         if not text or not force:
             return
         with warnings.catch_warnings():
@@ -171,7 +173,7 @@ class Visitor:
         if len(force) != len(expected) or not np.allclose(
             np.array(force) / np.abs(force).max(), expected / scale, rtol=1e-13, atol=1e-15
         ):
-            self.problems.append(f"shown {force}, but the saved file gives {expected.tolist()}")
+            self.problems.append(f"shown {force}, but {expected.tolist()} is the run of\n{text}")
 
     def _collect(self) -> None:
         entries: list[Any] = self.browser.get_log("browser")  # type: ignore[no-untyped-call]

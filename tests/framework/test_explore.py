@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import http.client
 import threading
+import time
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,11 +17,12 @@ import numpy as np
 import psutil
 import pytest
 from bokeh.document import Document
-from bokeh.models.widgets.inputs import TextInput
+from bokeh.models.widgets.inputs import Checkbox, TextInput
 from bokeh.models.widgets.sliders import Slider
 
 import pellicle as pl
 from pellicle.errors import ConfigError
+from pellicle.explore import solving
 from pellicle.explore.controls import controls
 from pellicle.explore.documents import changed, document, letting_go, sticking
 from pellicle.explore.frames import Frame, preview, solved
@@ -35,6 +38,11 @@ MODELS = "const models = [...(window.Bokeh?.documents[0]?._all_models ?? new Map
 FIELDS = """const fields = {}; for (const model of models) if (model.type === "TextInput") {
   fields[model.title] = model; }"""
 
+SAVE = """const press = node => { for (const element of node.querySelectorAll("*")) {
+  if (element.shadowRoot) press(element.shadowRoot);
+  if (element.tagName === "BUTTON" && element.textContent.includes("Save")) element.click(); } };
+press(document);"""
+
 
 @pytest.fixture(scope="module")
 def start() -> pl.Run:
@@ -43,18 +51,26 @@ def start() -> pl.Run:
     return pl.Run.from_toml(path, ["grid.points=24"])
 
 
+@contextmanager
+def serving(server: Server) -> Iterator[Server]:
+    """Run a server in another thread."""
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    try:
+        yield server
+    finally:
+        server.stop()
+        thread.join(20)
+    assert not thread.is_alive()
+
+
 @pytest.fixture(scope="module")
 def server(start: pl.Run) -> Iterator[Server]:
-    """Return a server of the explorer that runs in another thread."""
+    """Return a running server of the explorer."""
     position = np.linspace(-1e-6, 2e-6, 50)
     measured = Measured(position, 0.04 * np.maximum(position, 0.0) ** 1.5 * 1e3)
-    served = Server(lambda target: Explorer(start, measured, target).show())
-    thread = threading.Thread(target=served.run)
-    thread.start()
-    yield served
-    served.stop()
-    thread.join(20)
-    assert not thread.is_alive()
+    with serving(Server(lambda target: Explorer(start, measured, target).show())) as running:
+        yield running
 
 
 def test_every_quantity_of_the_run_has_a_control(start: pl.Run) -> None:
@@ -155,21 +171,31 @@ class Page:
 
     def step(self) -> None:
         """Wait for the run that is being solved, and call what is to be called then."""
-        self.explorer._worker.submit(lambda: None).result()
+        self.explorer._solving._thread.submit(lambda: None).result()
         for entry in self.document.session_callbacks:
             entry.callback()
 
     def rest(self) -> None:
         """Go on until nothing is left to be solved or shown."""
         self.step()
-        while self.document.session_callbacks or self.explorer._is_working:
+        while self.document.session_callbacks or self.explorer._solving._is_working:
             self.step()
 
     def type(self, title: str, text: str) -> None:
         """Type a text into the field of a quantity."""
+        self.field(title).value = text
+
+    def field(self, title: str) -> TextInput:
+        """Return the field of a quantity."""
         field = self.document.select_one({"type": TextInput, "title": title})
         assert isinstance(field, TextInput)
-        field.value = text
+        return field
+
+    @property
+    def frame(self) -> Frame:
+        """What is shown."""
+        assert self.explorer._solving.frame is not None
+        return self.explorer._solving.frame
 
     @property
     def errors(self) -> list[str]:
@@ -189,7 +215,7 @@ def test_a_plugin_that_fails_leaves_the_page_alive(
     """Its error is shown and logged, the curves stay, and the next change is solved."""
     page = Page(start)
     page.rest()
-    before = page.explorer._frame
+    before = page.frame
     assert not page.errors
 
     def fails(*_: object) -> None:
@@ -203,12 +229,12 @@ def test_a_plugin_that_fails_leaves_the_page_alive(
     assert "ZeroDivisionError: by &lt;nothing&gt;" in message
     assert "coated" in message
     assert "a component failed" in caplog.text
-    assert page.explorer._frame is before
+    assert page.frame is before
     page.type("tension", "7 mN/m")
     page.rest()
     assert not page.errors
     assert page.saved["kernel"]["tension"] == "7 mN/m"
-    assert page.explorer._frame is not before
+    assert page.frame is not before
 
 
 def test_a_text_that_is_not_a_value_stays_refused(start: pl.Run) -> None:
@@ -234,8 +260,7 @@ def test_an_impossible_change_leaves_the_run_before(
     page.rest()
     page.type("tension", "6 mN/m")
     page.step()
-    assert page.explorer._frame is not None
-    assert page.explorer._frame.is_preview
+    assert page.frame.is_preview
 
     def refuses(*_: object) -> None:
         raise ConfigError("is not possible", "kernel.substrate.thickness")
@@ -247,7 +272,56 @@ def test_an_impossible_change_leaves_the_run_before(
     page.rest()
     assert page.errors == ["is not possible"]
     assert page.saved["kernel"]["tension"] == "6 mN/m"
-    np.testing.assert_array_equal(page.explorer._frame.force, solved(page.saved).force)
+    np.testing.assert_array_equal(page.frame.force, solved(page.saved).force)
+
+
+@pytest.mark.parametrize("is_closed", [False, True])
+def test_a_long_solve_is_abandoned(
+    start: pl.Run, monkeypatch: pytest.MonkeyPatch, is_closed: bool
+) -> None:
+    """It ends once another run waits, which is then solved, or when the page is closed."""
+    began = threading.Event()
+
+    def endless(configuration: Any, check: Callable[[], None]) -> Frame:
+        began.set()
+        while True:
+            check()
+            time.sleep(0.001)
+
+    monkeypatch.setattr(solving, "_PATIENCE", 0.0)
+    with monkeypatch.context() as slow:
+        slow.setattr(solving, "solved", endless)
+        page = Page(start)
+        assert began.wait(20)
+    if is_closed:
+        page.explorer._solving.close()
+        page.explorer._solving._thread.shutdown(wait=True)
+        assert not page.document.session_callbacks
+    else:
+        page.type("tension", "6 mN/m")
+        page.rest()
+        assert not page.errors
+        assert page.saved["kernel"]["tension"] == "6 mN/m"
+
+
+def test_rows_are_used_again(start: pl.Run) -> None:
+    """Bokeh keeps every part that was on a page, so switches must not make new ones."""
+    page = Page(start)
+    page.rest()
+    switch = page.document.select_one({"type": Checkbox})
+    assert isinstance(switch, Checkbox)
+    page.type("tension", "6.28318 mN/m")
+    page.type("thickness", "5 Pa")
+    rows = page.explorer._rows
+    switch.active = True
+    assert {"interaction.work_of_adhesion"} == page.explorer._rows.keys() - rows.keys()
+    switch.active = False
+    page.rest()
+    assert page.explorer._rows == rows
+    assert not page.errors
+    assert page.saved["kernel"]["tension"] == "6.28318 mN/m"
+    assert page.field("tension").value == "6.28318 mN/m"
+    assert page.field("thickness").value == "30 µm"
 
 
 def test_at_rest_the_picture_is_the_run_of_the_file(start: pl.Run) -> None:
@@ -318,6 +392,23 @@ def test_nobody_enters_without_the_token_or_by_another_name(server: Server) -> N
         assert answer(server, path, Cookie=known, Host="127.0.0.1").status == 403
 
 
+def test_the_ticket_of_the_browser_serves_once() -> None:
+    """It stands in the command that opens the browser, which other users of the machine can see."""
+    with serving(Server(lambda target: None)) as server:
+        parts = urlsplit(server.ticket_address)
+        assert urlsplit(server.address).query.partition("=")[2] not in parts.query
+        assert answer(server, "/?ticket=").status == 403
+        entered = answer(server, f"/?{parts.query}")
+        assert entered.status == 302
+        known = str(entered.getheader("Set-Cookie")).partition(";")[0]
+        assert answer(server, f"/?{parts.query}").status == 403
+        assert answer(server, "/", Cookie=known).status == 200
+        assert (
+            answer(server, "/", Cookie=known.partition("=")[0] + "=" + parts.query[7:]).status
+            == 403
+        )
+
+
 def cookie(server: Server) -> str:
     """Return the cookie of a visitor with the token."""
     entered = answer(server, f"/?{urlsplit(server.address).query}")
@@ -382,8 +473,17 @@ def test_a_port_that_is_taken_is_said(server: Server) -> None:
         Server(lambda target: None, port or 0)
 
 
-def test_sliders_change_the_curves(server: Server, browser: Chrome, start: pl.Run) -> None:
-    """A drag brings the numbers of the changed run; a bad value is said beside its field."""
+def test_sliders_change_the_curves(
+    server: Server,
+    browser: Chrome,
+    start: pl.Run,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A drag brings the numbers of the changed run; a bad value is said beside its field.
+
+    The file is saved where the browser saves, and nothing is written where the server runs.
+    """
     from selenium.webdriver.support.ui import WebDriverWait
 
     def wait_for(script: str) -> Any:
@@ -391,6 +491,11 @@ def test_sliders_change_the_curves(server: Server, browser: Chrome, start: pl.Ru
             lambda _: browser.execute_script(f"{MODELS} {FIELDS} {script}")
         )
 
+    work, downloads = tmp_path / "work", tmp_path / "downloads"
+    work.mkdir()
+    monkeypatch.chdir(work)
+    behavior = {"behavior": "allow", "downloadPath": str(downloads)}
+    browser.execute_cdp_cmd("Browser.setDownloadBehavior", behavior)
     force = 'models.find(m => m.type === "ColumnDataSource" && "force" in m.data).data.force'
     browser.get(server.address)
     wait_for(
@@ -409,7 +514,13 @@ def test_sliders_change_the_curves(server: Server, browser: Chrome, start: pl.Ru
     text = 'models.find(m => m.type === "PreText").text'
     saved = wait_for(f"return {text}.includes('6.295 mN/m') && {text}")
     assert tomllib.loads(saved) == given
-    drawn = wait_for(f"return Array.from({force})")
+    browser.execute_script(SAVE)
+    WebDriverWait(browser, 30).until(lambda _: (downloads / "explored.toml").exists())
+    assert tomllib.loads((downloads / "explored.toml").read_text("utf-8")) == given
+    assert not list(work.iterdir())
+    drawn = wait_for(
+        f"return !models.some(m => m.type === 'Div' && m.text.includes('≈')) && Array.from({force})"
+    )
     np.testing.assert_allclose(np.array(drawn) / drawn[-1], expected / expected[-1], rtol=1e-12)
     browser.execute_script(f"{MODELS} {FIELDS} fields['tension'].value = '5 mN'")
     message = wait_for(

@@ -5,8 +5,6 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from importlib.resources import files
 from typing import Any, Final
 
@@ -24,15 +22,13 @@ from pellicle.errors import ConfigError, PellicleError
 
 from .controls import Control, controls
 from .documents import changed, document, letting_go, sticking
-from .frames import Frame, preview, solved
+from .frames import Frame
 from .markup import ANSWER, ERROR, REMARK, answer, lines
 from .measured import Measured
 from .plots import Plots
 from .row import ControlRow
+from .solving import Solving
 
-# Time without a change after which the run is solved in full [ms]: while a slider moves, the
-# previews alone follow it.
-_REST: Final = 150
 _SAVE: Final = """
 const link = document.createElement("a");
 link.href = URL.createObjectURL(new Blob([text.text], {type: "application/toml"}));
@@ -49,24 +45,17 @@ def _template() -> Any:
 
 
 class Explorer:
-    """The content of one visitor's page and the run behind it.
-
-    A changed run is solved to a few digits first, from the picture before, which takes a fifth of
-    the time; when nothing has changed for a while it is solved as `pellicle.run` does. One thread
-    solves one run at a time, always the newest.
-    """
+    """The content of one visitor's page and the run behind it."""
 
     def __init__(self, run: Run, measured: Measured | None, target: Document) -> None:
         self._run, self._target = run, target
         self._document: Mapping[str, Any] = document(run)
-        self._worker = ThreadPoolExecutor(1, thread_name_prefix="explorer")
-        self._is_stale = self._is_working = self._is_closed = False
+        self._solving = Solving(target, self._show)
         self._measured = measured
         self._share = measured.touch_share if measured else 0.0
+        self._all_rows: dict[str, ControlRow] = {}
         self._rows: dict[str, ControlRow] = {}
         self._panel = column(sizing_mode="stretch_width")
-        self._frame: Frame | None = None
-        self._shown: Mapping[str, Any] | None = None
         self._answer, self._message, self._remarks = (
             Div(styles=styles, sizing_mode="stretch_width") for styles in (ANSWER, ERROR, REMARK)
         )
@@ -79,12 +68,8 @@ class Explorer:
         self._target.template = _template()
         self._add_roots()
         self._list_controls()
-        self._target.on_session_destroyed(self._close)
-        self._request()
-
-    def _close(self, context: Any) -> None:
-        self._is_closed = True
-        self._worker.shutdown(wait=False, cancel_futures=True)
+        self._target.on_session_destroyed(lambda context: self._solving.close())
+        self._solving.request(self._document)
 
     def _add_roots(self) -> None:
         """Add each part by itself, so that a new text does not lay out the plots again."""
@@ -124,9 +109,16 @@ class Explorer:
         return [sticks, shift]
 
     def _list_controls(self) -> None:
-        """Show a row for each quantity of the present run."""
-        listed = controls(Run.from_mapping(self._document))
-        self._rows = {control.path: ControlRow(control, self._change) for control in listed}
+        """Show a row for each quantity of the present run.
+
+        Rows are used again, since bokeh does not free parts that have left a page.
+        """
+        self._rows = {}
+        for control in controls(Run.from_mapping(self._document)):
+            if control.path not in self._all_rows:
+                self._all_rows[control.path] = ControlRow(control, self._change)
+            self._rows[control.path] = self._all_rows[control.path]
+            self._rows[control.path].follow(control.value)
         self._panel.children = [part for entry in self._rows.values() for part in entry.parts]
 
     def _stick(self, attribute: str, old: bool, new: bool) -> None:
@@ -137,11 +129,11 @@ class Explorer:
         else:
             self._document = letting_go(self._document)
         self._list_controls()
-        self._request()
+        self._solving.request(self._document)
 
     def _likely_work(self) -> str:
         """Return a work of adhesion that makes a pull-off of some per cent of the largest force."""
-        frame = self._frame
+        frame = self._solving.frame
         if frame is None:
             return "1 mJ/m^2"
         radius = math.sqrt(max(frame.contact_area, frame.cell_area))
@@ -149,8 +141,8 @@ class Explorer:
 
     def _shift(self, attribute: str, old: float, new: float) -> None:
         self._share = new
-        if self._frame is not None:
-            self._plots.draw(self._frame, self._share)
+        if self._solving.frame is not None:
+            self._plots.draw(self._solving.frame, self._share)
 
     def _change(self, control: Control, text: str) -> float | str:
         """Take a new value of a control; return it in SI, or the message of why it is refused."""
@@ -158,59 +150,19 @@ class Explorer:
             self._document, value = changed(self._document, control, text)
         except ConfigError as error:
             return "; ".join(problem.message for problem in error.problems)
-        self._request()
+        self._solving.request(self._document)
         return value
 
-    def _request(self) -> None:
-        """Solve the present run, once the one that is being solved is finished."""
-        self._is_stale = True
-        if not self._is_working:
-            self._start(self._document, self._frame)
-
-    def _start(self, configuration: Mapping[str, Any], start: Frame | None) -> None:
-        """Solve a run in the other thread, as a preview if there is a ``start``."""
-        if not self._is_closed:
-            self._is_working, self._is_stale = True, False
-            self._worker.submit(self._solve, configuration, start)
-
-    def _solve(self, configuration: Mapping[str, Any], start: Frame | None) -> None:
-        outcome: Frame | Exception
-        try:
-            outcome = (start and preview(configuration, start)) or solved(configuration)
-        except Exception as error:
-            # A plugin may raise anything, and the page has to go on.
-            outcome = error
-        if not self._is_closed:
-            self._target.add_next_tick_callback(partial(self._show, configuration, outcome))
-
     def _show(self, configuration: Mapping[str, Any], outcome: Frame | Exception) -> None:
-        """Show a frame or an error, and go on to what is next."""
-        self._is_working = False
-        is_finished = configuration is self._shown
+        """Draw a frame, or show an error of the present run."""
         if configuration is self._document:
             self._blame(outcome if isinstance(outcome, Exception) else None)
         if isinstance(outcome, Frame):
-            self._draw(configuration, outcome)
-        if self._is_stale:
-            self._start(self._document, self._frame)
-        elif self._frame is not None and self._frame.is_preview and not is_finished:
-            self._target.add_timeout_callback(partial(self._finish, self._shown), _REST)
-
-    def _finish(self, configuration: Mapping[str, Any] | None) -> None:
-        """Solve the run of a preview in full, if it is still shown.
-
-        It may not be the present one: a change that is not possible leaves the picture before.
-        """
-        if configuration and configuration is self._shown and not self._is_working:
-            self._start(configuration, None)
-
-    def _draw(self, configuration: Mapping[str, Any], frame: Frame) -> None:
-        self._frame, self._shown = frame, configuration
-        self._plots.draw(frame, self._share)
-        self._answer.text = answer(frame)
-        if not frame.is_preview:
-            _fill(self._remarks, lines(frame.remarks))
+            self._plots.draw(outcome, self._share)
+            self._answer.text = answer(outcome)
             self._text.text = tomli_w.dumps(configuration)
+            if not outcome.is_preview:
+                _fill(self._remarks, lines(outcome.remarks))
 
     def _blame(self, error: Exception | None) -> None:
         """Show an error beside the controls that it names, or above the plots; None clears it."""

@@ -34,6 +34,7 @@ class ControlRow:
     def __init__(self, control: Control, change: Callable[[Control, str], float | str]) -> None:
         self._control, self._change = control, change
         self._is_following = self._is_refused = False
+        self._value = control.value
         self._field = TextInput(
             title=control.label,
             value=readable(control.value, control.quantity.unit, 4),
@@ -44,6 +45,15 @@ class ControlRow:
         self._field.on_change("value", self._typed)
         self._slider.on_change("value", self._moved)
         self.parts = (self._field, self._slider, self._error)
+
+    def follow(self, value: float) -> None:
+        """Show a value in SI that something else than this row has set, or kept."""
+        if self._is_refused or value != self._value:
+            self._is_refused, self._value = False, value
+            with self._following():
+                self._field.value = readable(value, self._control.quantity.unit, 4)
+            self._move(value)
+        self._show("")
 
     def blame(self, message: str) -> None:
         """Show why the run is not possible with this value; nothing if it is.
@@ -80,11 +90,14 @@ class ControlRow:
     def _typed(self, attribute: str, old: str, new: str) -> None:
         if self._is_following:
             return
-        value = self._take(new)
-        if isinstance(value, float) and (value > 0 or not self._control.is_logarithmic):
-            position = self._position(value)
-            with self._following():
-                self._slider.value = min(max(position, self._slider.start), self._slider.end)
+        if self._take(new):
+            self._move(self._value)
+
+    def _move(self, value: float) -> None:
+        """Move the slider to a value, or to its end on that side."""
+        low, high = self._control.low, self._control.high
+        with self._following():
+            self._slider.value = self._position(min(max(value, low), high))
 
     @contextmanager
     def _following(self) -> Iterator[None]:
@@ -95,11 +108,14 @@ class ControlRow:
         finally:
             self._is_following = False
 
-    def _take(self, text: str) -> float | str:
+    def _take(self, text: str) -> bool:
+        """Pass on a text; return whether it is a value."""
         value = self._change(self._control, text)
         self._is_refused = isinstance(value, str)
+        if not isinstance(value, str):
+            self._value = value
         self._show(value if isinstance(value, str) else "")
-        return value
+        return not self._is_refused
 
     def _show(self, message: str) -> None:
         self._error.text = escaped(message)

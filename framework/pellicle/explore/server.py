@@ -54,22 +54,29 @@ class _Guarded(BokehTornado):
     (DNS rebinding), so only the address itself is allowed.
     """
 
-    def __init__(self, applications: dict[str, Any], host: str, token: str) -> None:
-        self._host, self._token = host, token
+    def __init__(self, applications: dict[str, Any], host: str, token: str, ticket: str) -> None:
+        self._host, self._token, self._ticket = host, token, ticket
         self._cookie = f"pellicle-{host.rpartition(':')[2]}"
         super().__init__(applications, extra_websocket_origins=[host])
 
     def find_handler(self, request: HTTPServerRequest, **options: Any) -> Any:
         if request.host != self._host or not _SERVED.match(request.path):
             return self.get_handler_delegate(request, _Refused)
-        arguments = request.query_arguments.get("token", [])
-        if request.path == "/" and any(self._knows(value.decode("latin-1")) for value in arguments):
+        if request.path == "/" and self._enters(request.query_arguments):
             known = {"cookie": self._cookie, "token": self._token}
             return self.get_handler_delegate(request, _Entrance, known)
         cookie = request.cookies.get(self._cookie)
         if cookie is None or not self._knows(cookie.value):
             return self.get_handler_delegate(request, _Refused)
         return super().find_handler(request, **options)
+
+    def _enters(self, arguments: dict[str, list[bytes]]) -> bool:
+        """Whether the address has the token, or the ticket, which then serves no more."""
+        tokens, tickets = arguments.get("token", []), arguments.get("ticket", [])
+        if any(secrets.compare_digest(ticket, self._ticket.encode()) for ticket in tickets):
+            self._ticket = secrets.token_urlsafe(32)
+            return True
+        return any(self._knows(token.decode("latin-1")) for token in tokens)
 
     def _knows(self, token: str) -> bool:
         return secrets.compare_digest(token.encode(), self._token.encode())
@@ -103,9 +110,12 @@ class Server:
             ) from None
         listener.setblocking(False)
         host = f"{ADDRESS}:{listener.getsockname()[1]}"
-        token = secrets.token_urlsafe(32)
+        token, ticket = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
         self.address = f"http://{host}/?{urlencode({'token': token})}"
-        application = _Guarded({"/": Application(FunctionHandler(fill))}, host, token)
+        """The address to be opened by hand, as often as one likes."""
+        self.ticket_address = f"http://{host}/?{urlencode({'ticket': ticket})}"
+        """An address that serves once: other users of a machine see the commands that run on it."""
+        application = _Guarded({"/": Application(FunctionHandler(fill))}, host, token, ticket)
         self._http, self._listener = HTTPServer(application), listener
         self._server = BaseServer(self.loop, application, self._http)
 

@@ -110,6 +110,12 @@ class ManyFits:
         """Return median and quartiles of each parameter in each group."""
         return summary(self.rows)
 
+    def _repr_html_(self) -> str:
+        """Return HTML for a notebook: the answer, the quartiles of each group, a picture."""
+        from .report.notebook import html_of_population
+
+        return html_of_population(self)
+
     def to_dict(self) -> dict[str, Any]:
         """Return the fits as JSON data."""
         groups = [part._asdict() for part in self.summary()]

@@ -207,6 +207,15 @@ class FitResult:
             "parameters": {k: value.to_dict() for k, value in self.chosen_estimates().items()},
         }
 
+    def _repr_html_(self) -> str:
+        """Return HTML for a notebook: the answer, the estimates, and the curve with its fit."""
+        from .fit import Fit
+        from .pooled import PooledFit
+        from .report.notebook import html_of_fit
+
+        assert isinstance(self, (Fit, PooledFit)), "these are all fits that have panels"
+        return html_of_fit(self)
+
     def plot(self) -> Figure:
         """Return a figure of pyplot with the data, the fit, and how well it determines it."""
         from .report.figures import plot

@@ -23,7 +23,6 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.interpolate import make_interp_spline
 
 from pellicle.arrays import Array, Mask
 from pellicle.components import ContactRadius, ForceCurve
@@ -56,6 +55,8 @@ def _one_variable(name: str) -> Interpolant:
 
 @cache
 def _sphere_coefficients() -> tuple[float, Any, Any]:
+    from scipy.interpolate import make_interp_spline
+
     nodes = _table()["sphere"]
     t = np.log1p(np.asarray(nodes["x"]) / SCALE)
     spline = make_interp_spline(t, np.asarray(nodes["coefficients"]), 5)
@@ -109,6 +110,8 @@ def punch_radius(stiffness: Array, length: float) -> ContactRadius:
 @cache
 def _punch_radii() -> tuple[float, float, Any]:
     """Return log(a/s) of a flat punch as a function of log(k/s), between the first and the last."""
+    from scipy.interpolate import make_interp_spline
+
     radii = np.log(np.geomspace(*_PUNCH_RADII, 600))
     log, _ = _one_variable("flat_punch")(np.exp(-radii))
     size = np.log(2.0) + radii + log

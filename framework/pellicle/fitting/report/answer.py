@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from pellicle.fitting.many import FITTED, ManyFits
 from pellicle.fitting.parameters import CONTACT_POINT
+from pellicle.fitting.population.summary import ALL, Quartiles
 from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.profile import CONFIDENCE
 from pellicle.fitting.wording import in_words, words
+from pellicle.units import axis_unit
 
+_GROUPS = 4
+"""Groups of a population that are named in a sentence; of more, only all curves are."""
 _NAMES = "youngs_modulus", "reduced_modulus", "tension"
 
 
@@ -30,3 +37,41 @@ def answer(fit: FitResult, *, si: bool = False) -> str:
     text = f"{', '.join(parts[:-1])} and {parts[-1]}" if len(parts) > 1 else parts[0]
     by = "" if chosen is None else f", by {chosen.rival.words}"
     return f"{text[0].upper()}{text[1:]}, with {100 * CONFIDENCE:.0f} % intervals{by}."
+
+
+def answer_of_population(fits: ManyFits) -> str:
+    """Return how many curves were fitted and accepted, with the medians of each group.
+
+    A median is followed by the quartiles. The modulus is Young's where Poisson's ratio is known.
+    """
+    rows = fits.rows
+    fitted = sum(row["status"] == FITTED for row in rows)
+    accepted = sum(row["accepted"] for row in rows)
+    parts = fits.summary()
+    outliers = sum(row["outlier"] for row in rows if row["accepted"])
+    counts = f"{fitted} of {len(rows)} curves were fitted"
+    if accepted != fitted:
+        counts += f", {accepted} of them accepted"
+    if outliers:
+        counts += f"; the modulus of {outliers} stands out"
+    hidden = "reduced_modulus" if any(p.parameter == "youngs_modulus" for p in parts) else ""
+    groups = list(dict.fromkeys(p.group for p in parts))
+    sentences = [f"{counts}."]
+    for group in groups if len(groups) <= _GROUPS + 1 else [ALL]:
+        medians = [
+            f"{words(p.parameter)} {_quartiles(p)}"
+            for p in parts
+            if p.group == group and p.parameter != hidden
+        ]
+        of = "all accepted curves" if group == ALL else group
+        sentences.append(f"Median (and quartiles) of {of}: {', '.join(medians)}.")
+    return " ".join(sentences)
+
+
+def _quartiles(part: Quartiles) -> str:
+    """Return a median with its quartiles: ``5 mN/m (4.8 to 5.2)``."""
+    factor, unit = axis_unit(np.array([part.median or part.upper_quartile]), part.unit)
+    median, low, high = (
+        f"{value * factor:.3g}" for value in (part.median, part.lower_quartile, part.upper_quartile)
+    )
+    return f"{median} {unit} ({low} to {high})"

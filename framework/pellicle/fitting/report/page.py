@@ -24,7 +24,7 @@ from pellicle.report.page import page as render
 from pellicle.report.plotting import svg
 from pellicle.units import axis_unit, readable
 
-from .answer import answer
+from .answer import answer, answer_of_population
 from .contact_sheet import LEGEND, PAGE, sheets
 from .figures import SIZE, panels
 
@@ -91,7 +91,7 @@ def save_report(fit: Fit | PooledFit | ManyFits, path: Path, title: str) -> Path
 def _fit(fit: Fit | PooledFit) -> tuple[list[Block], list[Block]]:
     """Return results and inputs of a fit or a pooled fit."""
     results: list[Block] = [
-        Text(answer(fit)),
+        Text(answer(fit), lead=True),
         Notice(_sentence(fit.comparison), good=not fit.doubt),
         *_rivals(fit),
     ]
@@ -107,10 +107,15 @@ def _many(fits: ManyFits) -> tuple[list[Block], list[Block]]:
     """Return results and inputs of a table of many fits."""
     rows = fits.rows
     failed = [f"{row['curve']}: {row['status']}" for row in rows if row["status"] != FITTED]
-    summary = f"{len(rows) - len(failed)} of {len(rows)} curves were fitted."
+    good = not failed and all(row["accepted"] for row in rows)
+    lost = f"{len(failed)} of {len(rows)} curves could not be fitted:"
     messages = [f"{row['curve']}: {text}" for row in rows for text in row.get("messages", ())]
     models = [row["model"] for row in rows if "model" in row]
-    blocks: list[Block] = [Notice(summary, not failed, _first(failed))]
+    blocks: list[Block] = [Text(answer_of_population(fits), lead=True)]
+    if failed:
+        blocks.append(Notice(lost, good=False, details=_first(failed)))
+    elif good:
+        blocks.append(Notice("Every curve was fitted and accepted.", good=True))
     if fits.notes:
         blocks.append(Notice("Population:", good=False, details=_first(fits.notes)))
     if any(row["accepted"] for row in rows):
@@ -157,7 +162,8 @@ def _groups(fits: ManyFits) -> Table:
         values = part.median, part.lower_quartile, part.upper_quartile
         texts = [readable(value, part.unit, 4) for value in values]
         counts = [f"{part.n} of {part.curves}", str(part.outliers)]
-        rows.append([part.parameter.replace("_", " "), part.group, *counts, *texts])
+        words = part.parameter.replace("_", " ").replace("youngs", "Young's")
+        rows.append([words, part.group, *counts, *texts])
     return Table("The accepted curves.", columns, rows)
 
 
@@ -294,8 +300,9 @@ def _inputs(models: Sequence[Mapping[str, Any]]) -> Table:
             text = ", ".join(values)
         else:
             text = f"{values[0]} … {values[-1]} ({distinct} values)"
-        rows.append([name, text, field.meaning])
-    columns = [Column(head, words=True) for head in ("field", "value", "meaning")]
+        words = "type" if field.words == field.part else field.words
+        rows.append([field.part, words, text, field.meaning])
+    columns = [Column(head, words=True) for head in ("of", "input", "value", "meaning")]
     return Table("The indenter, and the known properties of the solid.", columns, rows)
 
 
