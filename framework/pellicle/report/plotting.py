@@ -28,11 +28,11 @@ from .style import (
     NO_CONTACT,
     FigureStyle,
     add_colour_bar,
-    clear_legends,
     colour,
     is_log_spaced,
     is_ordered,
     label_log_axes,
+    lay_out,
 )
 
 if TYPE_CHECKING:
@@ -529,7 +529,7 @@ def _figure(
         for text in figure.findobj(Text):
             text.set_text(for_document(text.get_text()))
         label_log_axes(figure)
-        clear_legends(figure)
+        lay_out(figure)
         try:
             yield figure
         finally:
