@@ -6,6 +6,7 @@ import http.client
 import threading
 import time
 import tomllib
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.resources import files
@@ -304,6 +305,42 @@ def test_a_long_solve_is_abandoned(
         assert page.saved["kernel"]["tension"] == "6 mN/m"
 
 
+def test_two_pages_leave_the_warnings_in_order(start: pl.Run) -> None:
+    """Runs of two pages that overlap do not restore the filters of each other."""
+    before = list(warnings.filters)
+    is_inside, is_done = threading.Event(), threading.Event()
+
+    def enter_second() -> None:
+        if other.ident is None:
+            other.start()
+            is_inside.wait(0.3)
+
+    def stay_longer() -> None:
+        is_inside.set()
+        is_done.wait(0.3)
+
+    other = threading.Thread(target=solved, args=(document(start), stay_longer))
+    solved(document(start), enter_second)
+    is_done.set()
+    other.join(20)
+    assert list(warnings.filters) == before
+
+
+def test_a_load_of_nothing_is_refused(start: pl.Run) -> None:
+    """Load steps keep their proportion, which 0 would take from them; a tiny one may stick."""
+    page = Page(start)
+    page.type("largest depth", "0 m")
+    assert "above 0" in page.errors[0]
+    page.type("largest depth", "1 nm")
+    page.rest()
+    assert page.frame.force.max() == 0
+    switch = page.document.select_one({"type": Checkbox})
+    assert isinstance(switch, Checkbox)
+    switch.active = True
+    page.rest()
+    assert page.saved["interaction"]["work_of_adhesion"] == "1 mJ/m^2"
+
+
 def test_rows_are_used_again(start: pl.Run) -> None:
     """Bokeh keeps every part that was on a page, so switches must not make new ones."""
     page = Page(start)
@@ -407,6 +444,12 @@ def test_the_ticket_of_the_browser_serves_once() -> None:
             answer(server, "/", Cookie=known.partition("=")[0] + "=" + parts.query[7:]).status
             == 403
         )
+
+
+def test_browsers_do_not_keep_the_page(server: Server) -> None:
+    """It has the secret of a session, which a page kept for the back button would hold open."""
+    page = answer(server, "/", Cookie=cookie(server))
+    assert page.getheader("Cache-Control") == "no-store"
 
 
 def cookie(server: Server) -> str:

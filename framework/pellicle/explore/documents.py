@@ -33,6 +33,11 @@ def changed(
     except ValueError as error:
         raise ConfigError(str(error), control.path) from None
     if control.path.startswith("loading."):
+        if number <= 0:
+            message = (
+                f"{text!r} is not above 0; the load steps keep their proportion to the largest"
+            )
+            raise ConfigError(message, control.path)
         key = control.path.partition(".")[2]
         steps = document["loading"][key]
         factor = number / max(map(abs, steps))

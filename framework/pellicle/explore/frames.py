@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
@@ -22,6 +23,9 @@ from pellicle.runs.steps import solve_step
 
 # Tolerance of a preview: its forces are then right to 2e-5, less than a hundredth of a pixel.
 _PREVIEW_TOLERANCE: Final = 1e-4
+# Pages take turns: what catches warnings is shared by all threads, so that one run would get the
+# warnings of another, or the process lose them for good.
+_LOCK: Final = threading.Lock()
 
 
 @dataclass(frozen=True)
@@ -116,7 +120,7 @@ def solved(document: Mapping[str, Any], check: Callable[[], None] = _proceed) ->
         The document is not a run, or it cannot be executed.
     """
     run = Run.from_mapping(document)
-    with warnings.catch_warnings(record=True) as caught:
+    with _LOCK, warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         data = solve(run, _Watched(check)).dataset
     walls = data["wall_pressure" if "wall_pressure" in data else "pressure"].values
@@ -153,7 +157,7 @@ def preview(
     loose = run.model_copy(
         update={"solver": run.solver.model_copy(update={"tolerance": tolerance})}
     )
-    with warnings.catch_warnings():
+    with _LOCK, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         steps = list(_started(loose, start.states, _Watched(check)))
     deepest = max(steps, key=lambda step: step.force)

@@ -134,7 +134,7 @@ class Explorer:
     def _likely_work(self) -> str:
         """Return a work of adhesion that makes a pull-off of some per cent of the largest force."""
         frame = self._solving.frame
-        if frame is None:
+        if frame is None or frame.force.max() <= 0:
             return "1 mJ/m^2"
         radius = math.sqrt(max(frame.contact_area, frame.cell_area))
         return f"{float(frame.force[frame.step]) / (60 * radius) * 1e3:.2g} mJ/m^2"

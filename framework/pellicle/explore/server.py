@@ -14,6 +14,7 @@ from bokeh.application.handlers.function import FunctionHandler
 from bokeh.document import Document
 from bokeh.server.server import BaseServer
 from bokeh.server.tornado import BokehTornado
+from bokeh.server.views.doc_handler import DocHandler
 from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPServerRequest
 from tornado.ioloop import IOLoop
@@ -47,6 +48,16 @@ class _Entrance(RequestHandler):
         self.redirect("/")
 
 
+class _Page(DocHandler):
+    """The page, which browsers must not keep.
+
+    One that is kept for the back button would hold its session here for ten minutes.
+    """
+
+    def set_default_headers(self) -> None:
+        self.set_header("Cache-Control", "no-store")
+
+
 class _Guarded(BokehTornado):
     """Passes on requests, also for files and of websockets, only to this host and with the token.
 
@@ -69,6 +80,16 @@ class _Guarded(BokehTornado):
         if cookie is None or not self._knows(cookie.value):
             return self.get_handler_delegate(request, _Refused)
         return super().find_handler(request, **options)
+
+    def get_handler_delegate(
+        self,
+        request: HTTPServerRequest,
+        target_class: type[RequestHandler],
+        *rest: Any,
+        **more: Any,
+    ) -> Any:
+        own = _Page if target_class is DocHandler else target_class
+        return super().get_handler_delegate(request, own, *rest, **more)
 
     def _enters(self, arguments: dict[str, list[bytes]]) -> bool:
         """Whether the address has the token, or the ticket, which then serves no more."""

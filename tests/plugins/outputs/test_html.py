@@ -563,7 +563,7 @@ def saved(browser: Chrome, ending: str) -> list[int]:
 def test_browser_shows_tables_whole_on_a_narrow_screen(
     browser: Chrome, ran: tuple[Path, xr.Dataset]
 ) -> None:
-    """At 400 px neither the page nor any table is wider than the window, each value with a head."""
+    """At 400 px neither page nor tables and code are cut, and each value has its head."""
     size = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": False}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     try:
@@ -572,14 +572,38 @@ def test_browser_shows_tables_whole_on_a_narrow_screen(
             "return [document.documentElement, ...document.querySelectorAll('.scroll')]"
             ".filter((part) => part.scrollWidth > part.clientWidth).length"
         )
+        high = browser.execute_script(
+            "return [...document.querySelectorAll('.scroll, .code pre')]"
+            ".filter((part) => part.scrollHeight > part.clientHeight + 1).length"
+        )
         heads = browser.execute_script(
             "return [...document.querySelectorAll('td')].map((cell) => cell.dataset.label)"
         )
     finally:
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
-    assert wide == 0
+    assert (wide, high) == (0, 0)
     assert all(heads)
     assert "depth [µm]" in heads
+
+
+def test_browser_prints_both_maps_side_by_side(
+    browser: Chrome, ran: tuple[Path, xr.Dataset]
+) -> None:
+    """On paper of 190 mm the maps share a row; one below the other they would fill two pages."""
+    size = {"width": 718, "height": 1000, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    try:
+        show(browser, ran[0])
+        tops = browser.execute_script(
+            "return [...document.querySelectorAll('.panel')]"
+            ".map((part) => part.getBoundingClientRect().top)"
+        )
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert len(tops) == 2
+    assert tops[0] == tops[1]
 
 
 def shown_marks(browser: Chrome) -> set[str]:

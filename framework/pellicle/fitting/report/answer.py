@@ -42,7 +42,8 @@ def answer(fit: FitResult, *, si: bool = False) -> str:
 def answer_of_population(fits: ManyFits) -> str:
     """Return how many curves were fitted and accepted, with the medians of each group.
 
-    A median is followed by the quartiles. The modulus is Young's where Poisson's ratio is known.
+    Of curves in groups the median over all means little, so it is left to the table. A median is
+    followed by the quartiles. The modulus is Young's where Poisson's ratio is known.
     """
     rows = fits.rows
     fitted = sum(row["status"] == FITTED for row in rows)
@@ -55,16 +56,17 @@ def answer_of_population(fits: ManyFits) -> str:
     if outliers:
         counts += f"; the modulus of {outliers} stands out"
     hidden = "reduced_modulus" if any(p.parameter == "youngs_modulus" for p in parts) else ""
-    groups = list(dict.fromkeys(p.group for p in parts))
+    groups = [group for group in dict.fromkeys(p.group for p in parts) if group != ALL]
     sentences = [f"{counts}."]
-    for group in groups if len(groups) <= _GROUPS + 1 else [ALL]:
+    for group in groups if 0 < len(groups) <= _GROUPS else [ALL] * bool(parts):
         medians = [
             f"{words(p.parameter)} {_quartiles(p)}"
             for p in parts
             if p.group == group and p.parameter != hidden
         ]
-        of = "all accepted curves" if group == ALL else group
-        sentences.append(f"Median (and quartiles) of {of}: {', '.join(medians)}.")
+        sentences.append(f"Median{'' if group == ALL else f' of {group}'}: {', '.join(medians)}.")
+    if parts:
+        sentences.append("In brackets the quartiles.")
     return " ".join(sentences)
 
 

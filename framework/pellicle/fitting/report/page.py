@@ -65,7 +65,9 @@ def save_report(fit: Fit | PooledFit | ManyFits, path: Path, title: str) -> Path
     results, fields = _many(fit) if isinstance(fit, ManyFits) else _fit(fit)
     advice = "" if isinstance(fit, ManyFits) else fit.advice
     figures: list[Block] = [
-        Picture(svg(p.draw, p.size or SIZE), p.caption, p.caption) for p in panels(fit)
+        Picture(svg(p.draw, size), p.caption, p.caption, wide=size[0] > 2 * size[1])
+        for p in panels(fit)
+        for size in (p.size or SIZE,)
     ]
     if isinstance(fit, ManyFits):
         figures += _sheets(fit)
