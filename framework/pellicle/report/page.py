@@ -108,6 +108,8 @@ class Picture:
     marks: Sequence[Sequence[tuple[float, float]]] = ()
     """Points for each frame of the page's first maps, as shares of width and height from top left;
     those of the frame that is shown are marked."""
+    wide: bool = False
+    """Whether it has the whole width of the page."""
     by_frame: Sequence[Picture] = ()
     """Pictures that take its place while a frame of the page's first maps is shown, one for each;
     it may be one picture for several frames."""

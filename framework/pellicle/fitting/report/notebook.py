@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 from pellicle.fitting.many import ManyFits
 from pellicle.fitting.result import FitResult
+from pellicle.fitting.wording import interval, scale
 from pellicle.model.html import summary
 from pellicle.units import readable
 
-from .answer import answer, answer_of_population, interval, scale
+from .answer import answer, answer_of_population
 from .figures import SIZE, Panel, panels
 
 if TYPE_CHECKING:

@@ -18,12 +18,13 @@ from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.result import FitResult, as_json
 from pellicle.fitting.statistics.profile import CONFIDENCE
+from pellicle.fitting.wording import interval, scale, words
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
 from pellicle.report.plotting import svg
 from pellicle.units import axis_unit, readable
 
-from .answer import answer, answer_of_population, interval, scale
+from .answer import answer, answer_of_population
 from .contact_sheet import LEGEND, PAGE, sheets
 from .figures import SIZE, panels
 
@@ -42,6 +43,7 @@ _COLUMNS = (
     ("thickness", "m"),
     ("contact_point", "m"),
 )
+_OF_TENSION = "They are those of an elastic solid under tension, which is not the model chosen."
 _MEANINGS = {
     "interval": "values that describe the data nearly as well; < and >: open to the other side",
     "low": "lower end of the interval",
@@ -63,7 +65,9 @@ def save_report(fit: Fit | PooledFit | ManyFits, path: Path, title: str) -> Path
     results, fields = _many(fit) if isinstance(fit, ManyFits) else _fit(fit)
     advice = "" if isinstance(fit, ManyFits) else fit.advice
     figures: list[Block] = [
-        Picture(svg(p.draw, p.size or SIZE), p.caption, p.caption) for p in panels(fit)
+        Picture(svg(p.draw, size), p.caption, p.caption, wide=size[0] > 2 * size[1])
+        for p in panels(fit)
+        for size in (p.size or SIZE,)
     ]
     if isinstance(fit, ManyFits):
         figures += _sheets(fit)
@@ -91,6 +95,7 @@ def _fit(fit: Fit | PooledFit) -> tuple[list[Block], list[Block]]:
     results: list[Block] = [
         Text(answer(fit), lead=True),
         Notice(_sentence(fit.comparison), good=not fit.doubt),
+        *_rivals(fit),
     ]
     if isinstance(fit, Fit):
         results += [*_warnings(fit.warnings), _estimates(fit), *_notes(fit)]
@@ -224,15 +229,30 @@ def _estimates(fit: Fit | PooledFit) -> Table:
         bound = f"{estimate.bound * factor:.2g}" if is_known else "none"
         bound = "" if estimate.held else bound
         value = f"{estimate.value * factor:.4g}"
-        name = name.replace("_", " ").replace("youngs", "Young's")
-        rows.append([name, value, interval(estimate), unit, bound])
+        rows.append([words(name), value, interval(estimate), unit, bound])
     heads = ("parameter", "value", "interval", "unit", "bound")
     columns = [
         Column(head, meaning=_MEANINGS.get(head, ""), words=head in ("parameter", "unit"))
         for head in heads
     ]
     caption = f"Estimates, with {100 * CONFIDENCE:.0f} % intervals of the profile likelihood."
+    if fit.chosen is not None:
+        caption += f" {_OF_TENSION}"
     return Table(caption, columns, rows)
+
+
+def _rivals(fit: FitResult) -> list[Block]:
+    """Return the pull-off force, and the table of the explanations that were compared."""
+    if fit.rivals is None:
+        return []
+    rows = fit.rivals.rows()
+    columns = {
+        Column(head, words=head in ("model", "parameters")): [row[head] for row in rows]
+        for head in rows[0]
+    }
+    table = _table("What describes the data, best first; below 6, ΔAIC is a tie.", columns)
+    pull_off = fit.rivals.pull_off
+    return [*([Text(_sentence(pull_off))] if pull_off else []), table]
 
 
 def _data(fit: Fit) -> Table:
