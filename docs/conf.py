@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
@@ -8,6 +9,10 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parent))
 
 import generated
+from numpy.typing import ArrayLike
+from sphinx.util.typing import stringify_annotation
+
+from pellicle.arrays import Array, Mask
 
 project = "pellicle"
 author = "the authors of pellicle"
@@ -19,6 +24,8 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",
+    "sphinx-mathjax-offline",
+    "sphinx_copybutton",
 ]
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
@@ -26,33 +33,52 @@ default_role = "code"
 exclude_patterns = ["_build", "joss"]
 html_theme = "furo"
 html_title = f"pellicle {release}"
+html_static_path = ["static"]
+html_css_files = ["pellicle.css"]
+
+copybutton_prompt_text = r">>> |\.\.\. |\$ "
+copybutton_prompt_is_regexp = True
+copybutton_copy_empty_lines = False
 
 autodoc_member_order = "bysource"
-autodoc_typehints = "none"
+autodoc_typehints = "signature"
+python_use_unqualified_type_names = True
+python_maximum_signature_line_length = 88
 napoleon_use_rtype = False
 napoleon_use_ivar = True
+nitpicky = True
+# Names in signatures that the reference does not describe: those of other packages, as their
+# authors import them, and types that users only hand on.
+nitpick_ignore_regex = [
+    ("py:class", r"(xarray|xr|numpy|np|matplotlib|pathlib|collections|pydantic|pellicle)\..*"),
+    ("py:class", r"[A-Z]\w*"),
+]
 
-
+_ALIASES = {
+    stringify_annotation(alias, "smart"): name
+    for name, alias in (("Array", Array), ("Mask", Mask), ("ArrayLike", ArrayLike))
+}
 _COLON = "\ue000"
 
 
-def _fill_in(app: Any, docname: str, source: list[str]) -> None:
-    """Replace ``<!-- generated: name -->`` by what the installed package says."""
-    source[0] = generated.fill_in(source[0])
-
-
-def _model_signature(
+def _signature(
     app: Any, what: str, name: str, obj: Any, options: Any, signature: str, returned: str
-) -> tuple[str, str] | None:
-    """Show the fields of a model instead of ``(**data)``."""
+) -> tuple[str, str]:
+    """Show the fields of a model instead of ``(**data)``, and array types by their short names."""
     fields = getattr(obj, "model_fields", None) if what == "class" else None
-    if fields is None:
-        return None
-    shown = [
-        field if info.is_required() else f"{field}={generated.default(info)}"
-        for field, info in fields.items()
-    ]
-    return f"(*, {', '.join(shown)})" if shown else "()", ""
+    if fields is not None:
+        shown = [
+            field if info.is_required() else f"{field}={generated.default(info)}"
+            for field, info in fields.items()
+        ]
+        return f"(*, {', '.join(shown)})" if shown else "()", ""
+    return _short(signature), _short(returned)
+
+
+def _short(text: str | None) -> str | None:
+    for long, short in _ALIASES.items():
+        text = text and text.replace(long, short)
+    return text and re.sub(r"<object object at \w+>|<factory>", "...", text)
 
 
 def _hide(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[str]) -> None:
@@ -68,7 +94,6 @@ def _show(app: Any, what: str, name: str, obj: Any, options: Any, lines: list[st
 
 def setup(app: Any) -> None:
     """Connect the functions above."""
-    app.connect("source-read", _fill_in)
-    app.connect("autodoc-process-signature", _model_signature)
+    app.connect("autodoc-process-signature", _signature)
     app.connect("autodoc-process-docstring", _hide, priority=100)
     app.connect("autodoc-process-docstring", _show, priority=900)

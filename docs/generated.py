@@ -1,4 +1,7 @@
-"""Writes the parts of the documentation that the installed package itself knows best."""
+"""Write the parts of the documentation that the installed package itself knows best.
+
+``python docs/generated.py`` brings the pages of docs/ up to date; a test compares them.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from pydantic.fields import FieldInfo
 import pellicle as pl
 from pellicle.model import Model
 from pellicle.results.variables import VARIABLES, Variable
-from pellicle.units import Quantity, quantity_of
+from pellicle.units import Quantity, quantity_of, readable
 
 _HEADINGS = {
     "kernel": "Kernels",
@@ -27,9 +30,12 @@ _HEADINGS = {
 }
 
 
+_PART = re.compile(r"(<!-- generated: (\w+) -->\n).*?(\n<!-- end -->)", re.DOTALL)
+
+
 def fill_in(text: str) -> str:
-    """Return a page with each ``<!-- generated: name -->`` replaced by what it names."""
-    return re.sub(r"<!-- generated: (\w+) -->", lambda match: PARTS[match[1]](), text)
+    """Return a page with all that follows a ``<!-- generated: name -->`` brought up to date."""
+    return _PART.sub(lambda part: f"{part[1]}\n{PARTS[part[2]]().strip()}\n{part[3]}", text)
 
 
 def components() -> str:
@@ -107,11 +113,15 @@ def _prescribed() -> Iterable[Variable]:
 def cases() -> str:
     """Return a table of the cases that ``pellicle validate`` solves."""
     rows = [
-        (case.name, f"{case.expected:.6g} {case.unit}", f"{case.tolerance:.0e}", _cell(case.source))
+        (case.name, _value(case.expected, case.unit), f"{case.tolerance:.0e}", _cell(case.source))
         for suite in pl.registry().suites
         for case in suite()
     ]
     return _table(("case", "expected", "allowed", "source"), rows)
+
+
+def _value(value: float, unit: str) -> str:
+    return readable(value, unit.translate({ord("²"): "2", ord("³"): "3"}))
 
 
 def statuses() -> str:
@@ -158,6 +168,8 @@ def default(info: FieldInfo, quote: str = "") -> str:
         return f"{quote}{str(value).lower() if quote else value}{quote}"
     if value is None or value in ((), ""):
         return "none" if quote else repr(value)
+    if quote and isinstance(value, str):
+        return f'{quote}"{value}"{quote}'
     return f"{quote}{list(value) if quote and isinstance(value, tuple) else value!r}{quote}"
 
 
@@ -225,3 +237,8 @@ def _cell(text: str) -> str:
 def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
     lines = [head, tuple("---" for _ in head), *rows]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+if __name__ == "__main__":
+    for page in sorted(Path(__file__).parent.glob("*.md")):
+        page.write_text(fill_in(page.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")

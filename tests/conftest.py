@@ -38,6 +38,14 @@ def _floating_point_errors_raise() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(autouse=True)
+def _no_figure_stays_open() -> Iterator[None]:
+    """Close what a test has drawn, or the next one on the same worker would draw into it."""
+    yield
+    if pyplot := sys.modules.get("matplotlib.pyplot"):
+        pyplot.close("all")
+
+
 StartDask = Callable[..., AbstractContextManager[str]]
 
 
@@ -75,7 +83,14 @@ def start_dask(tmp_path_factory: pytest.TempPathFactory) -> StartDask:
         file = folder / "scheduler.json"
         forked = "forkserver" in multiprocessing.get_all_start_methods()
         method = "forkserver" if forked else "spawn"
-        here = {"DASK_DISTRIBUTED__WORKER__MULTIPROCESSING_METHOD": method}
+        # An idle cluster that looks at itself every 10 ms takes a tenth of a core.
+        here = {
+            "DASK_DISTRIBUTED__WORKER__MULTIPROCESSING_METHOD": method,
+            "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
+            "DASK_DISTRIBUTED__ADMIN__TICK__INTERVAL": "500ms",
+            "DASK_DISTRIBUTED__ADMIN__SYSTEM_MONITOR__INTERVAL": "30s",
+            "DASK_DISTRIBUTED__ADMIN__SYSTEM_MONITOR__GIL__ENABLED": "False",
+        }
         common: dict[str, Any] = {
             "env": os.environ | here | environment,
             "stdout": subprocess.DEVNULL,

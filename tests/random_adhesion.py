@@ -40,7 +40,7 @@ class Verdict(NamedTuple):
     @property
     def converged(self) -> bool:
         """Whether the step claims to be solved."""
-        return self.status in ("CONVERGED", "STEEP", "COARSE", "COARSE_ZONE")
+        return self.status in ("CONVERGED", "STEEP", "COARSE", "COARSE_ZONE", "JUMPED")
 
     @property
     def honest(self) -> bool:

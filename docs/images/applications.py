@@ -12,7 +12,9 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.operators import make_operator
+from pellicle.plotting import save_figure
 from pellicle.problem import Problem
+from pellicle.report.style import MARKERS
 
 POINTS = {"conjugate_gradient": (64, 128, 256, 512), "active_set": (64, 128, 256, 512, 1024)}
 TENSIONS = {0.0: "no tension", 0.02: "s = 0.02 L", 1.0: "s = L"}
@@ -35,24 +37,41 @@ def applications(solver: str, points: int, s: float) -> int:
 
 def main() -> None:
     """Measure and draw."""
-    figure = Figure(figsize=(5.4, 3.8), dpi=150, layout="constrained")
+    counts = {
+        (solver, s): [applications(solver, points, s) for points in POINTS[solver]]
+        for solver in POINTS
+        for s in TENSIONS
+    }
+    print(counts)
+    save_figure(
+        lambda figure: draw(figure, counts),
+        Path(__file__).with_name("applications"),
+        ["png"],
+        (5.6, 3.8),
+    )
+
+
+def draw(figure: Figure, counts: dict[tuple[str, float], list[int]]) -> None:
+    """Draw the counts: a colour and a marker for each tension, dashes for conjugate gradients."""
     axes = figure.add_subplot()
-    styles = {"conjugate_gradient": "s--", "active_set": "o-"}
-    for solver, style in styles.items():
-        for colour, (s, label) in enumerate(TENSIONS.items()):
-            counts = [applications(solver, points, s) for points in POINTS[solver]]
-            print(solver, s, counts)
-            axes.loglog(
-                POINTS[solver], counts, style, color=f"C{colour}", label=f"{solver}, {label}"
-            )
+    for (solver, s), values in counts.items():
+        number = list(TENSIONS).index(s)
+        axes.loglog(
+            POINTS[solver],
+            values,
+            "--" if solver == "conjugate_gradient" else "-",
+            marker=MARKERS[number],
+            markerfacecolor="white",
+            color=f"C{number}",
+            label=f"{solver}, {TENSIONS[s]}",
+        )
     ticks = POINTS["active_set"]
     axes.set_xticks(ticks, [str(points) for points in ticks])
     axes.minorticks_off()
     axes.set(xlabel="cells along an edge, N", ylabel="operator applications, finest grid")
     axes.grid(alpha=0.3)
     axes.set_ylim(8, 2000)
-    axes.legend(fontsize=7, loc="upper left")
-    figure.savefig(Path(__file__).with_name("applications.png"))
+    axes.legend(fontsize="small", loc="upper left")
 
 
 if __name__ == "__main__":

@@ -11,6 +11,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import pellicle as pl
+from pellicle.plotting import save_figure
+from pellicle.report.style import LINES
 
 MODULUS, LENGTH = 10e3, 100e-6  # E*, and the one length that all kernels are given
 TENSION = MODULUS * LENGTH / 2  # so that s = 2τ₀/E* is LENGTH
@@ -53,22 +55,24 @@ LAYERS = {
 
 def main() -> None:
     """Draw."""
-    figure = Figure(figsize=(8.4, 3.9), dpi=150, layout="constrained")
+    save_figure(draw, Path(__file__).with_name("kernels"), ["png"], (9.6, 4.6))
+
+
+def draw(figure: Figure) -> None:
+    """Draw the kernels of both panels, told apart by colour and by dashes."""
     panels = figure.subplots(1, 2, sharey=True)
     q = np.geomspace(1e-2, 1e2, 400) / LENGTH
     for axes, kernels, name in zip(panels, (SKINS, LAYERS), ("ℓ", "h"), strict=True):
         for index, (label, kernel) in enumerate(kernels.items()):
             g = kernel.compliance(q) * MODULUS / LENGTH
-            colour, width = ("0.6", 3.0) if index == 0 else (f"C{index - 1}", 1.4)
-            # Springs and the layer that slips lie on each other where qh is small.
-            dashes = "--" if label.startswith("winkler") else "-"
+            colour, width = ("0.7", 4.0) if index == 0 else (f"C{index - 1}", 1.6)
+            dashes = LINES[(index - 1) % len(LINES)] if index else "-"
             axes.loglog(q * LENGTH, g, dashes, color=colour, linewidth=width, label=label)
-        axes.set(xlabel=f"wavenumber × length, q{name}", ylim=(1e-7, 3e2))
+        axes.set(xlabel=f"wavenumber × length, q{name}", ylim=(1e-9, 3e2))
         axes.grid(alpha=0.3)
-        axes.legend(fontsize=7, loc="lower left")
+        axes.legend(fontsize="small", loc="lower left")
     panels[0].set(ylabel="compliance G E*/ℓ", title="half-space under a skin, s = ℓ")
     panels[1].set(title="layer of thickness h = ℓ, springs")
-    figure.savefig(Path(__file__).with_name("kernels.png"))
 
 
 if __name__ == "__main__":

@@ -7,24 +7,27 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib.style
 import numpy as np
 from matplotlib.figure import Figure
 
 import pellicle as pl
+from pellicle.plotting import save_figure
 from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 RADIUS, MODULUS, DEEPEST = 1e-3, 10e3, 40e-6
-TENSIONS = {0.0: "C0", 0.5: "C3"}
+TENSIONS = {0.0: ("C0", "o"), 0.5: ("C1", "s")}
 
 
 def main() -> None:
-    """Solve, draw and write the picture next to this file."""
-    matplotlib.style.use("default")
-    figure = Figure(figsize=(8.4, 3.7), dpi=150, layout="constrained")
+    """Write the picture next to this file."""
+    save_figure(draw, Path(__file__).with_name("loading"), ["png"], (9.6, 4.2))
+
+
+def draw(figure: Figure) -> None:
+    """Solve and draw."""
     left, right = figure.subplots(1, 2)
-    for tension, colour in TENSIONS.items():
+    for tension, (colour, marker) in TENSIONS.items():
         label = f"τ₀ = {tension:g} N/m"
         data = pl.run(
             {
@@ -44,13 +47,13 @@ def main() -> None:
         ).dataset
         depth, force, stiffness = (data[n].values for n in ("depth", "force", "stiffness"))
         there = slice(0, 8)
-        left.plot(depth[there] * 1e6, force[there] * 1e6, "o", color=colour, mfc="white", ms=7)
+        left.plot(depth[there] * 1e6, force[there] * 1e6, marker, color=colour, mfc="white", ms=7)
         left.plot(depth[8:] * 1e6, force[8:] * 1e6, "x", color=colour, ms=5)
         for d, f, k in zip(depth[there], force[there], stiffness[there], strict=True):
             near = np.array([-1, 1]) * DEEPEST / 22
             left.plot((d + near) * 1e6, (f + k * near) * 1e6, color=colour, linewidth=1.0)
-        left.plot([], [], "o", color=colour, mfc="white", label=label)
-        right.plot(depth[there] * 1e6, stiffness[there], "o", color=colour, mfc="white")
+        left.plot([], [], marker, color=colour, mfc="white", label=label)
+        right.plot(depth[there] * 1e6, stiffness[there], marker, color=colour, mfc="white")
         finer = np.linspace(DEEPEST / 20, DEEPEST, 20)
         exact = [indent(Paraboloid(radius=RADIUS), MODULUS, tension, depth=d).force for d in finer]
         right.plot(finer * 1e6, np.gradient(exact, finer, edge_order=2), color=colour, label=label)
@@ -61,8 +64,7 @@ def main() -> None:
     right.set_ylim(bottom=0)
     for axes in (left, right):
         axes.grid(alpha=0.3)
-        axes.legend(fontsize="small")
-    figure.savefig(Path(__file__).with_suffix(".png"))
+        axes.legend()
 
 
 if __name__ == "__main__":

@@ -67,6 +67,8 @@ def retraction(points: Sequence[int]) -> Iterator[Row]:
                 errors.append((float(step["force"]) - force) / FORCE)
                 bar = {128: 0.02, 256: 0.012}.get(number, np.inf)
                 yield Row("force of retraction", case, number, errors[-1], bar)
+                limit = (float(step["force_extrapolated"]) - force) / FORCE
+                yield Row("force of retraction for no zone", case, number, limit, bar)
                 bar = {128: 0.03, 256: 0.015}.get(number, np.inf)
                 error = float(step["contact_radius"]) / radius - 1
                 yield Row("radius of retraction, relative", case, number, error, bar)
@@ -100,6 +102,8 @@ def pull_off(points: Sequence[int]) -> Iterator[Row]:
             dataset = solved(number, length, [0.1, 0.4, *steps])
             error = float(dataset["force"].values.min()) / float(end.force) - 1
             yield Row("pull-off force, relative", f"s = {length:g}", number, error, 0.02)
+            limit = float(dataset["force_extrapolated"].min()) / float(end.force) - 1
+            yield Row("pull-off force for no zone", f"s = {length:g}", number, limit, 0.02)
 
 
 def jump_in(points: Sequence[int]) -> Iterator[Row]:

@@ -1,18 +1,22 @@
 """How often fits claim a tension that is not there, on curves of other solids than their own.
 
-Each curve is fitted by its approach alone; where the answer is that it cannot tell, the measurement
-that it names is added.  Forces come from closed forms: the power law by an incomplete beta
-function, adhesion by the integral equation, the layer by Dimitriadis et al. (2002).  Run it:
-``python tests/benchmarks/fit_rivals.py [curves of each kind [seed [names of kinds]]]``.
+A curve is its approach alone if its kind does not say otherwise; where the answer is that it cannot
+tell, the measurement that it names is added.  Forces come from closed forms: the power law by an
+incomplete beta function, adhesion by the integral equation, the layer by Dimitriadis et al. (2002).
+Run it: ``python tests/benchmarks/fit_rivals.py [curves of each kind [seed [names of kinds]]]``.
+With ``--keep FILE`` each outcome is appended to a file, and those that it has are not repeated.
 """
 
 from __future__ import annotations
 
-import sys
+import argparse
+import json
+import re
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import cache
+from pathlib import Path as File
 from time import process_time
 from typing import Any, NamedTuple
 
@@ -22,8 +26,11 @@ from scipy.special import beta, betainc
 
 import pellicle as pl
 from pellicle.components import HasForceCurve
+from pellicle.fitting.curves import curve as read_curve
+from pellicle.fitting.curves.readers import Source
 from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
+from pellicle.fitting.pooled import pool_sources
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle_plugins.analytic.adhesion import Adhesion
 
@@ -37,7 +44,6 @@ NOISE = 0.003, 0.01
 """Least and greatest noise, over the largest force."""
 DEPTH = 0.08
 """Largest depth over R."""
-_DEFAULT = 20, 7
 
 
 class Path(NamedTuple):
@@ -48,11 +54,24 @@ class Path(NamedTuple):
     sense: Array
     rate: float = 1.0
     """Speed over that of the first approach."""
+    radius: float = 1.0
+    """Radius of the indenter over that of the first approach."""
+
+    @property
+    def top(self) -> float:
+        """Time at which the indenter stops to move in."""
+        return float(self.depth.max()) / self.rate
 
 
-def path(segment: str = "approach", rate: float = 1.0, dwell: bool = False) -> Path:
+def path(
+    segment: str = "approach",
+    rate: float = 1.0,
+    dwell: bool = False,
+    deepest: float = 1.0,
+    radius: float = 1.0,
+) -> Path:
     """Return the rows of an approach, a retraction, both, or an approach and a dwell."""
-    down = np.linspace(-BEFORE, 1.0, POINTS)
+    down = deepest * np.linspace(-BEFORE, 1.0, POINTS)
     if dwell:
         held = np.linspace(0, 1 + BEFORE, POINTS)
         return Path(
@@ -62,7 +81,7 @@ def path(segment: str = "approach", rate: float = 1.0, dwell: bool = False) -> P
             rate,
         )
     if segment == "approach":
-        return Path(down, down / rate, np.ones(POINTS), rate)
+        return Path(down, down / rate, np.ones(POINTS), rate, radius)
     return Path(
         np.concatenate([down, down[::-1]]),
         np.concatenate([down, 2 - down[::-1]]) / rate,
@@ -83,19 +102,22 @@ class Truth(NamedTuple):
     coloured: bool = False
     tension: float = 0.0
     """s/R."""
+    noise: float | None = None
+    """Over the largest force; drawn if None."""
 
 
-def _hertz(depth: Array) -> Array:
-    return np.maximum(depth, 0.0) ** 1.5
+def _hertz(path: Path) -> Array:
+    return np.asarray(np.sqrt(path.radius) * np.maximum(path.depth, 0.0) ** 1.5)
 
 
 def _clean(random: np.random.Generator) -> Truth:
-    return Truth(lambda path: _hertz(path.depth), ("none",))
+    return Truth(_hertz, ("none",))
 
 
 def _tensed_at(ratio: float) -> Truth:
     def force(path: Path) -> Array:
-        curve = _shape("paraboloid").force_curve(path.depth * DEPTH * RADIUS, ratio * RADIUS)
+        shape = _shape("paraboloid", path.radius)
+        curve = shape.force_curve(path.depth * DEPTH * RADIUS, ratio * RADIUS)
         return curve.force / _scale(DEPTH)
 
     return Truth(force, ("tension",), tension=ratio)
@@ -105,19 +127,21 @@ def _tensed(random: np.random.Generator) -> Truth:
     return _tensed_at(float(np.exp(random.uniform(np.log(0.03), np.log(1.0)))))
 
 
-def _five_errors(segment: str) -> Callable[[np.random.Generator], Truth]:
+def _five_errors(protocol: str) -> Callable[[np.random.Generator], Truth]:
     def truth(random: np.random.Generator) -> Truth:
-        return _tensed_at(five_errors(segment, 0.0065))
+        noise = random.uniform(*NOISE)
+        return _tensed_at(five_errors(protocol, noise))._replace(noise=noise)
 
     return truth
 
 
-@cache
-def five_errors(segment: str, noise: float) -> float:
+def five_errors(protocol: str, noise: float) -> float:
     """Return s/R at which the tension is five times its Cramér–Rao bound."""
     low, high = 1e-5, 1.0
-    rows = path(segment)
-    for _ in range(40):
+    rows = path("both" if protocol == "both" else "approach")
+    # Two curves with contact points of their own have twice the information.
+    gain = np.sqrt(2) if protocol == "speeds" else 1.0
+    for _ in range(20):
         ratio = float(np.sqrt(low * high))
         truth = _tensed_at(ratio)
         depth = rows.depth * DEPTH * RADIUS
@@ -129,7 +153,7 @@ def five_errors(segment: str, noise: float) -> float:
             tension_model(_shape("paraboloid")),
             noise * scale * float(truth.force(rows).max()),
             (CONTACT_POINT, MODULUS, TENSION),
-            segment="both" if segment == "both" else "approach",
+            segment="both" if protocol == "both" else "approach",
         )
         at = {
             CONTACT_POINT: 0.0,
@@ -138,7 +162,7 @@ def five_errors(segment: str, noise: float) -> float:
             OFFSET: 0.0,
             SLOPE: 0.0,
         }
-        bound = curve.bounds(at, curve.free)[TENSION]
+        bound = curve.bounds(at, curve.free)[TENSION] / gain
         low, high = (ratio, high) if tension < 5 * bound else (low, ratio)
     return ratio
 
@@ -155,7 +179,7 @@ def _relaxed(
 
     ``response(t, t1)`` is ∫ E(t − t′) d(t′^1.5) up to t1, in units of the approach.
     """
-    time, top = np.maximum(path.time, 0.0), 1.0 / path.rate
+    time, top = np.maximum(path.time, 0.0), path.top
     last = np.minimum(time, top)
     out = path.sense < 0
     t = time[out]
@@ -166,7 +190,7 @@ def _relaxed(
         growth = primitive(t - middle) - 2 * primitive(t - top)
         low, high = np.where(growth > 0, middle, low), np.where(growth > 0, high, middle)
     last[out] = np.maximum(low, 0.0)
-    force = path.rate**1.5 * response(time, last)
+    force = np.sqrt(path.radius) * path.rate**1.5 * response(time, last)
     return np.where(path.time > 0, force, 0.0)
 
 
@@ -203,8 +227,8 @@ def _drag(random: np.random.Generator) -> Truth:
     share = random.uniform(0.02, 0.15)
 
     def force(path: Path) -> Array:
-        inside = np.maximum(path.depth, 0.0)
-        return inside**1.5 + share * path.rate * path.sense * np.sqrt(inside)
+        radius = np.sqrt(path.radius * np.maximum(path.depth, 0.0))
+        return _hertz(path) + share * path.rate * path.sense * radius
 
     return Truth(force, ("drag",))
 
@@ -213,7 +237,7 @@ def _drift(random: np.random.Generator) -> Truth:
     across = float(random.choice([-1, 1]) * random.uniform(0.01, 0.05))
 
     def force(path: Path) -> Array:
-        return _hertz(path.depth) + across * (path.depth + BEFORE) / (1 + BEFORE)
+        return _hertz(path) + across * (path.depth + BEFORE) / (1 + BEFORE)
 
     return Truth(force, ("baseline_slope",))
 
@@ -223,9 +247,8 @@ def _layer(random: np.random.Generator) -> Truth:
     chi = 1 / random.uniform(3.0, 10.0)
 
     def force(path: Path) -> Array:
-        inside = np.maximum(path.depth, 0.0)
-        x = chi * np.sqrt(inside)
-        return inside**1.5 * (1 + 1.133 * x + 1.283 * x**2 + 0.769 * x**3 + 0.0975 * x**4)
+        x = chi * np.sqrt(path.radius * np.maximum(path.depth, 0.0))
+        return _hertz(path) * (1 + 1.133 * x + 1.283 * x**2 + 0.769 * x**3 + 0.0975 * x**4)
 
     return Truth(force, ("thickness",))
 
@@ -234,14 +257,14 @@ def _ball(random: np.random.Generator) -> Truth:
     deepest = random.uniform(0.2, 0.8)
 
     def force(path: Path) -> Array:
-        curve = _shape("sphere").force_curve(path.depth * deepest * RADIUS, 0.0)
+        curve = _shape("sphere", path.radius).force_curve(path.depth * deepest * RADIUS, 0.0)
         return curve.force / _scale(deepest)
 
     return Truth(force, ("sphere",), depth=deepest)
 
 
 def _pink_noise(random: np.random.Generator) -> Truth:
-    return Truth(lambda path: _hertz(path.depth), ("none",), coloured=True)
+    return Truth(_hertz, ("none",), coloured=True)
 
 
 def _adhesion(tensed: bool) -> Callable[[np.random.Generator], Truth]:
@@ -249,15 +272,14 @@ def _adhesion(tensed: bool) -> Callable[[np.random.Generator], Truth]:
         share = random.uniform(0.02, 0.1)
         ratio = float(np.exp(random.uniform(np.log(0.03), np.log(1.0)))) if tensed else 0.0
         top = MODULUS_ * _scale(DEPTH)
-        indenter: Any = _shape("paraboloid")
         tension = ratio * RADIUS * MODULUS_ / 2
         work = share * top / (1.5 * np.pi * RADIUS)
-        theory = Adhesion(indenter, MODULUS_, tension, work)
-        end = theory.instability(np.inf)
-        radii = np.geomspace(float(end.contact_radius), RADIUS, 3000)
-        branch = theory.equilibrium(radii)
 
         def force(path: Path) -> Array:
+            indenter: Any = _shape("paraboloid", path.radius)
+            theory = Adhesion(indenter, MODULUS_, tension, work)
+            end = theory.instability(np.inf)
+            branch = theory.equilibrium(np.geomspace(float(end.contact_radius), RADIUS, 3000))
             depth = path.depth * DEPTH * RADIUS
             touches = np.where(path.sense < 0, depth > branch.depth[0], depth > 0)
             return np.where(touches, np.interp(depth, branch.depth, branch.force), 0.0) / top
@@ -268,8 +290,9 @@ def _adhesion(tensed: bool) -> Callable[[np.random.Generator], Truth]:
 
 
 @cache
-def _shape(type_: str) -> HasForceCurve:
-    indenter = pl.indenter(type_, radius=RADIUS)
+def _shape(type_: str, radius: float = 1.0) -> HasForceCurve:
+    """Return a shape of a radius over the first."""
+    indenter = pl.indenter(type_, radius=radius * RADIUS)
     assert isinstance(indenter, HasForceCurve)
     return indenter
 
@@ -297,15 +320,24 @@ KINDS: dict[str, Callable[[np.random.Generator], Truth]] = {
     "tension and adhesion": _adhesion(tensed=True),
     "tension, 5 errors of an approach": _five_errors("approach"),
     "tension, 5 errors of both passes": _five_errors("both"),
+    "tension, 5 errors of two speeds": _five_errors("speeds"),
 }
+PROTOCOLS = {
+    "tension, 5 errors of both passes": "both",
+    "tension, 5 errors of two speeds": "speeds",
+}
+"""What is measured first, if not an approach."""
 
 
 class Curve(NamedTuple):
-    """Position [m], force [N] and time [s] of a measurement."""
+    """Position [m], force [N] and time [s] of a measurement, and which passes it has."""
 
     position: Array
     force: Array
     time: Array
+    segment: str = "approach"
+    radius: float = 1.0
+    """Of the indenter, over the first."""
 
 
 @dataclass
@@ -314,10 +346,10 @@ class Sample:
 
     truth: Truth
     random: np.random.Generator
-    noise: float = field(init=False)
 
     def __post_init__(self) -> None:
-        self.noise = self.random.uniform(*NOISE)
+        known = self.truth.noise
+        self.noise = self.random.uniform(*NOISE) if known is None else known
 
     def measured(self, rows: Path) -> Curve:
         """Return a measurement along a path; the approach at the first speed takes 1 s."""
@@ -330,7 +362,11 @@ class Sample:
         deepest = self.truth.depth * RADIUS
         scale = MODULUS_ * _scale(self.truth.depth)
         return Curve(
-            rows.depth * deepest + 1e-6, scale * (force + self.noise * top * noise), rows.time + 1.0
+            rows.depth * deepest + 1e-6,
+            scale * (force + self.noise * top * noise),
+            rows.time + 1.0,
+            "approach" if rows.sense.min() > 0 else "both",
+            rows.radius,
         )
 
 
@@ -360,7 +396,13 @@ class Outcome(NamedTuple):
     """Whether the right model is the best or tied with it."""
     covers: bool
     """Whether the interval of the modulus holds the truth."""
+    decided: bool
+    """Whether the interval is said to hold, not to be that of one model among several."""
     seconds: float
+
+    def settled(self, needed: bool) -> bool:
+        """Return whether the verdict with the measurement is the right one."""
+        return (self.second == "needed") == needed and self.second != "undecided"
 
 
 def verdict_of(fit: Any) -> str:
@@ -371,16 +413,26 @@ def verdict_of(fit: Any) -> str:
 def outcomes(name: str, curves: int, seed: int, *, follow: bool = True) -> Iterator[Outcome]:
     """Yield what fits say of curves of a kind."""
     for number in range(curves):
-        random = np.random.default_rng([seed, number, *name.encode()])
-        sample = Sample(KINDS[name](random), random)
-        yield outcome(sample, follow=follow)
+        yield outcome_of(name, number, seed, follow=follow)
 
 
-def outcome(sample: Sample, segment: str = "approach", *, follow: bool = True) -> Outcome:
-    """Return what the fit of one curve says."""
+def outcome_of(name: str, number: int, seed: int, *, follow: bool = True) -> Outcome:
+    """Return what the fit of one curve of a kind says."""
+    random = np.random.default_rng([seed, number, *name.encode()])
+    sample = Sample(KINDS[name](random), random)
+    return outcome(sample, PROTOCOLS.get(name, "approach"), follow=follow)
+
+
+def outcome(sample: Sample, protocol: str = "approach", *, follow: bool = True) -> Outcome:
+    """Return what the fit of one curve, or of two at two speeds, says."""
     began = process_time()
-    curve = sample.measured(path(segment))
-    fit = fitted(sample, curve, segment)
+    fit: Any
+    if protocol == "speeds":
+        curves = [sample.measured(path(rate=rate)) for rate in (1.0, 0.1)]
+        fit = pooled(sample, curves)
+    else:
+        curves = [sample.measured(path(protocol))]
+        fit = fitted(sample, curves[0], protocol)
     seconds = process_time() - began
     verdict = verdict_of(fit)
     rivals = fit.rivals
@@ -389,12 +441,13 @@ def outcome(sample: Sample, segment: str = "approach", *, follow: bool = True) -
     named = rivals.advice if rivals is not None else ""
     second = ""
     if follow and verdict == "undecided" and named:
-        second = followed(sample, curve, named)
+        second = followed(sample, curves, named)
     right = verdict == "not shown" or any(code in tied for code in sample.truth.codes)
-    return Outcome(verdict, named, tied, second, right, covers, seconds)
+    decided = verdict != "undecided"
+    return Outcome(verdict, named, tied, second, right, covers, decided, seconds)
 
 
-def moduli_of(fit: pl.Fit) -> list[pl.Estimate]:
+def moduli_of(fit: Any) -> list[pl.Estimate]:
     """Return the modulus of the fit, or of all explanations that it cannot tell apart."""
     if fit.rivals is None or fit.rivals.verdict == "not shown":
         return [fit.reduced_modulus]
@@ -411,50 +464,111 @@ def holds(estimate: pl.Estimate) -> bool:
     return (low or 0.0) <= MODULUS_ <= (high or np.inf)
 
 
-def followed(sample: Sample, curve: Curve, named: str) -> str:
+def followed(sample: Sample, curves: Sequence[Curve], named: str) -> str:
     """Return the verdict with the measurement that a fit names."""
+    count = int(named.split()[0]) if "curves of this kind" in named else 1
+    more = named_path(sample, named)
+    if more is None:
+        return "none is named"
+    if count == 1 and len(curves) == 1 and more.sense.min() <= 0:
+        # One measurement has the approach in it.
+        curve = sample.measured(more)
+        return verdict_of(fitted(sample, curve, "both"))
+    return verdict_of(pooled(sample, [*curves, *(sample.measured(more) for _ in range(count))]))
+
+
+def named_path(sample: Sample, named: str) -> Path | None:
+    """Return the path of the measurement that a fit names."""
+    deepest = sample.truth.depth * RADIUS
     if "retraction" in named:
-        return verdict_of(fitted(sample, sample.measured(path("both")), "both"))
+        return path("both")
     if "dwell" in named:
-        return verdict_of(fitted(sample, sample.measured(path(dwell=True)), "both"))
-    if "second speed" in named:
-        first = sample.truth.depth * RADIUS
-        rate = 10.0 if float(named.partition("speed of ")[2].split()[0]) * 1e-6 > first else 0.1
-        return verdict_of(pooled(sample, [curve, sample.measured(path(rate=rate))]))
-    return "not tried"
+        return path(dwell=True)
+    if speed := re.search(r"second speed of ([\d.e+-]+) µm/s", named):
+        return path(rate=10.0 if float(speed[1]) * 1e-6 > deepest else 0.1)
+    if depth := re.search(r"curve, to ([\d.e+-]+) µm", named):
+        return path(deepest=float(depth[1]) * 1e-6 / deepest)
+    if radius := re.search(r"second radius, ([\d.e+-]+) µm", named):
+        return path(radius=float(radius[1]) * 1e-6 / RADIUS)
+    return None
 
 
-def pooled(sample: Sample, curves: list[Curve], **options: Any) -> pl.PooledFit:
-    """Return the pooled fit of several approaches."""
-    named = {str(number): (curve.position, curve.force) for number, curve in enumerate(curves)}
-    speeds = [float((c.position[-1] - c.position[0]) / (c.time[-1] - c.time[0])) for c in curves]
-    return pl.fit_pooled(
-        named, indenter=sample.truth.indenter, radius=RADIUS, speed=speeds, **options
+def pooled(sample: Sample, curves: Sequence[Curve], **options: Any) -> pl.PooledFit:
+    """Return the pooled fit of several measurements."""
+    segment = "both" if any(curve.segment == "both" for curve in curves) else "approach"
+    config = pl.FitConfig.merged(
+        indenter=sample.truth.indenter, radius=RADIUS, segment=segment, pool=True, **options
     )
+    sources = [
+        Source(
+            str(n),
+            read_curve.Curve(curve.position, curve.force, time=curve.time),
+            {"radius": curve.radius * RADIUS},
+        )
+        for n, curve in enumerate(curves)
+    ]
+    return pool_sources(config, sources, progress=False)
+
+
+def kept(file: File | None, names: Sequence[str], curves: int, seed: int) -> dict[str, Any]:
+    """Return the outcomes by kind and number, from a file or computed and appended to it."""
+    results: dict[str, Any] = {name: {} for name in names}
+    if file is not None and file.exists():
+        for line in file.read_text().splitlines():
+            name, number, of, values = json.loads(line)
+            if of == seed and name in results and number < curves:
+                results[name][number] = Outcome(**values)
+    for number in range(curves):
+        for name in names:
+            if number in results[name]:
+                continue
+            results[name][number] = result = outcome_of(name, number, seed)
+            if file is not None:
+                with file.open("a") as lines:
+                    print(json.dumps([name, number, seed, result._asdict()]), file=lines)
+    return results
+
+
+def row(name: str, results: Sequence[Outcome]) -> str:
+    """Return the row of a kind."""
+    needed = "tension" in KINDS[name](np.random.default_rng(0)).codes[0]
+    columns = [
+        Counter(result.verdict for result in results),
+        Counter(result.second for result in results if result.second),
+        Counter(" ".join(result.named.split()[:4]) for result in results if result.named),
+    ]
+    cells = [", ".join(f"{n} {key}" for key, n in count.items()) for count in columns]
+    second = [r for r in results if r.second not in ("", "none is named")]
+    settled = [result.settled(needed) for result in second]
+    claims = [needed or "needed" not in (result.verdict, result.second) for result in results]
+    decided = [result.covers for result in results if result.decided]
+    shares = [
+        100 * np.mean(flags) if len(flags) else np.nan
+        for flags in (np.logical_not(claims), settled, [r.right for r in results])
+    ]
+    cells += [f"{share:.0f} %" for share in shares]
+    cells += [f"{sum(decided)} of {len(decided)}"]
+    cells += [f"{sum(r.covers for r in results if not r.decided)} of {len(results) - len(decided)}"]
+    cells += [f"{np.median([result.seconds for result in results]):.2f}"]
+    return f"{name} | {' | '.join(cells)}"
 
 
 def main() -> None:
     """Print a row of a table for each kind."""
-    given = [int(text) for text in sys.argv[1:3]]
-    curves, seed = [*given, *_DEFAULT[len(given) :]]
-    names = sys.argv[3:] or list(KINDS)
-    print(f"{curves} curves each | approach | with the measurement named | named | right | E* | s")
-    print("--- | --- | --- | --- | --- | --- | ---")
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("curves", type=int, nargs="?", default=20)
+    parser.add_argument("seed", type=int, nargs="?", default=7)
+    parser.add_argument("names", nargs="*", metavar="kind")
+    parser.add_argument("--keep", type=File, help="file that keeps the outcomes")
+    options = parser.parse_args()
+    names = options.names or list(KINDS)
+    results = kept(options.keep, names, options.curves, options.seed)
+    heads = ["first answer", "with the measurement named", "named", "false", "settled", "right"]
+    heads += ["E* holds", "E* of one of the tied holds", "CPU s"]
+    print(f"{options.curves} curves each | {' | '.join(heads)}")
+    print("--- | " * len(heads) + "---")
     for name in names:
-        results = list(outcomes(name, curves, seed))
-        columns = [
-            Counter(result.verdict for result in results),
-            Counter(result.second for result in results if result.second),
-            Counter(" ".join(result.named.split()[:4]) for result in results if result.named),
-        ]
-        cells = [", ".join(f"{n} {key}" for key, n in count.items()) for count in columns]
-        right, covers = (
-            100 * np.mean([getattr(result, field) for result in results])
-            for field in ("right", "covers")
-        )
-        seconds = np.median([result.seconds for result in results])
-        cells += [f"{right:.0f} %", f"{covers:.0f} %", f"{seconds:.2f}"]
-        print(f"{name} | {' | '.join(cells)}", flush=True)
+        print(row(name, [results[name][n] for n in sorted(results[name])]), flush=True)
 
 
 if __name__ == "__main__":

@@ -97,3 +97,37 @@ def test_the_command_prints_advice(tmp_path: Path) -> None:
     data = json.loads(CliRunner().invoke(app, ["check", str(path), "--json"]).stdout)
     assert [step["step"] for step in data["steps"]] == [1, 2]
     assert data["size"][0] < 3e-4
+
+
+def test_a_study_is_checked_run_by_run(tmp_path: Path) -> None:
+    """Each run has the advice of its own file; the worst is named, and those above it counted."""
+    path = tmp_path / "study.toml"
+    path.write_text(
+        run().to_toml() + '\n[study.vary]\n"kernel.tension" = [0.0, 0.05]\n',
+        encoding="utf-8",
+    )
+    data = json.loads(CliRunner().invoke(app, ["check", str(path), "--json"]).stdout)
+    alone = [advise(run(tension=tension), 0.01) for tension in (0.0, 0.05)]
+    for checked, expected in zip(data["runs"], alone, strict=True):
+        assert checked["points"] == list(expected.points)
+        assert [step["force_error"] for step in checked["steps"]] == pytest.approx(
+            [step.force_error for step in expected.steps], rel=1e-9
+        )
+    worst = max(step.force_error for advice in alone for step in advice.steps)
+    over = sum(max(step.force_error for step in advice.steps) > 0.01 for advice in alone)
+    printed = CliRunner().invoke(app, ["check", str(path)]).stdout
+    assert f"2 runs; in {over} the error of the force may exceed 1 %" in printed
+    number = printed.partition("the worst: ")[2].partition(" %")[0]
+    assert float(number) == pytest.approx(100 * worst, rel=0.06)
+
+
+def test_a_run_of_a_study_that_cannot_be_checked_is_named(tmp_path: Path) -> None:
+    """The message says which run has too few cells to compare with."""
+    path = tmp_path / "study.toml"
+    path.write_text(
+        run().to_toml() + '\n[study.vary]\n"grid.points" = [64, 16]\n', encoding="utf-8"
+    )
+    done = CliRunner().invoke(app, ["check", str(path)])
+    assert done.exit_code == 2
+    assert "leave nothing to compare with" in done.output
+    assert "(run with number of cells 16)" in done.output

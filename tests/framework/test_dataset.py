@@ -16,6 +16,7 @@ NUMBERS = {
     "contact_area": "m2",
     "contact_fraction": "1",
     "contact_area_yastrebov": "m2",
+    "contact_fraction_yastrebov": "1",
     "mean_contact_pressure": "Pa",
     "contact_radius": "m",
     "semi_major_axis": "m",

@@ -21,6 +21,7 @@ from pellicle import files
 from pellicle.cli import app
 from pellicle.components import Monitor
 from pellicle.results import storage
+from pellicle.results.axes import with_paths
 from pellicle.studies import runner as study_module
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 
@@ -102,10 +103,10 @@ def test_table_is_that_of_its_runs() -> None:
     """Each entry of the table is what the run on its own gives."""
     plan = study()
     table = carry_out(plan)
-    assert dict(table.sizes) == {TENSION: 2, RADIUS: 2, "step": 3}
+    assert dict(table.sizes) == {"kernel_tension": 2, "indenter_radius": 2, "step": 3}
     for point in plan.points:
         alone = pl.run(point.run, progress=False, threads=1).dataset
-        row = table.isel({TENSION: point.position[0], RADIUS: point.position[1]})
+        row = table.isel(kernel_tension=point.position[0], indenter_radius=point.position[1])
         assert row[TENSION] == point.run.kernel.model_dump()["tension"]
         for name in NUMBERS:
             assert (row[name].values == alone[name].values).all()
@@ -114,6 +115,35 @@ def test_table_is_that_of_its_runs() -> None:
     assert table["force"].attrs["units"] == "N"
     recorded = json.loads(table.attrs["configuration"]) | {"solver": {"type": "active_set"}}
     assert pl.Study.from_json(json.dumps(recorded)) == study(solver={"type": "active_set"})
+
+
+def test_a_parameter_is_selected_by_a_name_or_its_path(tmp_path: Path) -> None:
+    """Dimensions have names of Python, also in the file; a dotted path still finds its values."""
+    zipped = [{RADIUS: [1e-3, 2e-3], "grid.size": [4e-4, 8e-4]}]
+    plan = pl.Study(run=RUN, vary={TENSION: [0.0, 1.0]}, zip=zipped)
+    table = carry_out(plan, tmp_path)
+    assert table["force"].dims == ("kernel_tension", "indenter_radius", "step")
+    chosen = table.sel(kernel_tension=1.0, grid_size=8e-4)
+    assert chosen["run"].item() == table["run"].values[1, 1]
+    assert table.sel({TENSION: 1.0})["run"].values.tolist() == table["run"].values[1].tolist()
+    assert table[RADIUS].values.tolist() == table["indenter_radius"].values.tolist()
+    assert table["grid_size"].attrs["parameter"] == "grid.size"
+    assert table["kernel_tension"].attrs["units"] == "N/m"
+    with xr.open_dataset(tmp_path / "study.h5", engine="h5netcdf") as stored:
+        assert stored["force"].dims == table["force"].dims
+        assert stored.sel(kernel_tension=1.0).sizes == {"indenter_radius": 2, "step": 3}
+    assert pl.Runs.of_study(table, tmp_path).table["force"].dims == (TENSION, RADIUS, "step")
+
+
+def test_a_table_of_an_earlier_version_is_shown(tmp_path: Path) -> None:
+    """Dimensions of files up to now had dots."""
+    carry_out(study({TENSION: [0.0, 1.0]}), tmp_path)
+    shown = CliRunner().invoke(app, ["show", str(tmp_path)]).stdout
+    path = tmp_path / "study.h5"
+    storage.write(with_paths(storage.table(path)), path)
+    with xr.open_dataset(path, engine="h5netcdf") as stored:
+        assert TENSION in stored.dims
+    assert CliRunner().invoke(app, ["show", str(tmp_path)]).stdout == shown
 
 
 def test_nothing_stays_without_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -230,11 +260,15 @@ def test_what_runs_warn_of_is_said_once(tmp_path: Path) -> None:
 
 
 def test_corrections_that_vary() -> None:
-    """An area that only some runs have is NaN in the others."""
+    """An area and a fraction that only some runs have are NaN in the others."""
     table = carry_out(study({"corrections": [[], [{"type": "yastrebov"}]]}))
     area = table["contact_area_yastrebov"].values
     assert np.isnan(area[0]).all()
     assert (area[1] > 0).all()
+    size = json.loads(table.attrs["first_run"])["grid"]["size"]
+    fraction = table["contact_fraction_yastrebov"].values
+    np.testing.assert_allclose(fraction[1] * np.prod(size), area[1], rtol=1e-15)
+    assert np.isnan(fraction[0]).all()
 
 
 def test_fields_are_read_where_they_are_used(
@@ -257,6 +291,7 @@ def test_fields_are_read_where_they_are_used(
     assert table["pressure"].attrs["units"] == "Pa"
     assert read == []
     name = table["run"].values[0, 1]
+    assert plain(tmp_path / "runs" / f"{name}.h5", ["contact"], 0)[1][0].dtype == bool
     alone = pl.load(tmp_path / "runs" / f"{name}.h5").dataset
     for field in ("pressure", "displacement", "gap", "contact"):
         part = table[field][0, 1].isel(x=slice(None, None, -3), y=[5, 2, 9])

@@ -20,9 +20,11 @@ import pellicle as pl
 from pellicle.cli import app, new
 from pellicle.cli.exits import CRASHED
 from pellicle.cli.printing import Column, table_lines
-from pellicle.components import FAMILIES
+from pellicle.components import FAMILIES, Case
 from pellicle.config.explain import explanations
 from pellicle.fitting.config import FitConfig
+from pellicle.runs import validation
+from pellicle.runs.validation import Verdict
 
 RUN: dict[str, Any] = {
     "title": "Δ layer",
@@ -33,6 +35,14 @@ RUN: dict[str, Any] = {
     "corrections": [{"type": "yastrebov"}],
     "outputs": [],
 }
+STUDY = """
+grid = { points = 32, size = "0.4 mm" }
+kernel = { type = "tensed_membrane", reduced_modulus = "10 kPa" }
+indenter = { type = "paraboloid", radius = "1 mm" }
+loading = { depth = ["10 um", "20 um"] }
+study.vary = { "kernel.tension" = ["30 mN/m", "0.3 N/m"] }
+"""
+_SENTENCES = "one in full:", "2 runs", "the worst:", "every contact"
 SHORT = Column("step", ["1", "2"])
 WIDE = [
     SHORT,
@@ -94,13 +104,26 @@ def test_a_table_in_a_pipe_is_neither_folded_nor_cut() -> None:
 
 @pytest.mark.parametrize("width", [80, 40])
 @pytest.mark.parametrize(
-    "words", [["show", "a.h5"], ["show", "study"], ["plugins"], ["explain", "layered"]]
+    "words",
+    [
+        ["show", "a.h5"],
+        ["show", "study"],
+        ["plugins"],
+        ["explain", "layered"],
+        ["explain"],
+        ["check", "check.toml"],
+        ["run", "check.toml", "--dry-run"],
+    ],
 )
 def test_commands_fit_the_terminal(cli: Cli, words: list[str], width: int) -> None:
     """What is printed on a terminal of 80 columns, and of 40, does not run over its edge."""
+    Path("check.toml").write_text(STUDY, encoding="utf-8")
     shown = cli(*words, FORCE_COLOR="1", NO_COLOR="1", COLUMNS=str(width)).stdout
     lines = [line for line in shown.splitlines() if not line.startswith(("title:", "versions:"))]
-    if words[0] == "explain":
+    if words == ["explain"] or words[0] in ("check", "run"):
+        # Sentences follow the table.
+        lines = [line for line in lines if not line.startswith(_SENTENCES)]
+    elif words[0] == "explain":
         # Documentation and example are texts of their own.
         lines = shown.partition("field")[2].partition("example:")[0].splitlines()
     assert max(map(cell_len, lines)) <= width
@@ -158,6 +181,28 @@ def test_version_tells_how_to_cite(cli: Cli) -> None:
     assert first == f"pellicle {pl.__version__}"
     assert second.startswith(f"to cite it: pellicle {pl.__version__}")
     assert "Yuan" in second
+
+
+@pytest.mark.parametrize("wrong", [0, 1])
+def test_validate_ends_with_what_it_covers(
+    cli: Cli, monkeypatch: pytest.MonkeyPatch, wrong: int
+) -> None:
+    """Its last line counts the cases and names the kernels that none is about."""
+
+    def verdicts() -> Iterator[Verdict]:
+        for number in range(2):
+            kernel = {"kernel": {"type": "half_space"}}
+            case = Case(f"case {number}", kernel, lambda _: 0.0, 2e-7, "m²", 1e-3, "Hertz 1882")
+            yield Verdict(case, 3e-7 if number < wrong else 2e-7, True)
+
+    monkeypatch.setattr(validation, "validate", verdicts)
+    shown = cli("validate", code=int(wrong > 0), COLUMNS="120").stdout
+    assert "0.2 mm²" in shown
+    last = shown.splitlines()[-1]
+    assert last.startswith("1 of 2 cases failed" if wrong else "all 2 cases passed")
+    kernels = set(last.partition("no case is about the kernels ")[2].split(", "))
+    assert kernels >= {"tensed_membrane", "winkler"}
+    assert "half_space" not in kernels
 
 
 @pytest.mark.parametrize("command", ["run", "fit", "show", "plot", "new", "validate", "explain"])
@@ -268,6 +313,26 @@ def test_tables_are_explained(cli: Cli, word: str, name: str) -> None:
         assert pl.Grid(**data["grid"]).points == (256, 256)
     elif word == "fit":
         assert FitConfig(**data).indenter
+
+
+def test_explain_lists_what_it_explains(cli: Cli) -> None:
+    """Without a word it lists tables and families with their types, all of which it explains."""
+    words = json.loads(cli("explain", "--json").stdout)
+    assert list(words) == ["table", *pl.registry().components]
+    assert words["table"] == ["run", "grid", "loading", "study", "fit"]
+    assert "tensed_membrane" in words["kernel"]
+    shown = cli("explain", FORCE_COLOR="1", NO_COLOR="1", COLUMNS="80").stdout
+    assert all(type_ in shown for types in words.values() for type_ in types)
+
+
+def test_the_unit_of_heights_is_a_unit() -> None:
+    """The example of a unit is a unit, not ten of them; a number before it still counts."""
+    (explanation,) = explanations("heights", {})
+    assert tomllib.loads(explanation.example)["indenter"]["unit"] == "um"
+    for unit, metres in (("um", 1e-6), ("nm", 1e-9), ("2 um", 2e-6), (1e-3, 1e-3)):
+        assert pl.indenter("heights", values=np.eye(4), unit=unit).model_dump()["unit"] == metres
+    with pytest.raises(pl.ConfigError, match="is a force, not a length"):
+        pl.indenter("heights", values=np.eye(4), unit="nN")
 
 
 def test_explain_knows_what_was_meant(cli: Cli) -> None:

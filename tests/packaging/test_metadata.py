@@ -63,9 +63,11 @@ def test_what_the_owner_has_to_fill_in_is_marked(project: dict[str, Any]) -> Non
 
 
 def test_every_python_of_the_workflow_is_allowed(project: dict[str, Any]) -> None:
-    """The workflow tests the lowest Python that the package names, on three systems."""
+    """The workflow tests each Python that the package names, lowest first, on three systems."""
     workflow = text(".github/workflows/tests.yml")
     (versions,) = re.findall(r"python: \[(.+)\]", workflow)
     lowest = project["requires-python"].removeprefix(">=")
     assert versions.split(", ")[0] == f'"{lowest}"'
+    named = re.findall(r"Python :: (3\.\d+)", "\n".join(project["classifiers"]))
+    assert {f'"{version}"' for version in named} <= set(versions.split(", "))
     assert all(f"{system}-latest" in workflow for system in ("ubuntu", "macos", "windows"))

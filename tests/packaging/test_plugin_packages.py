@@ -4,12 +4,14 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from pellicle.cli.scaffold import write_plugin
 from pellicle.components import FAMILIES
+from tests.packaging.conftest import Command, command_line
 
 
 @pytest.fixture(scope="module")
@@ -37,18 +39,11 @@ def environment(
     return inherited | {"PYTHONPATH": str(site), "PYTHONUTF8": "1"}
 
 
-def call(
-    environment: dict[str, str], folder: Path, *arguments: str
-) -> subprocess.CompletedProcess[str]:
-    """Return what a Python process said."""
-    return subprocess.run(
-        [sys.executable, "-m", *arguments],
-        env=environment,
-        cwd=folder,
-        capture_output=True,
-        encoding="utf-8",
-        check=False,
-    )
+@pytest.fixture(scope="module")
+def pellicle(environment: dict[str, str]) -> Iterator[Command]:
+    """Return the command ``pellicle`` of that environment."""
+    with command_line(environment) as command:
+        yield command
 
 
 def test_packages_pass_their_own_tests(
@@ -56,15 +51,22 @@ def test_packages_pass_their_own_tests(
 ) -> None:
     """As they stand, without a change, with warnings as errors."""
     strict = ["-W", "error", "-p", "no:cacheprovider", "--import-mode=importlib"]
-    done = call(environment, tmp_path, "pytest", "-q", "-rA", *strict, *map(str, folders.values()))
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-rA", *strict, *map(str, folders.values())],
+        env=environment,
+        cwd=tmp_path,
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
     assert done.returncode == 0, done.stdout
     for family in FAMILIES:
         assert f"test_pellicle_my_{family}.py::test_keeps_its_contract" in done.stdout
 
 
-def test_packages_are_listed(environment: dict[str, str], tmp_path: Path) -> None:
+def test_packages_are_listed(pellicle: Command, tmp_path: Path) -> None:
     """Each is found under its family with its name, its version and a sentence."""
-    listing = json.loads(call(environment, tmp_path, "pellicle", "plugins", "--json").stdout)
+    listing = json.loads(pellicle(tmp_path, "plugins", "--json").stdout)
     assert listing["broken"] == []
     mine = [entry for entry in listing["components"] if entry["origin"].startswith("pellicle-my-")]
     assert {(entry["family"], entry["type"]) for entry in mine} == {
@@ -75,11 +77,11 @@ def test_packages_are_listed(environment: dict[str, str], tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("family", FAMILIES)
 def test_example_runs(
-    family: str, folders: dict[str, Path], environment: dict[str, str], tmp_path: Path
+    family: str, folders: dict[str, Path], pellicle: Command, tmp_path: Path
 ) -> None:
     """The file that comes with a package converges, with the component in its place."""
     example = folders[family] / f"my_{family}.toml"
-    done = call(environment, tmp_path, "pellicle", "run", str(example), "-o", "out")
+    done = pellicle(tmp_path, "run", str(example), "-o", "out")
     assert done.returncode == 0, done.stderr
     assert any((tmp_path / "out").iterdir())
 

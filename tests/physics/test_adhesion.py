@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import pellicle as pl
 from pellicle_plugins.analytic.dugdale import dugdale_contact
 from tests.adhesive_paths import (
     FORCE,
@@ -20,7 +21,7 @@ from tests.adhesive_paths import (
     wave_pressure,
     wavy,
 )
-from tests.random_adhesion import SAME, verdicts
+from tests.random_adhesion import SAME, random_run, verdicts
 
 # The units E* = R = w = 1 have slopes beyond the theory, and random problems have few cells.
 pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
@@ -36,6 +37,10 @@ def test_a_retracted_paraboloid_is_the_closed_theory(length: float, name: str) -
     assert step["status_code"].item() == "STEEP"
     assert abs(float(step["force"]) - force) < 0.02 * FORCE
     assert float(step["contact_radius"]) == pytest.approx(radius, rel=0.03)
+    # Taking off the error that is proportional to the width of the zone leaves that of the cells.
+    limit = float(step["force_extrapolated"])
+    assert abs(limit - force) < min(0.01 * FORCE, abs(float(step["force"]) - force))
+    assert abs(limit - float(step["force"])) == pytest.approx(float(step["force_error"]))
 
 
 @pytest.mark.parametrize(
@@ -55,14 +60,55 @@ def test_approach_and_retraction_are_one_curve(
     force = path["force"].values / FORCE
     np.testing.assert_allclose(force[4:], force[2::-1], atol=most)
     assert np.ptp(force[:4]) > 0.1
+    assert not path["jumped"].values[1:].any()
+
+
+@pytest.mark.parametrize("seed", [33, 218])
+def test_a_cell_that_just_touches_is_solved(seed: int) -> None:
+    """Wall pressure and attraction of a single cell cancel: no pressure, and no displacement."""
+    path = pl.run(random_run(seed), progress=False).dataset
+    step = path.isel(step=3)
+    assert int(step["contact"].sum()) == 1
+    assert float(step["depth"]) == 0.0
+    assert abs(float(step["pressure"].sum())) < 1e-12 * float(step["wall_pressure"].sum())
+    assert path["status_code"].values[3] == "COARSE"
+
+
+def test_a_jump_of_one_asperity_is_named() -> None:
+    """Of two bumps the lower one jumps in after and off before the other; the sum is the loss."""
+    x = (np.arange(40) + 0.5) / 10 - 2
+    bumps = [-((x[:, None] - at) ** 2 + x**2) / 12 - low for at, low in ((1.0, 0.0), (-1.0, 0.025))]
+    down = np.arange(-0.01, 0.051, 0.01)
+    path = solved(
+        40, 0.0, [*down, *np.arange(0.04, -0.071, -0.01)], size=4.0,
+        interaction={"type": "jkr", "work_of_adhesion": 0.0025, "estimate_error": False},
+        indenter={"type": "heights", "values": np.maximum(*bumps).tolist(), "unit": 1.0},
+    )  # fmt: skip
+    patches = path["patches"].values
+    jumps = np.flatnonzero(path["jumped"].values)
+    # Both jump in and off again, one after the other.
+    assert patches[jumps].tolist() == [1, 2, 1, 0]
+    assert np.flatnonzero(np.diff(patches)).tolist() == (jumps - 1).tolist()
+    codes = path["status_code"].values
+    assert codes[jumps].tolist() == ["CONVERGED", "JUMPED", "JUMPED", "CONVERGED"]
+    assert "JUMPED" not in np.delete(codes, jumps)
+    assert path["converged"].values.all()
+    message = str(path["status"].values[jumps[2]])
+    assert "a part of the contact jumped after the last step and lost" in message
+    force, depth, energy = (path[name].values for name in ("force", "depth", "energy"))
+    work = float((0.5 * (force[1:] + force[:-1]) * np.diff(depth)).sum())
+    lost = work - (energy[-1] - energy[0])
+    assert np.nansum(path["jump_energy"].values) == pytest.approx(lost, rel=0.02)
 
 
 def test_pull_off_is_that_of_jkr() -> None:
     """The lowest force on a path in depth is −1.5 πwR to 2 %."""
     end = theory(0.0).instability()
     steps = float(end.depth) + np.arange(0.1, -0.101, -0.05)
-    lowest = float(solved(128, 0.0, [0.1, *steps])["force"].values.min())
-    assert lowest == pytest.approx(float(end.force), rel=0.02)
+    path = solved(128, 0.0, [0.1, *steps])
+    assert float(path["force"].values.min()) == pytest.approx(float(end.force), rel=0.02)
+    limit = float(path["force_extrapolated"].values.min())
+    assert limit == pytest.approx(float(end.force), rel=0.01)
 
 
 @pytest.mark.parametrize("length", [0.0, 1.0])

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from .printing import echo, print_json, print_table
 
+if TYPE_CHECKING:
+    from pellicle.config.run import Run
+    from pellicle.config.study import Study
+    from pellicle.runs.advice import Advice
+
 
 def check(
-    file: Annotated[Path, typer.Argument(help="TOML file of a run.")],
+    file: Annotated[Path, typer.Argument(help="TOML file of a run or a study.")],
     set_: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the file."),
@@ -22,26 +28,24 @@ def check(
     ] = 0.01,
     json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI.")] = False,
 ) -> None:
-    """Check a run file, and estimate its errors and memory from coarser grids."""
-    from pellicle import memory
-    from pellicle.config.run import Run
+    """Check a run or a study, and estimate its errors and memory from coarser grids."""
+    from pellicle.config.study import Study, from_toml
+
+    configuration = from_toml(file, set_ or ())
+    if isinstance(configuration, Study):
+        _check_study(configuration, error, json=json)
+    else:
+        _check_run(configuration, error, json=json)
+
+
+def _check_run(run: Run, error: float, *, json: bool) -> None:
     from pellicle.runs.advice import advise
-    from pellicle.runs.relaxation import history_arrays
     from pellicle.units import readable
 
-    run = Run.from_toml(file, set_ or ())
     advice = advise(run, error)
-    steps = len(run.loading.values)
-    needed = memory.estimate(run.grid, steps, run.solver, history_arrays(run))
+    needed = _memory(run)
     if json:
-        print_json(
-            {
-                "steps": [step._asdict() for step in advice.steps],
-                "points": advice.points,
-                "size": advice.size,
-                "memory": needed,
-            }
-        )
+        print_json(_data(advice, needed))
         return
     rows = [
         {
@@ -64,5 +68,82 @@ def check(
         echo(f"for {100 * error:.2g} % of the force in every step: grid.points = [{nx}, {ny}]")
 
 
+def _check_study(study: Study, error: float, *, json: bool) -> None:
+    """Print the worst of each run, and how many runs exceed the allowed error.
+
+    A smaller domain is suggested only where it fits every run.
+    """
+    from pellicle.errors import ConfigError
+    from pellicle.runs.advice import advise
+    from pellicle.studies.summary import run_names
+    from pellicle.studies.table import StudyTable
+    from pellicle.units import readable
+
+    names = run_names(StudyTable(study).dataset())
+    checked: list[tuple[str, Advice, float]] = []
+    for name, point in zip(names, study.points, strict=True):
+        try:
+            checked.append((name, advise(point.run, error), _memory(point.run)))
+        except ConfigError as problem:
+            raise ConfigError(f"{problem} (run with {name})") from None
+    if json:
+        print_json(
+            {"runs": [{"run": name, **_data(advice, needed)} for name, advice, needed in checked]}
+        )
+        return
+    rows = []
+    for name, advice, needed in checked:
+        across = [step.cells for step in advice.steps if not math.isnan(step.force_error)]
+        nx, ny = advice.points
+        rows.append(
+            {
+                "run": name,
+                "steps": str(len(advice.steps)),
+                "fewest cells across": f"{min(across):.0f}" if across else "0",
+                "error of force": _share(_worst(advice, "force_error")),
+                "error of area": _share(_worst(advice, "area_error")),
+                "points for it": f"{nx} × {ny}",
+                "memory": f"{needed / 1e6:.3g} MB",
+            }
+        )
+    print_table(list(rows[0]), rows)
+    known = [(w, name) for name, advice, _ in checked if (w := _worst(advice, "force_error")) == w]
+    many = sum(w > error for w, _ in known)
+    echo(
+        f"{len(checked)} runs; in {many} the error of the force may exceed {100 * error:.2g} % in "
+        "some step; errors are at most about these"
+    )
+    if known:
+        worst, name = max(known)
+        echo(f"the worst: {_share(worst)}, with {name}")
+    if any(advice.size is None for _, advice, _ in checked):
+        return
+    edges = [max(advice.size[axis] for _, advice, _ in checked if advice.size) for axis in (0, 1)]
+    x, y = (readable(edge, "m", 3) for edge in edges)
+    echo(f'every contact fits into a smaller domain: grid.size = ["{x}", "{y}"]')
+
+
+def _memory(run: Run) -> float:
+    from pellicle import memory
+    from pellicle.runs.relaxation import history_arrays
+
+    return memory.estimate(run.grid, len(run.loading.values), run.solver, history_arrays(run))
+
+
+def _data(advice: Advice, needed: float) -> dict[str, Any]:
+    return {
+        "steps": [step._asdict() for step in advice.steps],
+        "points": advice.points,
+        "size": advice.size,
+        "memory": needed,
+    }
+
+
+def _worst(advice: Advice, of: str) -> float:
+    """Return the largest of an error over the steps; NaN without contact."""
+    errors = [getattr(step, of) for step in advice.steps]
+    return max((e for e in errors if not math.isnan(e)), default=math.nan)
+
+
 def _share(value: float) -> str:
-    return "no contact" if value != value else f"{100 * value:.2g} %"
+    return "no contact" if value != value else f"{float(f'{100 * value:.2g}'):g} %"

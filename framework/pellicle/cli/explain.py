@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from .printing import echo, print_columns, print_json
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
 
 _FIT = """\
 curves = ["beads/*.csv"]
@@ -16,20 +20,24 @@ poissons_ratio = 0.5"""
 
 def explain(
     type_: Annotated[
-        str,
+        str | None,
         typer.Argument(
             metavar="TYPE",
             help="Type of a component, such as tensed_membrane; a family, such as kernel; or a "
-            "table: grid, loading, study, run, fit.",
+            "table: grid, loading, study, run, fit. Without it, all of these are listed.",
         ),
-    ],
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Print the fields of a component or of a table, with unit, default, meaning and an example."""
     from pellicle.config.explain import explanations
     from pellicle.fitting.config import FitConfig
 
-    listed = explanations(type_, {"fit": FitConfig})
+    tables = {"fit": FitConfig}
+    if type_ is None:
+        _print_words(tables, json)
+        return
+    listed = explanations(type_, tables)
     listed = [
         e._replace(example=_FIT) if e.name == "fit" and e.kind == "table" else e for e in listed
     ]
@@ -60,3 +68,20 @@ def explain(
             echo("example:")
             echo("")
             echo(explanation.example)
+
+
+def _print_words(tables: Mapping[str, type[BaseModel]], json: bool) -> None:
+    """Print the tables of run files, and the types of each family of components."""
+    from pellicle.config.explain import words_by_kind
+
+    words = words_by_kind(tables)
+    if json:
+        print_json(words)
+        return
+    columns = [("kind", list(words)), ("types", [", ".join(types) for types in words.values()])]
+    print_columns(columns)
+    echo("")
+    echo(
+        "one in full: pellicle explain TYPE; the types of a family in a line each: "
+        "pellicle explain kernel"
+    )

@@ -13,7 +13,7 @@ from .printing import echo
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
-    from pellicle.explore.page import Measured
+    from pellicle.explore.measured import Measured
 
 
 def explore(
@@ -35,6 +35,7 @@ def explore(
 
     The page is served to this machine only, at an address with a token, until Ctrl-C.
     """
+    import logging
     import webbrowser
     from importlib.util import find_spec
 
@@ -46,12 +47,14 @@ def explore(
     from pellicle.explore.page import Explorer
     from pellicle.explore.server import Server
 
+    # It warns of each message to a page that has just been closed or reloaded.
+    logging.getLogger("bokeh.server.views.ws").setLevel(logging.ERROR)
     run = _run(file, set_ or [])
     measured = _measured(curve) if curve else None
     server = Server(lambda document: Explorer(run, measured, document).show(), port)
     echo(f"{server.address}\nopen it in a browser on this machine; Ctrl-C ends it")
     if browser:
-        webbrowser.open(server.address)
+        webbrowser.open(server.ticket_address)
     try:
         server.run()
     except KeyboardInterrupt:
@@ -70,7 +73,7 @@ def _run(file: Path | None, overrides: list[str]) -> Run:
 
 
 def _measured(path: Path) -> Measured:
-    from pellicle.explore.page import Measured
+    from pellicle.explore.measured import Measured
     from pellicle.fitting.curves.columns import Calibration
     from pellicle.fitting.curves.curve import clean
     from pellicle.fitting.curves.readers import SourceStream, gather

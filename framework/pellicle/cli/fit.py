@@ -151,6 +151,7 @@ def fit(
             help="Repeat the fit that a JSON file records, and say if files or versions differ.",
         ),
     ] = None,
+    si: Annotated[bool, typer.Option("--si", help="Print tables in SI units.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Print errors and warnings only.")
@@ -229,9 +230,11 @@ def fit(
     if json:
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
-        print_fits(result, quiet=quiet, directory=directory)
+        print_fits(result, quiet=quiet, directory=directory, si=si)
+    elif quiet:
+        print_notes(result)
     else:
-        (print_notes if quiet else print_fit)(result)
+        print_fit(result, si=si)
     if repeated is not None:
         record = None if isinstance(result, ManyFits) else result.record
         rows = result.rows if isinstance(result, ManyFits) else []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,26 +13,28 @@ if TYPE_CHECKING:
     from pellicle.fitting.result import FitResult
     from pellicle.units import Scale
 
-_WORDS = {
-    "youngs_modulus": "Young's modulus",
-    "offset": "offset of the baseline",
-    "slope": "slope of the baseline",
-    "chi_squared": "χ²",
+_UNITS = {
+    "reduced_modulus": "Pa",
+    "tension": "N/m",
+    "work_of_adhesion": "J/m**2",
+    "thickness": "m",
+    "contact_point": "m",
 }
-
-_UNITS = {"reduced_modulus": "Pa", "tension": "N/m", "thickness": "m", "contact_point": "m"}
 """Parameters that a line has, if a fit has them."""
 _LINES = 50
 """Largest number of curves that are listed although a table is written."""
 
 
-def print_fit(fit: FitResult) -> None:
+def print_fit(fit: FitResult, *, si: bool = False) -> None:
     """Print the estimates of a fit, a line for each curve of a pool, and the fit in words."""
-    from pellicle.units import axis_unit
+    from pellicle.fitting.report.answer import answer
 
+    if fit.chosen is not None:
+        echo(answer(fit, si=si))
+        echo("An elastic solid under tension instead:")
     rows = []
     for name, estimate in fit.estimates().items():
-        scale = axis_unit([estimate.value], estimate.unit)
+        scale = _scale([estimate.value], estimate.unit, si)
         ends = "fixed" if estimate.held else _interval(estimate.low, estimate.high, scale)
         rows.append((_words(name), scale.number(estimate.value), ends, scale.unit))
     heads = ("parameter", "value", "95 % interval", "unit")
@@ -40,7 +42,7 @@ def print_fit(fit: FitResult) -> None:
     if curves := fit.curve_rows():
         print_columns([(_words(name), [row[name] for row in curves]) for name in curves[0]])
     if fit.rivals is not None and fit.config is not None and fit.config.compare:
-        models = fit.rivals.rows()
+        models = fit.rivals.rows(si=si)
         print_columns([(name, [row[name] for row in models]) for name in models[0]])
     for sentence in fit.sentences:
         echo(sentence)
@@ -55,7 +57,7 @@ def print_notes(fit: FitResult) -> None:
         echo(f"note: {note}", err=True)
 
 
-def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None) -> None:
+def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool = False) -> None:
     """Print a line for each curve and for each group, and what to know of them.
 
     Of many curves, lines are left out if the table is in the folder.
@@ -66,23 +68,21 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None) -> None:
     if quiet:
         return
     if directory is None or len(fits.rows) <= _LINES:
-        print_columns(_curves(fits.rows))
+        print_columns(_curves(fits.rows, si))
     else:
         echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
     if len(fits.rows) > 1:
-        print_columns(_groups(fits))
+        print_columns(_groups(fits, si))
 
 
-def _curves(rows: list[dict[str, Any]]) -> list[tuple[str, list[str]]]:
+def _curves(rows: list[dict[str, Any]], si: bool) -> list[tuple[str, list[str]]]:
     """Return a row for each curve; the table in the folder has their sentences."""
-    from pellicle.units import axis_unit
-
     columns = [("curve", [str(row["curve"]) for row in rows])]
     for name, unit in _UNITS.items():
         estimates = [row.get(name) for row in rows]
         if not any(name in row for row in rows):
             continue
-        scale = axis_unit([e["value"] for e in estimates if e], unit)
+        scale = _scale([e["value"] for e in estimates if e], unit, si)
         values = [scale.number(e["value"]) if e else "" for e in estimates]
         columns.append((f"{_words(name)} [{scale.unit}]", values))
         if name != "contact_point":
@@ -101,14 +101,12 @@ def _verdict(row: Mapping[str, Any]) -> str:
     return "rejected" if verdict == "fitted" and not row["accepted"] else verdict
 
 
-def _groups(fits: ManyFits) -> list[tuple[str, list[str]]]:
+def _groups(fits: ManyFits, si: bool) -> list[tuple[str, list[str]]]:
     """Return a row for each parameter of each group of curves; no columns without any."""
-    from pellicle.units import axis_unit
-
     parts, quartiles = fits.summary(), []
     for part in parts:
         numbers = part.lower_quartile, part.median, part.upper_quartile
-        scale = axis_unit(numbers, part.unit)
+        scale = _scale(numbers, part.unit, si)
         low, middle, high = map(scale.number, numbers)
         quartiles.append((scale.with_unit(middle), scale.with_unit(f"{low} to {high}")))
     columns = [
@@ -148,6 +146,13 @@ def _interval(low: float | None, high: float | None, scale: Scale) -> str:
 
 
 def _words(name: str) -> str:
-    for key, words in _WORDS.items():
-        name = name.replace(key, words)
-    return name.replace("_", " ")
+    from pellicle.fitting.wording import words
+
+    return words(name)
+
+
+def _scale(values: Sequence[float], unit: str, si: bool) -> Scale:
+    """Return the unit of a column: that in SI, or one with a prefix."""
+    from pellicle.units import Scale, axis_unit, printed
+
+    return Scale(1.0, printed(unit)) if si else axis_unit(values, unit)

@@ -12,6 +12,7 @@ from .printing import print_columns, print_json
 
 if TYPE_CHECKING:
     from pellicle.components import Case
+    from pellicle.runs.validation import Verdict
 
 _DIGITS = 8
 
@@ -53,11 +54,25 @@ def validate(
                 ("source", [verdict.case.source for verdict in done]),
             ]
         )
+        typer.echo(_summary(done))
     raise typer.Exit(0 if passed else 1)
+
+
+def _summary(done: list[Verdict]) -> str:
+    """Return how many cases passed, and the kernels of which no case exists."""
+    from pellicle.plugins import registry
+
+    failed = sum(not verdict.passed for verdict in done)
+    outcome = f"{failed} of {len(done)} cases failed" if failed else f"all {len(done)} cases passed"
+    solved = {verdict.case.configuration["kernel"]["type"] for verdict in done}
+    others = sorted(registry().components["kernel"].keys() - solved)
+    left_out = f"; no case is about the kernels {', '.join(others)}" if others else ""
+    return f"{outcome}{left_out}"
 
 
 def _value(value: float, case: Case) -> str:
     """Return a value in the unit that suits the expected one, with digits to compare."""
     from pellicle.units import axis_unit
 
-    return axis_unit(case.expected, case.unit).text(value, _DIGITS)
+    unit = case.unit.translate({ord("²"): "2", ord("³"): "3"})
+    return axis_unit(case.expected, unit).text(value, _DIGITS)

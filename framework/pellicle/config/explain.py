@@ -30,6 +30,12 @@ _EXAMPLES: Mapping[type[BaseModel], Mapping[str, Any]] = {
     Loading: {"loading": {"depth": {"start": "1 um", "stop": "5 um", "num": 5}}},
     Study: {"study": {"vary": {"kernel.tension": ["0 mN/m", "10 mN/m", "50 mN/m"]}}},
 }
+_TABLES: Mapping[str, type[BaseModel]] = {
+    "run": Run,
+    "grid": Grid,
+    "loading": Loading,
+    "study": Study,
+}
 _IN_LISTS = {"corrections", "outputs"}
 _KINDS: Mapping[type, str] = {bool: "true or false", int: "whole number", float: "number"}
 _KINDS_OF_TEXT = (str, Path)
@@ -76,13 +82,7 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
     ConfigError
         There is nothing of that name; the message names similar ones.
     """
-    known: dict[str, type[BaseModel]] = {
-        "grid": Grid,
-        "loading": Loading,
-        "study": Study,
-        "run": Run,
-        **tables,
-    }
+    known = {**_TABLES, **tables}
     name = re.sub(r"[\s-]+", "_", word.strip().strip("[]").lower())
     families = registry().components
     if name in known:
@@ -101,6 +101,13 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
         hint = similar(name, types | {*known, *FAMILIES}) or "see `pellicle plugins`"
         raise ConfigError(f"{shown(word)} is neither a type nor a table; {hint}", "TYPE")
     return [_of_component(match) for match in matches]
+
+
+def words_by_kind(tables: Mapping[str, type[BaseModel]]) -> dict[str, list[str]]:
+    """Return what `explanations` knows: tables, these further ones too, and types by family."""
+    return {"table": [*_TABLES, *tables]} | {
+        family: list(members) for family, members in registry().components.items()
+    }
 
 
 def _of_table(name: str, model: type[BaseModel]) -> Explanation:

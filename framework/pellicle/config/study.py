@@ -20,11 +20,17 @@ from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate
 from pellicle.model.from_file import FromFile, read
 from pellicle.model.html import summary
 from pellicle.model.input_path import paths_relative_to
-from pellicle.model.paths import get
+from pellicle.model.paths import get, python_names
 from pellicle.model.ranges import Axes, expand
 from pellicle.plugins import registry
 from pellicle.results.derived import constants
-from pellicle.results.variables import FIELDS, VARIABLES, corrected_area, names_of
+from pellicle.results.variables import (
+    FIELDS,
+    VARIABLES,
+    corrected_area,
+    corrected_fraction,
+    names_of,
+)
 
 from .component_field import FromRegistry
 from .coordinates import Coordinate, as_json, coordinate, tell_apart
@@ -253,9 +259,11 @@ class Study(FromFile):
         if not any(point.run.loading.oscillates for point in self.points):
             known -= {*names_of("oscillation")}
         known |= run.loading.variables
-        known |= {corrected_area(correction.type_name).name for correction in run.corrections}
+        areas = [corrected_area(correction.type_name) for correction in run.corrections]
+        known |= {v.name for area in areas for v in (area, corrected_fraction(area))}
         known |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
-        reserved = {*FUNCTIONS, *CONSTANTS, *texts, "run", "step", "x", "y"}
+        names = python_names([*self.vary, *itertools.chain.from_iterable(self.zip)])
+        reserved = {*FUNCTIONS, *CONSTANTS, *texts, *names.values(), "run", "step", "x", "y"}
         problems: list[Problem] = []
         for name, text in self.derived.items():
             try:

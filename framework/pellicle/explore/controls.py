@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 from pellicle.config.run import Run
-from pellicle.errors import ConfigError
-from pellicle.model.paths import replaced, walk
+from pellicle.model.paths import walk
 from pellicle.units import Quantity, axis_unit, quantity_of
 
 _TABLES = ("kernel", "indenter", "interaction")
@@ -83,59 +81,3 @@ def _load(run: Run) -> Iterator[Control]:
     if last > 0 and not loading.samples:
         label = f"largest {loading.prescribed.replace('_', ' ')}"
         yield Control(f"loading.{loading.prescribed}", label, quantity, last)
-
-
-def changed(document: Mapping[str, Any], control: Control, text: str) -> dict[str, Any]:
-    """Return a run document with a new value of a control, given as text with its unit.
-
-    All load steps change in proportion to their largest.
-
-    Raises
-    ------
-    ConfigError
-        The text is not an allowed value; the error names the path of the control.
-    """
-    try:
-        value: Any = float(text)
-    except ValueError:
-        value = text
-    try:
-        number = control.quantity(value)
-    except ValueError as error:
-        raise ConfigError(str(error), control.path) from None
-    if control.path.startswith("loading."):
-        key = control.path.partition(".")[2]
-        steps = document["loading"][key]
-        factor = number / max(map(abs, steps))
-        return dict(replaced(document, control.path, [step * factor for step in steps]))
-    return dict(replaced(document, control.path, value))
-
-
-def document(run: Run) -> dict[str, Any]:
-    """Return a run as a document in SI that makes an equal one, with its load steps as a list."""
-    given: dict[str, Any] = run.model_dump(mode="json", exclude_unset=True, exclude_none=True)
-    if not run.loading.samples:
-        key = f"loading.{run.loading.prescribed}"
-        given = dict(replaced(given, key, list(run.loading.values)))
-    return given
-
-
-def sticking(given: Mapping[str, Any], work_of_adhesion: str) -> dict[str, Any]:
-    """Return a run document with a contact that sticks, pulled off after it is pressed in.
-
-    The load steps go back to half the largest depth above the surface.
-    """
-    key = Run.from_mapping(given).loading.prescribed
-    steps = given["loading"][key]
-    back = [-steps[-1] * share / 4 for share in (0, 1, 2)]
-    path = [*steps, *reversed(steps[:-1]), *back]
-    loaded = dict(replaced(given, f"loading.{key}", path))
-    return loaded | {"interaction": {"type": "jkr", "work_of_adhesion": work_of_adhesion}}
-
-
-def letting_go(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a run document without an interaction, and with the steps up to the deepest."""
-    key = Run.from_mapping(given).loading.prescribed
-    steps = given["loading"][key]
-    loaded = dict(replaced(given, f"loading.{key}", steps[: steps.index(max(steps)) + 1]))
-    return {name: table for name, table in loaded.items() if name != "interaction"}

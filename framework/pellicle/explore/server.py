@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import secrets
 import socket
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 from urllib.parse import urlencode
 
 from bokeh.application import Application
@@ -13,6 +14,7 @@ from bokeh.application.handlers.function import FunctionHandler
 from bokeh.document import Document
 from bokeh.server.server import BaseServer
 from bokeh.server.tornado import BokehTornado
+from bokeh.server.views.doc_handler import DocHandler
 from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPServerRequest
 from tornado.ioloop import IOLoop
@@ -21,6 +23,8 @@ from tornado.web import RequestHandler
 from pellicle.errors import ConfigError
 
 ADDRESS = "127.0.0.1"
+# bokeh would also serve a script by which other pages embed this one.
+_SERVED: Final = re.compile(r"/(ws|favicon\.ico|static/.*)?$")
 
 
 class _Refused(RequestHandler):
@@ -44,6 +48,16 @@ class _Entrance(RequestHandler):
         self.redirect("/")
 
 
+class _Page(DocHandler):
+    """The page, which browsers must not keep.
+
+    One that is kept for the back button would hold its session here for ten minutes.
+    """
+
+    def set_default_headers(self) -> None:
+        self.set_header("Cache-Control", "no-store")
+
+
 class _Guarded(BokehTornado):
     """Passes on requests, also for files and of websockets, only to this host and with the token.
 
@@ -51,22 +65,39 @@ class _Guarded(BokehTornado):
     (DNS rebinding), so only the address itself is allowed.
     """
 
-    def __init__(self, applications: dict[str, Any], host: str, token: str) -> None:
-        self._host, self._token = host, token
+    def __init__(self, applications: dict[str, Any], host: str, token: str, ticket: str) -> None:
+        self._host, self._token, self._ticket = host, token, ticket
         self._cookie = f"pellicle-{host.rpartition(':')[2]}"
         super().__init__(applications, extra_websocket_origins=[host])
 
     def find_handler(self, request: HTTPServerRequest, **options: Any) -> Any:
-        if request.host != self._host:
+        if request.host != self._host or not _SERVED.match(request.path):
             return self.get_handler_delegate(request, _Refused)
-        arguments = request.query_arguments.get("token", [])
-        if request.path == "/" and any(self._knows(value.decode("latin-1")) for value in arguments):
+        if request.path == "/" and self._enters(request.query_arguments):
             known = {"cookie": self._cookie, "token": self._token}
             return self.get_handler_delegate(request, _Entrance, known)
         cookie = request.cookies.get(self._cookie)
         if cookie is None or not self._knows(cookie.value):
             return self.get_handler_delegate(request, _Refused)
         return super().find_handler(request, **options)
+
+    def get_handler_delegate(
+        self,
+        request: HTTPServerRequest,
+        target_class: type[RequestHandler],
+        *rest: Any,
+        **more: Any,
+    ) -> Any:
+        own = _Page if target_class is DocHandler else target_class
+        return super().get_handler_delegate(request, own, *rest, **more)
+
+    def _enters(self, arguments: dict[str, list[bytes]]) -> bool:
+        """Whether the address has the token, or the ticket, which then serves no more."""
+        tokens, tickets = arguments.get("token", []), arguments.get("ticket", [])
+        if any(secrets.compare_digest(ticket, self._ticket.encode()) for ticket in tickets):
+            self._ticket = secrets.token_urlsafe(32)
+            return True
+        return any(self._knows(token.decode("latin-1")) for token in tokens)
 
     def _knows(self, token: str) -> bool:
         return secrets.compare_digest(token.encode(), self._token.encode())
@@ -89,7 +120,7 @@ class Server:
     """
 
     def __init__(self, fill: Callable[[Document], None], port: int = 0) -> None:
-        self.loop = IOLoop()
+        self.loop = IOLoop(make_current=False)
         try:
             listener = socket.create_server((ADDRESS, port))
         except OSError as error:
@@ -100,16 +131,20 @@ class Server:
             ) from None
         listener.setblocking(False)
         host = f"{ADDRESS}:{listener.getsockname()[1]}"
-        token = secrets.token_urlsafe(32)
+        token, ticket = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
         self.address = f"http://{host}/?{urlencode({'token': token})}"
-        application = _Guarded({"/": Application(FunctionHandler(fill))}, host, token)
-        http = HTTPServer(application)
-        http.add_socket(listener)
-        self._server = BaseServer(self.loop, application, http)
+        """The address to be opened by hand, as often as one likes."""
+        self.ticket_address = f"http://{host}/?{urlencode({'ticket': ticket})}"
+        """An address that serves once: other users of a machine see the commands that run on it."""
+        application = _Guarded({"/": Application(FunctionHandler(fill))}, host, token, ticket)
+        self._http, self._listener = HTTPServer(application), listener
+        self._server = BaseServer(self.loop, application, self._http)
 
     def run(self) -> None:
         """Serve until `stop` is called from another thread, or the process is interrupted."""
-        self._server.start()
+        # Socket and timers go to the loop that is current, which is this one once it runs.
+        self.loop.add_callback(self._http.add_socket, self._listener)
+        self.loop.add_callback(self._server.start)
         try:
             self.loop.start()
         finally:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from pellicle.errors import ConvergenceError
+from pellicle.units import readable
 
+from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
 from .parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from .statistics.checks import judged
 from .statistics.experiments import advised
@@ -18,6 +20,7 @@ from .statistics.likelihood import ChiSquared, Likelihood, Minimum, least
 from .statistics.noise import FailedCheck, doubt_of_tension
 from .statistics.profile import Ends, Estimate, ImprovedMinimum, confidence_interval, estimate_of
 from .statistics.rivals import NONE, TENSED, Rival, rivals
+from .wording import in_words, words
 
 MARGIN = 6.0
 """Difference of AIC from which one model is preferred: odds of e³, 20 to 1."""
@@ -25,6 +28,8 @@ _OF_MANY = 12.0
 """Difference of AIC by which the best of many rivals must beat no effect at all."""
 _FIRST_TENSIONS = (0.03, 0.3)
 """Tensions from which a search for one starts, over modulus and depth."""
+_FINE = 0.1
+"""Error of the condensed χ² of which intervals are sought, in its unit."""
 Verdict = Literal["needed", "not shown", "undecided", "other"]
 
 
@@ -40,7 +45,8 @@ class RivalFit:
     """Bayes' criterion (Schwarz), over that of the best."""
     parameters: Coordinates
     estimates: dict[str, Estimate]
-    """The parameters by name; their intervals only if the comparison was requested."""
+    """The parameters by name; their intervals only if the model is chosen, or if the comparison was
+    requested."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the explanation as JSON data."""
@@ -65,6 +71,10 @@ class Comparison:
     """The measurement that would separate the explanations, if they are tied."""
     failed_checks: tuple[FailedCheck, ...]
     """Checks that the best explanation fails."""
+    chosen: RivalFit | None = None
+    """The explanation whose estimates count, if it is not an elastic solid under tension."""
+    pull_off: str = ""
+    """The pull-off force of an adhesive contact against its limits, in words."""
 
     @property
     def best(self) -> RivalFit:
@@ -76,15 +86,18 @@ class Comparison:
         """The explanations that the curves cannot tell from the best, the best included."""
         return tuple(fit for fit in self.fits if fit.aic < MARGIN)
 
-    def rows(self) -> list[dict[str, str]]:
+    def rows(self, *, si: bool = False) -> list[dict[str, str]]:
         """Return a line of a table for each explanation."""
         return [
             {
-                "model": fit.rival.code,
+                "model": fit.rival.words,
                 "χ²": f"{fit.chi_squared:.4g}",
                 "ΔAIC": f"{fit.aic:.3g}",
                 "ΔBIC": f"{fit.bic:.3g}",
-                "parameters": ", ".join(map(_figure, fit.estimates.items())),
+                "parameters": ", ".join(
+                    f"{words(name)} {in_words(estimate, si=si, sought=False)}"
+                    for name, estimate in fit.estimates.items()
+                ),
             }
             for fit in self.fits
         ]
@@ -97,15 +110,10 @@ class Comparison:
             "advice": self.advice,
             "tied": [fit.rival.code for fit in self.tied],
             "margin": MARGIN,
+            "chosen": None if self.chosen is None else self.chosen.rival.code,
+            "pull_off": self.pull_off,
             "models": [fit.to_dict() for fit in self.fits],
         }
-
-
-def _figure(item: tuple[str, Estimate]) -> str:
-    name, value = item
-    ends = [f"{end:.3g}" if end is not None else "open" for end in (value.low, value.high)]
-    interval = "" if ends == ["open", "open"] else f" ({' to '.join(ends)})"
-    return f"{name} {value.value:.3g}{interval} {value.unit}".strip()
 
 
 def compare(
@@ -113,7 +121,8 @@ def compare(
     best: Minimum,
     without: Minimum,
     *,
-    threshold: float | None = None,
+    threshold: float,
+    full: bool = True,
     pairs: bool = True,
     report: Callable[[str], None] = lambda stage: None,
 ) -> Comparison:
@@ -126,7 +135,9 @@ def compare(
     best, without
         Its minima with and without tension.
     threshold
-        Δχ² at the ends of intervals, which are not determined if it is None.
+        Δχ² at the ends of intervals.
+    full
+        Whether all explanations get intervals; otherwise only the one that is chosen.
     pairs
         Whether a tension beside another effect is always compared; otherwise only if no single
         effect passes its checks.
@@ -157,8 +168,56 @@ def compare(
             if minimum is not None:
                 minima[rival.code] = (rival, minimum)
         noises, failed = _noises(chi_squared, minima)
-    fits = _ranked(chi_squared, minima, noises, threshold)
-    return _judge(chi_squared, fits, failed, noises)
+    fits = _ranked(chi_squared, minima, noises, threshold if full else None)
+    comparison = _judge(chi_squared, fits, failed, noises)
+    if comparison.chosen is None:
+        return comparison
+    report("intervals")
+    return _with_intervals(chi_squared, comparison, noises, None if full else threshold)
+
+
+def _with_intervals(
+    chi_squared: ChiSquared,
+    comparison: Comparison,
+    noises: Sequence[float],
+    threshold: float | None,
+) -> Comparison:
+    """Return the comparison with intervals of the chosen explanation, and its pull-off force.
+
+    The intervals are kept as they are if there is no threshold.
+    """
+    chosen = comparison.chosen
+    assert chosen is not None
+    mine = chosen.rival.of(chi_squared)
+    fits = comparison.fits
+    if threshold is not None:
+        at = mine.chi_squared(chosen.parameters)
+        limit = threshold * at / chosen.chi_squared if chosen.chi_squared else threshold
+        known = _estimates(mine, Minimum(chosen.parameters, at), limit)
+        better = replace(chosen, estimates=known)
+        fits = tuple(better if fit is chosen else fit for fit in fits)
+        chosen = better
+    member, part = mine.curves(chosen.parameters)[0]
+    return replace(comparison, fits=fits, chosen=chosen, pull_off=_pull_off(member, part))
+
+
+def _pull_off(member: Likelihood, part: Coordinates) -> str:
+    """Return the pull-off force of an adhesive contact with a radius, over its limits."""
+    model = member.force_model
+    if not isinstance(model, AdhesiveModel):
+        return ""
+    radius = getattr(model.elastic.indenter, "radius", None)
+    if radius is None:
+        return ""
+    values = {p: p.value(part[p]) for p in model.parameters}
+    force = -model.pull_off(values)
+    share = force / (np.pi * values[WORK_OF_ADHESION] * radius)
+    where = "between" if 0.999 <= share <= 1.501 else "outside"
+    return (
+        f"under a dead load it pulls off at {readable(force, 'N', 3)}, {share:.3g} πWR: {where} "
+        "the limits of a paraboloid, 1 πWR where tension resists alone and 1.5 πWR where "
+        "elasticity does"
+    )
 
 
 def _tensed(chi_squared: ChiSquared, single: Minimum) -> list[Coordinates]:
@@ -245,6 +304,10 @@ def _estimates(
     """Return what is fitted beside contact point and baseline, with intervals if requested."""
     estimates = {}
     bounds = chi_squared.deviations(minimum.parameters)
+    thin, near = chi_squared, minimum
+    if threshold is not None:
+        thin = chi_squared.condensed(minimum.parameters, _FINE)
+        near = minimum if thin is chi_squared else thin.minimise(minimum.parameters, rough=True)
     for p in chi_squared.parameters:
         if p.name in (CONTACT_POINT.name, OFFSET.name, SLOPE.name):
             continue
@@ -252,7 +315,7 @@ def _estimates(
             continue
         ends: Ends = None, None
         if threshold is not None and p in chi_squared.free:
-            ends = _interval(chi_squared, minimum, p, threshold)
+            ends = _interval(thin, near, p, threshold)
         estimates[p.name] = estimate_of(p, chi_squared, minimum, ends, bounds)
     return estimates
 
@@ -295,15 +358,19 @@ def _judge(
     doubt = doubt_of_tension(failed)
     curves = "this curve" if isinstance(chi_squared, Likelihood) else "these curves"
     advice = ""
+    chosen = None
     verdict: Verdict
     if none.aic - with_tension.aic < MARGIN and not doubt:
         # The best of many rivals beats a clean curve by more than one of them does.
         is_other = first.aic + _OF_MANY <= none.aic
         verdict, sentence = "not shown", ""
         if is_other:
+            chosen = first
             verdict, sentence = "other", f"{first.rival.words} describes {curves}, without tension"
     elif doubt:
         verdict = "other"
+        tensed = next(fit for fit in fits if fit.rival == TENSED)
+        chosen = fits[0] if tensed.aic >= MARGIN else None
         sentence = (
             f"no model describes {curves}: that of least AIC is {fits[0].rival.words}, and it "
             f"fails a check ({', '.join(dict.fromkeys(c.code for c in failed if c.of_model))})"
@@ -311,7 +378,7 @@ def _judge(
         if "adhesion" in {check.code for check in failed}:
             sentence += "; the force dips before contact, which is adhesion"
     elif margin >= MARGIN:
-        verdict = "needed"
+        verdict, chosen = "needed", with_tension
         sentence = (
             f"tension is needed (Δχ² = {gain:.3g}, ΔAIC = {none.aic - with_tension.aic:.3g} "
             f"against none; ΔAIC = {margin:.3g} against {first.rival.words}, the best without it)"
@@ -320,7 +387,7 @@ def _judge(
             beside = with_tension.rival.words.removeprefix("tension and ")
             sentence += f"; beside it there is {beside}"
     elif margin <= -MARGIN:
-        verdict = "other"
+        verdict, chosen = "other", first
         sentence = (
             f"{first.rival.words} describes {curves} better than tension "
             f"(ΔAIC = {-margin:.3g}), so this is not evidence of a tension"
@@ -339,7 +406,9 @@ def _judge(
             [(fit.rival, fit.parameters) for fit in tied],
             noises,
         )
-    return Comparison(tuple(fits), verdict, sentence, advice, tuple(failed))
+    if chosen is not None and chosen.rival == TENSED:
+        chosen = None
+    return Comparison(tuple(fits), verdict, sentence, advice, tuple(failed), chosen)
 
 
 def _listed(names: Sequence[str]) -> str:

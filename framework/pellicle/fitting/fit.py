@@ -188,7 +188,8 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
             likelihood,
             profile.best,
             profile.without_tension,
-            threshold=threshold if problem.compare else None,
+            threshold=threshold,
+            full=problem.compare,
             pairs=problem.compare,
             report=report,
         )

@@ -27,7 +27,8 @@ from pellicle.runs.progress import StudyProgress
 
 from .config import FitConfig
 from .curves.readers import Curves, Source, SourceStream
-from .fit import fit_problem
+from .fit import Fit, fit_problem
+from .models.adhesive import WORK_OF_ADHESION
 from .population.images import force_maps
 from .population.judgement import Row, group_of, group_pattern, judge, read_names
 from .population.rules import NUMBERS
@@ -108,6 +109,12 @@ class ManyFits:
     def summary(self) -> list[Quartiles]:
         """Return median and quartiles of each parameter in each group."""
         return summary(self.rows)
+
+    def _repr_html_(self) -> str:
+        """Return HTML for a notebook: the answer, the quartiles of each group, a picture."""
+        from .report.notebook import html_of_population
+
+        return html_of_population(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fits as JSON data."""
@@ -283,12 +290,22 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     residuals = likelihood.residuals(best) * likelihood.noise
     scatter = likelihood.force - np.mean(likelihood.force)
     _, force = likelihood.fitted(best)
-    return fit.to_dict() | {
-        "r_squared": 1 - float(residuals @ residuals) / float(scatter @ scatter),
-        "indentation": float(np.max(likelihood.depth(best))),
-        "largest_force": float(np.max(force)),
-        "sketch": to_json(likelihood.position, likelihood.force, force),
-    }
+    return (
+        fit.to_dict()
+        | _adhesion(fit)
+        | {
+            "r_squared": 1 - float(residuals @ residuals) / float(scatter @ scatter),
+            "indentation": float(np.max(likelihood.depth(best))),
+            "largest_force": float(np.max(force)),
+            "sketch": to_json(likelihood.position, likelihood.force, force),
+        }
+    )
+
+
+def _adhesion(fit: Fit) -> dict[str, Any]:
+    """Return the work of adhesion of the chosen model, if it has one."""
+    estimate = fit.chosen_estimates().get(WORK_OF_ADHESION.name)
+    return {} if estimate is None else {WORK_OF_ADHESION.name: estimate.to_dict()}
 
 
 def _identity(config: FitConfig, source: Source, problem: FitProblem) -> str:
@@ -346,6 +363,11 @@ def table(rows: list[Row]) -> xr.Dataset:
     for name in ("points", "noise", "chi_squared", "r_squared", "indentation", "largest_force"):
         if name not in columns:
             columns[name] = numbers((row.get(name) for row in rows), NUMBERS[name])
+    columns["chosen_model"] = texts(row.get("chosen", {}).get("model", "") for row in rows)
+    chosen = [row.get("chosen", {}).get("parameters", {}).get("reduced_modulus") for row in rows]
+    for end in ("value", "low", "high"):
+        name = f"chosen_reduced_modulus{'' if end == 'value' else f'_{end}'}"
+        columns[name] = numbers((e and e[end] for e in chosen), "Pa")
     columns["tension_needed"] = numbers(row.get("tension_needed") for row in rows)
     for name in ("delta_chi_squared", "delta_aic"):
         columns[name] = numbers(row.get("without_tension", {}).get(name) for row in rows)

@@ -95,7 +95,8 @@ class PooledFit(FitResult):
     @property
     def sentences(self) -> list[str]:
         """The verdicts of the fit in words."""
-        return list(filter(None, [self.comparison, self.agreement, self.advice]))
+        pull_off = "" if self.rivals is None else self.rivals.pull_off
+        return list(filter(None, [self.comparison, pull_off, self.agreement, self.advice]))
 
     @property
     def all_messages(self) -> list[str]:
@@ -249,7 +250,8 @@ def _fit_pool(
             pool,
             profile.best,
             profile.without_tension,
-            threshold=threshold if compared else None,
+            threshold=threshold,
+            full=compared,
             pairs=compared or factor > 1,
             report=report,
         )

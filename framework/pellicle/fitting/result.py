@@ -23,7 +23,7 @@ from .statistics.profile import CONFIDENCE, Estimate, ProfileResult
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from .comparison import Comparison
+    from .comparison import Comparison, RivalFit
     from .record import Record
 
 
@@ -80,6 +80,20 @@ class FitResult:
         return None if ratio is None else self.reduced_modulus.times(1 - ratio**2)
 
     @property
+    def chosen(self) -> RivalFit | None:
+        """The model whose estimates count, if it is not an elastic solid under tension."""
+        return None if self.rivals is None else self.rivals.chosen
+
+    def chosen_estimates(self) -> dict[str, Estimate]:
+        """Return the parameters of the chosen model by name."""
+        if self.chosen is None:
+            return self.estimates()
+        estimates, ratio = dict(self.chosen.estimates), self.poissons_ratio
+        if ratio is not None:
+            estimates["youngs_modulus"] = estimates["reduced_modulus"].times(1 - ratio**2)
+        return estimates
+
+    @property
     def tension_needed(self) -> bool:
         """Whether a model with tension beats all its rivals and passes the checks of its residuals.
 
@@ -113,7 +127,8 @@ class FitResult:
     @property
     def sentences(self) -> list[str]:
         """The verdicts of the fit in words."""
-        return list(filter(None, [self.comparison, self.range_of_moduli, self.advice]))
+        pull_off = "" if self.rivals is None else self.rivals.pull_off
+        return list(filter(None, [self.comparison, pull_off, self.range_of_moduli, self.advice]))
 
     @property
     def range_of_moduli(self) -> str:
@@ -161,6 +176,7 @@ class FitResult:
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
         result = {name: value.to_dict() for name, value in self.estimates().items()} | {
+            "chosen": self._chosen_block(),
             "confidence": CONFIDENCE,
             "chi_squared": self.chi_squared,
             "without_tension": {"delta_chi_squared": self._gain, "delta_aic": self._gain - 2},
@@ -178,6 +194,27 @@ class FitResult:
         if self.record is not None:
             result |= self.record.to_dict()
         return result
+
+    def _chosen_block(self) -> dict[str, Any]:
+        """Return which model the estimates that count belong to, and what they are."""
+        if self.chosen is not None:
+            model = self.chosen.rival.code
+        else:
+            model = "none" if self.tension.held and not self.tension.value else "tension"
+        return {
+            "model": model,
+            "settled": self.rivals is None or self.rivals.verdict != "undecided",
+            "parameters": {k: value.to_dict() for k, value in self.chosen_estimates().items()},
+        }
+
+    def _repr_html_(self) -> str:
+        """Return HTML for a notebook: the answer, the estimates, and the curve with its fit."""
+        from .fit import Fit
+        from .pooled import PooledFit
+        from .report.notebook import html_of_fit
+
+        assert isinstance(self, (Fit, PooledFit)), "these are all fits that have panels"
+        return html_of_fit(self)
 
     def plot(self) -> Figure:
         """Return a figure of pyplot with the data, the fit, and how well it determines it."""

@@ -5,7 +5,7 @@ Entries of lists count from 0, as in ``grid.size.0``; a key of a table may itsel
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from pydantic.fields import FieldInfo
@@ -48,6 +48,19 @@ def walk(
     for name, value, info in inner:
         yield f"{path}{name}", value, info
         yield from walk(value, f"{path}{name}.", info)
+
+
+def python_names(paths: Iterable[str]) -> dict[str, str]:
+    """Return a name for each path that Python can write: ``kernel_tension``.
+
+    Where two paths would have one name, a dot becomes two underscores.
+    """
+    paths = list(paths)
+    plain = [path.replace(".", "_") for path in paths]
+    return {
+        path: name if plain.count(name) == 1 else path.replace(".", "__")
+        for path, name in zip(paths, plain, strict=True)
+    }
 
 
 def replaced(data: Any, path: str, value: object) -> Any:

@@ -354,9 +354,9 @@ class Equilibrium:
 
     @property
     def residual_complementarity(self) -> float:
-        """Σ w|gap| / Σ|p|, over the same."""
+        """Σ w|gap| / Σ|p|, over the same; with a law over the greater of Σ|p| and Σ|σ|."""
         work = float((self.wall[self.contact] * self._inside).sum())
-        return work / self._magnitude / self._scale if self._magnitude else 0.0
+        return work / self._acting / self._scale if work else 0.0
 
     @property
     def residual_load(self) -> float:
@@ -374,14 +374,18 @@ class Equilibrium:
         if not self.problem.law:
             return 0.0
         missed = float(np.abs(self.pressure - self.wall - self.attraction).sum())
-        # Without any pressure the law may still attract.
-        return (
-            missed / max(self._magnitude, float(np.abs(self.attraction).sum())) if missed else 0.0
-        )
+        return missed / self._acting if missed else 0.0
 
     @cached_property
     def _magnitude(self) -> float:
         return float(np.abs(self.pressure).sum()) if self.problem.law else self.total
+
+    @cached_property
+    def _acting(self) -> float:
+        """Σ|p|, or Σ|σ| if that is greater: a law attracts even where the wall bears it all."""
+        if not self.problem.law:
+            return self._magnitude
+        return max(self._magnitude, float(np.abs(self.attraction).sum()))
 
     @cached_property
     def _base(self) -> float:
@@ -441,12 +445,19 @@ def adhesive_scale(problem: Problem, contact: Mask, displacement: Array) -> floa
 
     It is the height range in contact or, if the indenter is flat there, the greatest
     ``displacement`` [m] by the pressure: a surface that is pulled may be far from flat at a depth
-    near 0.
+    near 0. Where wall pressure and attraction cancel, as on a single cell that just touches, the
+    displacement is mere rounding; the length is then the height range of the indenter.
     """
     heights = problem.heights[contact]
     in_contact = float(np.ptp(heights)) if heights.size else 0.0
     greatest = float(np.abs(displacement).max())
-    return in_contact if in_contact > _FLAT * greatest else greatest or 1.0
+    if in_contact > _FLAT * greatest:
+        return in_contact
+    assert problem.law
+    if greatest > _ROUNDING * problem.law.strength() * problem.operator.unit:
+        return greatest
+    indenter = problem.profile[np.isfinite(problem.profile)]
+    return float(np.ptp(indenter)) or 1.0
 
 
 def round_off(problem: Problem, pressure: Array) -> float:

@@ -54,6 +54,18 @@ function download(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
+// Pictures that show what the chosen frame of the first maps shows.
+const followers = [...document.querySelectorAll("figure.follows")].map((figure) => {
+  const data = JSON.parse(figure.querySelector("script").textContent);
+  const image = figure.querySelector("img"), caption = figure.querySelector("figcaption");
+  return (index) => {
+    const { source, caption: text, description } = data.pictures[data.frames[index]];
+    if (image.src !== source) image.src = source;
+    image.alt = description;
+    caption.textContent = text;
+  };
+});
+
 function makeMaps(figure, data) {
   const select = figure.querySelector("select");
   const line = figure.querySelector("input[type=range]");
@@ -95,8 +107,10 @@ function makeMaps(figure, data) {
     select.value = index;
     if (line) line.value = index;
     if (note) note.textContent = wanted.note;
-    if (figure.id === "maps")
+    if (figure.id === "maps") {
       for (const mark of document.querySelectorAll("[data-mark]")) mark.hidden = Number(mark.dataset.mark) !== index;
+      for (const picture of followers) picture(index);
+    }
     paint();
   }
 

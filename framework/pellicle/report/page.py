@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pellicle.files import for_document
 
@@ -108,6 +108,24 @@ class Picture:
     marks: Sequence[Sequence[tuple[float, float]]] = ()
     """Points for each frame of the page's first maps, as shares of width and height from top left;
     those of the frame that is shown are marked."""
+    wide: bool = False
+    """Whether it has the whole width of the page."""
+    by_frame: Sequence[Picture] = ()
+    """Pictures that take its place while a frame of the page's first maps is shown, one for each;
+    it may be one picture for several frames."""
+
+    @property
+    def alternatives(self) -> dict[str, Any]:
+        """The distinct pictures of `by_frame`, and the number of that for each frame."""
+        distinct = list({id(picture): picture for picture in self.by_frame}.values())
+        numbers = {id(picture): number for number, picture in enumerate(distinct)}
+        return {
+            "pictures": [
+                {"source": p.source, "caption": p.caption, "description": p.description}
+                for p in distinct
+            ],
+            "frames": [numbers[id(picture)] for picture in self.by_frame],
+        }
 
     @property
     def source(self) -> str:

@@ -20,7 +20,7 @@ from pellicle.numerics.problem import height_scale
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
-from pellicle.results.variables import CONTACT_AREA, wording
+from pellicle.results.variables import CONTACT_AREA, CORRECTED_AREA, wording
 from pellicle.units import DIGITS, axis_unit, readable
 
 from .style import (
@@ -28,11 +28,11 @@ from .style import (
     NO_CONTACT,
     FigureStyle,
     add_colour_bar,
-    clear_legends,
     colour,
     is_log_spaced,
     is_ordered,
     label_log_axes,
+    lay_out,
 )
 
 if TYPE_CHECKING:
@@ -260,7 +260,7 @@ def area_force(result: Result, axes: Axes) -> None:
     corrected = [
         (str(name), wording(variable).words.removeprefix(f"{CONTACT_AREA}, "), "s--")
         for name, variable in result.dataset.data_vars.items()
-        if str(name).startswith("contact_area_")
+        if str(name).startswith(CORRECTED_AREA)
     ]
     series = [("contact_area", "cells in contact", "o-"), *corrected]
     _curve(result, axes, series, "force")
@@ -529,7 +529,7 @@ def _figure(
         for text in figure.findobj(Text):
             text.set_text(for_document(text.get_text()))
         label_log_axes(figure)
-        clear_legends(figure)
+        lay_out(figure)
         try:
             yield figure
         finally:

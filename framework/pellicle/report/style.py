@@ -153,16 +153,30 @@ def label_log_axes(figure: Figure) -> None:
                 formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
-def clear_legends(figure: Figure) -> None:
-    """Move legends that lie on a curve beside their axes."""
-    legends = [(axes, legend) for axes in figure.axes if (legend := axes.get_legend())]
-    if not legends:
+def lay_out(figure: Figure) -> None:
+    """Give the axes of a figure their places, with legends that lie on a curve beside them.
+
+    The layout is final: matplotlib would draw the whole figure once more for that of each file.
+    """
+    engine = figure.get_layout_engine()
+    if engine is None:
         return
-    figure.draw_without_rendering()
-    for axes, legend in legends:
-        if _covers(axes, legend.get_window_extent()):
+    engine.execute(figure)
+    if _clear_legends(figure):
+        engine.execute(figure)
+    figure.set_layout_engine("none")
+
+
+def _clear_legends(figure: Figure) -> bool:
+    """Move legends that lie on a curve beside their axes; return whether any did."""
+    moved = False
+    for axes in figure.axes:
+        legend = axes.get_legend()
+        if legend and _covers(axes, legend.get_window_extent()):
             legend.set_loc("upper left")
             legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
+            moved = True
+    return moved
 
 
 def _covers(axes: Axes, box: Any) -> bool:

@@ -14,6 +14,7 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.model.expression import evaluate, names_in
 
 from . import storage
+from .axes import with_paths
 from .derived import CELLS, REDUCTIONS, as_array, names
 from .path import with_path
 from .variables import FIELDS, WALL_PRESSURE
@@ -47,7 +48,9 @@ class Runs:
     def of_study(cls, table: xr.Dataset, directory: Path, configuration: str = "{}") -> Runs:
         """Return the runs of the study whose folder is ``directory``."""
         return cls(
-            table, lambda name: storage.read(directory / "runs" / f"{name}.h5"), configuration
+            with_paths(table),
+            lambda name: storage.read(directory / "runs" / f"{name}.h5"),
+            configuration,
         )
 
     @property

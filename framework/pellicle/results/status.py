@@ -34,6 +34,10 @@ class Status(Enum):
         "converged, but slopes in contact reach {slope:.2f}, and the theory is for slopes up to "
         "{most:g}: force and area are those of the model, not of the experiment"
     )
+    JUMPED = (
+        "converged; a part of the contact jumped after the last step{loss}: in between it "
+        "is not in equilibrium; smaller steps show where it jumps"
+    )
     SMALL_DOMAIN = (
         "converged, but the domain of {size} is small for a skin on a solid that relaxes: what the "
         "solid carries beyond it is known in sum only, and force and depth may be off by per cent; "
@@ -98,6 +102,7 @@ class Status(Enum):
             Status.COARSE,
             Status.COARSE_ZONE,
             Status.STEEP,
+            Status.JUMPED,
             Status.SMALL_DOMAIN,
         )
 

@@ -124,6 +124,11 @@ class Steps:
             wall = self._fields["wall_pressure"].values[len(self) - 1]
         return State(pressure, wall, self._scalars[-1]["depth"].item())
 
+    @property
+    def last(self) -> xr.Dataset | None:
+        """The scalars of the last step, or None before the first step."""
+        return self._scalars[-1] if self._scalars else None
+
     def field(self, name: str) -> Array:
         """Return a field at the end of each step, in order; (step, nx, ny), a view."""
         if not self._scalars:

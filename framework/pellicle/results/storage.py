@@ -168,7 +168,12 @@ def fields(path: Path, names: Sequence[str], step: int) -> tuple[dict[str, Any],
         with opened(part) as file:
             count = file["step"].size
             if step < count:
-                return attributes_of(file), [file[name][step] for name in names]
+                # NetCDF has no truth values, and a mask of integers would be an index.
+                arrays = [
+                    file[name][step].astype(bool) if name == "contact" else file[name][step]
+                    for name in names
+                ]
+                return attributes_of(file), arrays
             step -= count
     raise StorageError(f"{path} does not have that many steps; run it again")
 

@@ -97,7 +97,9 @@ _BY_KIND: Mapping[Kind, tuple[tuple[str, str, str] | tuple[str, str, str, Type],
         ("zone_width", "m", "mean distance from the contact to the outer edge of the zone"),
         ("energy", "J", "energy of solid and interaction; NaN on a solid that relaxes"),
         ("force_error", "N", "estimated error of the force, from a wider zone"),
-        ("jumped", "1", "whether all contact was gained or lost in this step", "truth"),
+        ("force_extrapolated", "N", "force at this depth, extrapolated to a zone of no width"),
+        ("jumped", "1", "whether contact jumped in this step, all of it or a part", "truth"),
+        ("jump_energy", "J", "energy that jumps lost in this step; 0 if too little to tell"),
         ("residual_traction", "1", "error of the traction across the gap over all tractions"),
     ),
     "contact": (
@@ -173,7 +175,9 @@ _TITLES = {
     "zone_area": "area of the zone",
     "zone_width": "width of the zone",
     "force_error": "error of the force",
+    "force_extrapolated": "extrapolated force",
     "jumped": "jump",
+    "jump_energy": "energy lost in jumps",
     "pull_off": "pull-off force",
     "pull_off_depth": "depth at pull-off",
     "pull_off_radius": "contact radius at pull-off",
@@ -205,7 +209,7 @@ VARIABLES: Mapping[str, Variable] = {
     for kind, rows in _BY_KIND.items()
     for row in rows
 }
-"""The variables of a result by name, besides contact areas by correction (`corrected_area`)."""
+"""The variables of a result by name, besides those of corrections (`corrected_area`)."""
 
 
 def names_of(*kinds: Kind) -> tuple[str, ...]:
@@ -221,6 +225,9 @@ REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "ite
 
 
 CONTACT_AREA: Final = "contact area"
+CORRECTED_AREA: Final = "contact_area_"
+"""Beginning of the name of an area with a correction, which its type ends."""
+_CORRECTED_FRACTION: Final = "contact_fraction_"
 _SI_DIGITS, _ALL_DIGITS = 6, 15
 
 
@@ -230,11 +237,22 @@ def corrected_area(type_: str, words: str = "") -> Variable:
     ``words`` name the correction in figures and tables, by default those of the type.
     """
     return Variable(
-        f"contact_area_{type_}",
+        f"{CORRECTED_AREA}{type_}",
         "m2",
         f"contact area, {type_} correction",
         "other",
         title=f"{CONTACT_AREA}, {words or words_of_name(type_)} correction",
+    )
+
+
+def corrected_fraction(area: Variable) -> Variable:
+    """Return the variable for a corrected area over the area of the domain."""
+    return Variable(
+        area.name.replace(CORRECTED_AREA, _CORRECTED_FRACTION, 1),
+        "1",
+        f"{area.meaning}, over the area of the domain",
+        "other",
+        title=area.title.replace(CONTACT_AREA, "contact fraction", 1),
     )
 
 
@@ -310,8 +328,10 @@ def _known_words(name: str) -> str:
     """Return words for a variable without them, as in files of earlier versions."""
     if name in VARIABLES:
         return VARIABLES[name].words
-    prefix, _, correction = name.partition("contact_area_")
-    return corrected_area(correction).words if correction and not prefix else words_of_name(name)
+    if not name.startswith((CORRECTED_AREA, _CORRECTED_FRACTION)):
+        return words_of_name(name)
+    area = corrected_area(name.removeprefix(CORRECTED_AREA).removeprefix(_CORRECTED_FRACTION))
+    return (area if name.startswith(CORRECTED_AREA) else corrected_fraction(area)).words
 
 
 def _digits(values: Array, scale: Scale) -> int:

@@ -92,9 +92,10 @@ def run(
     return result
 
 
-def solve(run: Run) -> Result:
-    """Return the result of ``run``; nothing is written or shown."""
-    return execute(run, None, (), Progress(len(run.loading.values), enabled=False)).result
+def solve(run: Run, bar: Bar | None = None) -> Result:
+    """Return the result of ``run``; nothing is written, and shown only by ``bar``."""
+    hidden = Progress(len(run.loading.values), enabled=False)
+    return execute(run, None, (), hidden if bar is None else bar).result
 
 
 class Executed(NamedTuple):

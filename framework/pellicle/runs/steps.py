@@ -24,8 +24,9 @@ from pellicle.numerics.problem import Equilibrium, Stiffness, equilibrium_of, me
 from pellicle.numerics.solution import Stop
 from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable
+from pellicle.results.variables import corrected_fraction
 
-from .adhesion import force_error, greatest_pull
+from .adhesion import asperity_jumped, force_limit, greatest_pull, jump_energy
 from .progress import Bar
 from .relaxation import Relaxation
 from .target_search import Reached, reach
@@ -48,25 +49,29 @@ def solve_steps(
             others = solid.applications
         # Without a name for the solved step, only its copy in ``steps`` outlives the solve.
         yield steps.append(
-            _solved_step(run, here, index, bar.step(index), others).assign_attrs(origin)
+            _solved_step(run, here, steps, bar.step(index), others).assign_attrs(origin)
         )
 
 
 def _solved_step(
-    run: Run, setting: Setting, index: int, monitor: Monitor, applications: int
+    run: Run, setting: Setting, steps: Steps, monitor: Monitor, applications: int
 ) -> xr.Dataset:
-    """Return load step ``index``, counted from 0, solved and judged.
+    """Return the load step after ``steps``, solved and judged.
 
     ``applications`` is the number of operator applications that ``setting`` took.
     """
+    index = len(steps)
     started = time.perf_counter()
     applied = setting.operator.applications
     value, prescription = run.loading.values[index], run.loading.prescription
     step = solve_step(run, setting, value, monitor)
     used = setting.operator.applications - applied + applications
-    error = force_error(run, step.equilibrium, monitor)
+    limit = force_limit(run, step.equilibrium, monitor)
     stiffness = _stiffness(run, step.equilibrium, monitor) if run.loading.stiffness else None
-    status, message = judge(run, index, step, stiffness)
+    lost = jump_energy(steps.last, step.equilibrium) if setting.law else 0.0
+    jumped = step.jumped or lost > 0 or asperity_jumped(setting.state, step.equilibrium)
+    in_part = jumped and not step.jumped and bool(step.equilibrium.contact.any())
+    status, message = judge(run, index, step, stiffness, lost if in_part else None)
     report = report_of(prescription, setting, step.equilibrium)
     report |= {v.name: step.missed for v in prescription.variables if v.name not in report}
     areas = {
@@ -77,12 +82,13 @@ def _solved_step(
     }
     scalars = {
         **{variable.name: area for variable, area in areas.items()},
+        **{corrected_fraction(v).name: area / run.grid.area for v, area in areas.items()},
         **report,
         **({"stiffness": stiffness.value} if stiffness else {}),
         **({"time": run.loading.times[index]} if run.loading.times else {}),
         **({"cycle": run.loading.samples[index].cycle} if run.loading.oscillates else {}),
-        **({"jumped": step.jumped} if setting.law else {}),
-        **({} if error is None else {"force_error": error}),
+        **({"jumped": jumped, "jump_energy": lost} if setting.law else {}),
+        **({"force_extrapolated": limit[0], "force_error": limit[1]} if limit else {}),
         "iterations": step.iterations,
         "operator_applications": used,
         "converged": status.converged,
@@ -90,7 +96,7 @@ def _solved_step(
         "status": message,
         "wall_time": time.perf_counter() - started,
     }
-    added = (*areas, *prescription.variables)
+    added = (*areas, *map(corrected_fraction, areas), *prescription.variables)
     return step_dataset(run.grid, index + 1, step.equilibrium, scalars, added)
 
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from pellicle.components import Monitor, Solver
 from pellicle.components.calls import solution_of
@@ -48,6 +47,8 @@ def reach(setting: Setting, search: Search, solver: Solver, monitor: Monitor) ->
     A bracket grows from the first trial; Brent's method (1973) then finds the root, in log F if the
     control is a force. Every trial starts from the state of the step before.
     """
+    from scipy.optimize import brentq
+
     trials = _Trials(setting, search, solver, monitor)
     low = high = trials.first()
     below = above = trials(low)

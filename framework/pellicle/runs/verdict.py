@@ -26,10 +26,13 @@ _RESOLVED_ACROSS = 4
 _STEEPEST = 0.3
 
 
-def judge(run: Run, index: int, step: Reached, stiffness: Stiffness | None) -> tuple[Status, str]:
+def judge(
+    run: Run, index: int, step: Reached, stiffness: Stiffness | None, lost: float | None
+) -> tuple[Status, str]:
     """Return the status of a step, from its measured residuals, and the message to the user.
 
-    ``index`` counts the steps from 0.
+    ``index`` counts the steps from 0; ``lost`` is the energy [J] that it lost because a part
+    of the contact jumped, 0 if that is not known; None without a jump.
     """
     equilibrium = step.equilibrium
     tolerance = run.solver.tolerance
@@ -89,6 +92,9 @@ def judge(run: Run, index: int, step: Reached, stiffness: Stiffness | None) -> t
         return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
             size="{:g} × {:g} m".format(*run.grid.size), least=needed
         )
+    if lost is not None:
+        loss = f" and lost {readable(lost, 'J', DIGITS)}" if lost > 0 else ""
+        return Status.JUMPED, Status.JUMPED.value.format(loss=loss)
     return Status.CONVERGED, Status.CONVERGED.value
 
 

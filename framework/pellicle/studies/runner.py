@@ -23,6 +23,7 @@ from pellicle.config.study import Study
 from pellicle.errors import ConfigError, ConvergenceWarning, StorageError
 from pellicle.files import check_writable
 from pellicle.results import storage
+from pellicle.results.axes import with_paths, with_python_names
 from pellicle.results.status import Status
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
@@ -108,8 +109,9 @@ def run_study(
     -------
     xarray.Dataset
         The numbers of each step over the varied parameters, which are dimensions, and ``step``;
-        NaN where a step is missing. ``status`` states how a step ended, or why it is missing;
-        ``run`` names the file of a run.
+        NaN where a step is missing. A dimension is the path of its parameter with underscores, so
+        that ``table.sel(kernel_tension=0.03)`` works. ``status`` states how a step ended, or why it
+        is missing; ``run`` names the file of a run.
 
     Raises
     ------
@@ -145,7 +147,9 @@ def run_study(
         ).table
     if message := failures(rows):
         warnings.warn(f"{message}; see status", ConvergenceWarning, stacklevel=2)
-    return add_fields(rows, Path(directory) / "runs") if fields and directory else rows
+    if fields and directory:
+        rows = add_fields(rows, Path(directory) / "runs")
+    return with_python_names(rows)
 
 
 def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
@@ -282,7 +286,7 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
     dataset = storage.table(whole)
     if problem := table.damage(dataset):
         raise StorageError(f"{whole}: {problem}, so it is damaged; run the study again")
-    return dataset, whole.parent
+    return with_paths(dataset), whole.parent
 
 
 def is_table(path: Path) -> bool:

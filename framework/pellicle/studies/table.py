@@ -13,6 +13,7 @@ from pellicle.config.provenance import now_with
 from pellicle.config.study import Study
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
+from pellicle.results.axes import with_python_names
 from pellicle.results.derived import FIRST_RUN, derive
 from pellicle.results.path import with_path
 from pellicle.results.status import Status
@@ -127,7 +128,7 @@ def write(table: xr.Dataset, directory: Path) -> tuple[Path, Path]:
         They cannot be written.
     """
     whole, text = directory / "study.h5", directory / "study.csv"
-    storage.write(table, whole)
+    storage.write(with_python_names(table), whole)
     with atomic_write(text) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         columns = ["run", *table.coords, *(n for n in table.data_vars if n != "run")]

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 from scipy.special import elliprd, elliprf
 
 from pellicle.arrays import Array
@@ -85,6 +84,8 @@ def aspect_ratio(radius_ratio: float) -> float:
     k² = 1 − b²/a² the ratio solves R_min / R_max = (b/a)² D / B (Johnson 1985,
     section 4.2).  D is Carlson's R_D(0, b²/a², 1) / 3, which does not cancel at k = 0.
     """
+    from scipy.optimize import brentq
+
     if radius_ratio == 1:
         return 1.0
 

@@ -16,11 +16,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, lru_cache, partial
 from importlib.resources import as_file, files
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.interpolate import BSpline, make_interp_spline
 
 from pellicle.arrays import Array
 from pellicle.components import ForceCurve, LayerForceCurve
@@ -28,6 +27,9 @@ from pellicle.components import ForceCurve, LayerForceCurve
 from . import master_curves
 from .master_curves import LEAST_DEPTH
 from .stretched_spline import Interpolant, stretched_spline
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 PROFILES = 9
 """Number of odd Chebyshev polynomials of which the Abel slope of a smooth indenter consists."""
@@ -294,6 +296,8 @@ def _nodes(profile: Profile, layer: Layer, a: Array) -> _Nodes:
 @lru_cache(maxsize=64)
 def _splines(profile: Profile, layer: Layer) -> tuple[BSpline, BSpline, float]:
     """Return the change of log P by the layer, its derivatives by s and h, and their last x."""
+    from scipy.interpolate import make_interp_spline
+
     nodes = _nodes(profile, layer, _radii(profile.limit, layer.thickness))
     x, x_rate = profile.stretched(nodes.depth, layer.thickness)
     half_space = profile.half_space(nodes.depth, layer.length)

@@ -23,7 +23,6 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.interpolate import make_interp_spline
 
 from pellicle.arrays import Array, Mask
 from pellicle.components import ContactRadius, ForceCurve
@@ -56,10 +55,15 @@ def _one_variable(name: str) -> Interpolant:
 
 @cache
 def _sphere_coefficients() -> tuple[float, Any, Any]:
+    """Return the last t, Chebyshev coefficients of values and slopes in δ/R, and d/dt of values."""
+    from scipy.interpolate import make_interp_spline
+
     nodes = _table()["sphere"]
     t = np.log1p(np.asarray(nodes["x"]) / SCALE)
-    spline = make_interp_spline(t, np.asarray(nodes["coefficients"]), 5)
-    return float(t[-1]), spline, spline.derivative()
+    values = np.asarray(nodes["coefficients"])
+    slopes = 2 * np.asarray(chebyshev.chebder(values, axis=1))
+    both = make_interp_spline(t, np.concatenate([values, slopes], axis=1), 5)
+    return float(t[-1]), both, make_interp_spline(t, values, 5).derivative()
 
 
 def paraboloid(radius: float, depth: Array, length: float) -> ForceCurve:
@@ -109,6 +113,8 @@ def punch_radius(stiffness: Array, length: float) -> ContactRadius:
 @cache
 def _punch_radii() -> tuple[float, float, Any]:
     """Return log(a/s) of a flat punch as a function of log(k/s), between the first and the last."""
+    from scipy.interpolate import make_interp_spline
+
     radii = np.log(np.geomspace(*_PUNCH_RADII, 600))
     log, _ = _one_variable("flat_punch")(np.exp(-radii))
     size = np.log(2.0) + radii + log
@@ -128,12 +134,12 @@ def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
     at = np.log1p(x / SCALE)
     inside = np.minimum(at, last)
     ratio = np.minimum(d / radius, 1.0)
-    coefficients = spline(inside).T
-    shape = chebyshev.chebval(2 * ratio - 1, coefficients, tensor=False)
-    by_ratio = 2 * chebyshev.chebval(2 * ratio - 1, chebyshev.chebder(coefficients), tensor=False)
-    by_x = np.where(
-        at < last, chebyshev.chebval(2 * ratio - 1, slope(inside).T, tensor=False), 0.0
-    ) / (x + SCALE)
+    both, by_t = spline(inside), slope(inside)
+    count = by_t.shape[1]
+    polynomials = chebyshev.chebvander(2 * ratio - 1, count - 1)
+    shape = np.einsum("ij,ij->i", both[:, :count], polynomials)
+    by_ratio = np.einsum("ij,ij->i", both[:, count:], polynomials[:, :-1])
+    by_x = np.where(at < last, np.einsum("ij,ij->i", by_t, polynomials), 0.0) / (x + SCALE)
     factor = np.exp(ratio * shape)
     force = flat.force * factor
     grows = np.where(d < radius, (shape + ratio * by_ratio) / radius, 0.0)

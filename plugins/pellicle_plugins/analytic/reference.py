@@ -124,12 +124,15 @@ def _numbers(
 ) -> dict[str, float]:
     """Return what the equation gives of the variables of a result; ``domain`` is in m².
 
-    Corrected areas are those of ``simulated``: on a continuous surface none differs.
+    Corrected areas and fractions are those of ``simulated``: on a continuous surface none differs.
     """
     radius = solution.contact_radius if solution else 0.0
     force = solution.force if solution else 0.0
     area = np.pi * radius**2
-    corrected = [str(name) for name in simulated if str(name).startswith("contact_area_")]
+    corrected, fractions = (
+        [str(name) for name in simulated if str(name).startswith(f"{of}_")]
+        for of in ("contact_area", "contact_fraction")
+    )
     return {
         "depth": solution.depth if solution else 0.0,
         "force": force,
@@ -141,6 +144,7 @@ def _numbers(
         "semi_minor_axis": radius,
         "perimeter": 2 * np.pi * radius,
         **dict.fromkeys(["contact_area", *corrected], area),
+        **dict.fromkeys(fractions, area / domain),
     }
 
 

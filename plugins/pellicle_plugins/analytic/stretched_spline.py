@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import make_interp_spline
 
 from pellicle.arrays import Array
 
@@ -19,6 +18,8 @@ def stretched_spline(x: ArrayLike, values: ArrayLike, scale: float) -> Interpola
 
     ``x`` has shape (n,) and increases, ``values`` has shape (n, …).
     """
+    from scipy.interpolate import make_interp_spline
+
     t = np.log1p(np.asarray(x) / scale)
     spline = make_interp_spline(t, values, 5)
     slope = spline.derivative()

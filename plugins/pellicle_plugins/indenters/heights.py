@@ -18,9 +18,9 @@ from pellicle.files import read_text
 from pellicle.grid import shape_of_run
 from pellicle.model.input_path import InputPath
 from pellicle.model.matlab import read_mat
-from pellicle.units import Length
 
 from .from_heights import FromHeights
+from .height_unit import HeightUnit
 from .topography_reader import require_content, require_memory
 
 _BYTES = 10
@@ -44,10 +44,10 @@ class Heights(FromHeights):
         ),
     ] = None
     unit: Annotated[
-        Length,
+        HeightUnit,
         Field(
-            examples=["1 um"],
-            description="length that a height of 1 in the data stands for [m]: '1 um'",
+            examples=["um"],
+            description="length that a height of 1 in the data stands for [m]: 'um'",
         ),
     ]
     dataset: Annotated[

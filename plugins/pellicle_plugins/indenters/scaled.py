@@ -23,7 +23,9 @@ class Scaled(Transformed):
     factor: Annotated[
         float,
         Quantity("1", at_least=0),
-        Field(title="height factor", description="factor of the heights; 0 is flat"),
+        Field(
+            title="height factor", examples=[0.5], description="factor of the heights; 0 is flat"
+        ),
     ]
 
     def profile(self, x: Array, y: Array) -> Array:

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Annotated, Literal
 
 import numpy as np
-import scipy.optimize
 from pydantic import Field
 
 from pellicle import hookimpl
@@ -78,6 +77,8 @@ class Sum(Indenter):
 
     def _summit(self, x: Array, y: Array, smooth: Array) -> float:
         """Return the maximum of the sum of the unbounded parts, at cells or between them."""
+        from scipy.optimize import minimize
+
         unbounded = [part for part in self.parts if part.footprint == "unbounded"]
 
         def heights(px: float, py: float) -> float:
@@ -93,7 +94,7 @@ class Sum(Indenter):
         length, height = np.ptp(xs) + np.ptp(ys), -float(smooth[i, j])
         if height == 0:
             return 0.0
-        summit = scipy.optimize.minimize(
+        summit = minimize(
             lambda shift: -heights(*(start + shift * length)) / height,
             np.zeros(2),
             method="Nelder-Mead",

@@ -10,7 +10,6 @@ from typing import Annotated, ClassVar, Literal, Self, get_args
 import numpy as np
 from numpy.polynomial.legendre import legvander
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
-from scipy.interpolate import make_interp_spline
 
 from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
@@ -21,6 +20,7 @@ from pellicle.model.input_path import InputPath
 from pellicle.units import Length, Quantity
 
 from .from_heights import FromHeights
+from .height_unit import HeightUnit
 from .sampling import UniformAxis
 from .topography_reader import Scan, library, read_scan, require_memory
 
@@ -55,8 +55,8 @@ class Topography(FromHeights):
         str | None, Field(description="name of the data set in a file that holds several")
     ] = None
     unit: Annotated[
-        Length | None,
-        Field(description="length that 1 stands for [m], where the file has no unit: '1 um'"),
+        HeightUnit | None,
+        Field(description="length that 1 stands for [m], where the file has no unit: 'um'"),
     ] = None
     size: Annotated[
         tuple[Length, Length] | None,
@@ -142,6 +142,8 @@ class Topography(FromHeights):
         UserWarning
             Cells are finer than the points of the scan.
         """
+        from scipy.interpolate import make_interp_spline
+
         axes = UniformAxis.of(x.ravel()), UniformAxis.of(y.ravel())
         pitch = [edge / n for edge, n in zip(self._size, self._heights.shape, strict=True)]
         if any(axis.spacing < 0.99 * step for axis, step in zip(axes, pitch, strict=True)):

@@ -23,7 +23,8 @@ class Adhesive(Interaction):
         WorkOfAdhesion, Field(description="energy per area to separate a closed gap [J/m**2]")
     ]
     range: Annotated[
-        Length | None, Field(description="gap at which the traction ends [m]; or strength")
+        Length | None,
+        Field(examples=["20 nm"], description="gap at which the traction ends [m]; or strength"),
     ] = None
     strength: Annotated[
         Strength | None, Field(description="traction that separates a closed gap [Pa]; or range")

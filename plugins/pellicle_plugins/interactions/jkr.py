@@ -44,8 +44,8 @@ class JKR(Interaction):
     estimate_error: Annotated[
         bool,
         Field(
-            description="whether to estimate the error of each force, by solving its step again "
-            "with a wider zone"
+            description="whether to solve each step again with a wider zone, for the error of its "
+            "force and its limit"
         ),
     ] = True
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
 
 from pellicle.components import Kernel
 
@@ -28,6 +27,7 @@ def zone_width(work_of_adhesion: float, strength: float, kernel: Kernel, cell: f
     It is the width for which `softening_strength` gives this strength, between 10⁻³ and 10⁶ times
     the width of a ``cell`` [m].
     """
+    from scipy.optimize import brentq
 
     def excess(log_width: float) -> float:
         return float(

@@ -42,6 +42,7 @@ from pellicle.report.plotting import (
     default_step,
     drawings,
     draws_contact,
+    profile,
     study_curves,
     study_figures,
     svg,
@@ -99,6 +100,8 @@ _STICKING = {
     "gap": FIELDS["gap"],
 }
 """The variables that are mapped where there is an interaction."""
+_PROFILES = 16
+"""Largest number of load steps whose profile is on the page."""
 _CURVES = {
     "profile": "Pressure and gap along x through the centre, at {step}.",
     "force_depth": "Force against depth over the load steps.",
@@ -480,17 +483,32 @@ def _pictures_of(result: Result, chosen: list[int]) -> list[Picture]:
     """Return the curves of a run, with marks at the ``chosen`` steps, which are mapped."""
     fills = {name: fill for name, fill in drawings(result).items() if name in _CURVES}
     several = result.dataset.sizes["step"] > 1
-    shown = default_step(result.dataset) % result.dataset.sizes["step"]
-    step = label_of_step(result.dataset, shown, prescribed_of(result.configuration))
+    marks = partial(_marks, data=result.dataset, chosen=chosen)
     return [
-        _picture(
-            fill,
-            _CURVES[name].format(step=step),
-            partial(_marks, data=result.dataset, chosen=chosen),
-        )
+        _profiles(result, chosen) if name == "profile" else _picture(fill, _CURVES[name], marks)
         for name, fill in fills.items()
         if several or name == "profile"
     ]
+
+
+def _profiles(result: Result, chosen: list[int]) -> Picture:
+    """Return the profile of a step, and those that take its place while another is mapped.
+
+    Where many steps are mapped, some have the profile of the nearest one, as the caption says.
+    """
+    prescribed = prescribed_of(result.configuration)
+    count = -(-len(chosen) // _PROFILES)
+
+    def picture(index: int) -> Picture:
+        caption = _CURVES["profile"].format(step=label_of_step(result.dataset, index, prescribed))
+        return _picture(lambda figure: profile(result, figure.add_subplot(), index), caption)
+
+    # The last step is drawn, and every `count`-th before it.
+    drawn = {index: picture(index) for index in chosen[::-1][::count]}
+    frames = [drawn[min(drawn, key=lambda one: abs(one - index))] for index in chosen]
+    shown = default_step(result.dataset) % result.dataset.sizes["step"]
+    first = drawn[min(drawn, key=lambda one: abs(one - shown))]
+    return replace(first, by_frame=frames if len(drawn) > 1 else ())
 
 
 def _pictures_of_study(table: xr.Dataset) -> list[Picture]:

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 _STYLES = {"indenter": "--", "displacement": "-"}
 _HEADS = "curve", "series", "wavenumber [rad/m]", "density [m4]", "wave_vectors"
-_ROUND_OFF = 1e-24
+_ROUND_OFF = 1e-18
+"""Density over the highest below which a ring holds round-off: waves 1e-9 times as high."""
 _Curves = list[tuple[Label, dict[str, analysis.Spectrum]]]
 
 
@@ -55,7 +56,6 @@ class Spectrum(TableFigure):
         )
         for number, (name, spectra) in enumerate(curves):
             for surface, spectrum in spectra.items():
-                # Rings that hold nothing but round-off would set the scale.
                 shown = spectrum.density > _ROUND_OFF * highest
                 axes.plot(
                     spectrum.wavenumber[shown],

@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 import scipy.fft
-from scipy.ndimage import distance_transform_edt
 
 from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
@@ -94,12 +93,13 @@ class _Round:
         contact, gap = self.contact, self.gap
         closed = np.abs(gap[contact])
         error = max(float(closed.max(initial=0.0)), -float(gap.min(initial=0.0, where=~contact)))
-        magnitude = float(np.abs(self.wall + self.traction).sum())
+        # The law attracts even where the wall bears it all and there is no pressure.
+        magnitude = max(
+            float(np.abs(self.wall + self.traction).sum()), float(np.abs(self.exerted).sum())
+        )
         missed = work = 0.0
         if magnitude:
             work = float((np.abs(self.wall[contact]) * closed).sum()) / magnitude / self.scale
-        # Without any pressure the law may still attract.
-        if magnitude := max(magnitude, float(np.abs(self.exerted).sum())):
             missed = float(np.abs(self.missed).sum()) / magnitude
         return max(error / self.scale, missed, work, 0.0 if self.settled else _UNSETTLED)
 
@@ -365,6 +365,8 @@ def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> Array
     along the front resist with w|κ|; on the plane this is the potential of charges in two
     dimensions.
     """
+    from scipy.ndimage import distance_transform_edt
+
     problem, contact = state.problem, state.contact
     law, grid = problem.law, problem.grid
     assert law

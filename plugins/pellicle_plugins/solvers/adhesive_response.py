@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, gmres
 
 from pellicle.arrays import Array
 from pellicle.numerics.operators import Operator
@@ -24,6 +23,8 @@ def with_zone(
     obeys v = dσ/dg (u − 1), u being the displacement by v and by the pressure that keeps the
     contact closed: a linear system on the zone, solved by GMRES (Saad & Schultz 1986).
     """
+    from scipy.sparse.linalg import LinearOperator, gmres
+
     cells = np.flatnonzero(slope)
     at_rest = closing(np.zeros(slope.shape))
     if not cells.size:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import Result
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import pellicle as pl
@@ -20,6 +21,7 @@ from pellicle.fitting.models import simulation
 from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.models.interpolated import SimulatedCurve
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates
+from pellicle.fitting.report.figures import curves as draw_curves
 from pellicle.fitting.report.page import save_report
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.pooled_likelihood import Pool
@@ -272,6 +274,14 @@ def test_simulated_curves_widen(measured: dict[str, tuple[Array, Array]]) -> Non
     low, high = ends[1][MODULUS]
     assert low is not None
     assert high == -low == pytest.approx(np.log(1.01), rel=0.05)
+
+
+def test_curves_are_told_apart_without_colour(fit: pl.PooledFit) -> None:
+    """The models of a pool's curves differ in their dashes, not in their colours alone."""
+    axes = Figure().add_subplot()
+    draw_curves(fit, axes)
+    styles = [line.get_linestyle() for line in axes.lines if line.get_linestyle() != "None"]
+    assert len(styles) == len(set(styles)) == len(RADII)
 
 
 def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Result]) -> None:

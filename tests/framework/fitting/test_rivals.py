@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 import fit_rivals
 import numpy as np
 import pytest
@@ -22,6 +25,8 @@ from pellicle.fitting.models.relaxing import (
     StandardLinearModel,
 )
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Values
+from pellicle.fitting.report.answer import answer
+from pellicle.fitting.report.page import save_report
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
@@ -156,7 +161,7 @@ def test_two_speeds_show_relaxation() -> None:
     """Two approaches of a solid that relaxes, at two speeds, need no tension."""
     solid = sample("power law", 2)
     curves = [solid.measured(path(rate=rate)) for rate in (1.0, 0.1)]
-    thin = [fit_rivals.Curve(*(column[::5] for column in curve)) for curve in curves]
+    thin = [fit_rivals.Curve(c.position[::5], c.force[::5], c.time[::5]) for c in curves]
     pool = fit_rivals.pooled(solid, thin)
     assert pool.rivals is not None
     assert pool.rivals.verdict == "other"
@@ -175,3 +180,30 @@ def test_comparison_in_full() -> None:
     assert [m["delta_aic"] for m in models] == sorted(m["delta_aic"] for m in models)
     assert models[0]["parameters"]["reduced_modulus"]["high"] is not None
     assert len(fit.rivals.rows()) == len(models)
+
+
+def test_the_chosen_model_is_the_answer(tmp_path: Path) -> None:
+    """Adhesion that beats tension gives the answer, JSON, the page, and W of many curves."""
+    solid = sample("adhesion", 4)
+    measured = solid.measured(path("both"))
+    file = tmp_path / "bead.csv"
+    table = np.column_stack([measured.position * 1e6, measured.force * 1e9])[::5]
+    np.savetxt(file, table, delimiter=",", header="position [um],force [nN]", comments="")
+    options: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS, "segment": "retract"}
+    fit = pl.fit(file, **options)
+    chosen = fit.to_dict()["chosen"]
+    assert chosen["model"] == "adhesion"
+    assert chosen["settled"]
+    modulus = chosen["parameters"]["reduced_modulus"]
+    assert modulus["low"] < MODULUS_ < modulus["high"]
+    assert answer(fit).endswith(", with 95 % intervals, by adhesion.")
+    assert fit.rivals is not None
+    assert "1.5 πWR: between the limits" in fit.rivals.pull_off
+    save_report(fit, tmp_path / "page.html", "bead")
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert answer(fit).split(" (")[0] in page
+    assert fit.rivals.pull_off[1:] in page
+    many = pl.fit_many(file, progress=False, **options)
+    work = float(many["work_of_adhesion"][0])
+    assert work == chosen["parameters"]["work_of_adhesion"]["value"]
+    assert str(many["chosen_model"].values[0]) == "adhesion"

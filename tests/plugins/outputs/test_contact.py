@@ -12,8 +12,10 @@ from xml.etree import ElementTree as Xml
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import pellicle as pl
+from pellicle_plugins.outputs.spectrum import Spectrum, _spectra
 
 OUTPUTS = (
     {"type": "patches", "by": "step"},
@@ -98,6 +100,20 @@ def test_spectrum_holds_the_roughness(left: Left) -> None:
             table = rows(folder / "rough-spectrum.csv", curve=f"step = {step + 1}", series=series)
             power = column(table, "density [m4]") @ column(table, "wave_vectors")
             assert power / result.grid.area == pytest.approx(expected, rel=1e-9)
+
+
+def test_round_off_does_not_set_the_scale_of_a_spectrum(left: Left) -> None:
+    """Beyond its shortest wave the indenter has round-off alone, which is not drawn."""
+    _, result = left
+    output = Spectrum()
+    steps = output.steps(pl.Runs.of_run(result.dataset))
+    curves = [(name, _spectra(step)) for name, step in steps]
+    axes = Figure().add_subplot()
+    output._fill(axes, curves, False)
+    indenter = curves[0][1]["indenter"].density
+    assert indenter.min() < 1e-20 * indenter.max()
+    low, high = axes.get_ylim()
+    assert low > 1e-20 * high
 
 
 def decoded(array: Xml.Element) -> np.ndarray:

@@ -53,9 +53,9 @@ def test_curves_are_mean_and_range_of_the_table(tmp_path: Path) -> None:
     )
     table_rows = rows(tmp_path / "study-curves.csv")
     for name, expected in (
-        ("y", table["force"].mean(RADIUS)),
-        ("y_lowest", table["force"].min(RADIUS)),
-        ("y_highest", table["force"].max(RADIUS)),
+        ("y", table["force"].mean("indenter_radius")),
+        ("y_lowest", table["force"].min("indenter_radius")),
+        ("y_highest", table["force"].max("indenter_radius")),
     ):
         drawn = [float(row[name]) for row in table_rows]
         np.testing.assert_allclose(drawn, expected.values.ravel(), rtol=1e-14)
@@ -139,7 +139,9 @@ def test_fields_are_reduced_for_each_run(tmp_path: Path) -> None:
     table = carried(tmp_path)
     spacing = 0.4e-3 / 16
     drawn = [float(row["y"]) * spacing**2 for row in rows(tmp_path / "study-curves.csv")]
-    np.testing.assert_allclose(drawn, table["force"].mean(RADIUS).values.ravel(), rtol=1e-12)
+    np.testing.assert_allclose(
+        drawn, table["force"].mean("indenter_radius").values.ravel(), rtol=1e-12
+    )
 
 
 def test_semi_analytic_twin_is_only_of_what_has_one(tmp_path: Path) -> None:

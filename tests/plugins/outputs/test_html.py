@@ -96,9 +96,18 @@ class Page(HTMLParser):
     @property
     def maps(self) -> dict[str, Any]:
         """The data of the maps."""
-        (text,) = (text for text in self.texts["script"] if text.startswith("{"))
-        data: dict[str, Any] = json.loads(text)
-        return data
+        return self.script("fields")
+
+    @property
+    def profiles(self) -> dict[str, Any]:
+        """The pictures that follow the maps."""
+        return self.script("pictures")
+
+    def script(self, key: str) -> dict[str, Any]:
+        """Return the data of a script that has a key."""
+        scripts = [json.loads(text) for text in self.texts["script"] if text.startswith("{")]
+        (data,) = (script for script in scripts if key in script)
+        return dict(data)
 
     @property
     def words(self) -> str:
@@ -247,6 +256,28 @@ def test_marks_are_on_the_curves(ran: tuple[Path, xr.Dataset]) -> None:
     assert marked == 2
 
 
+def test_the_profile_is_that_of_each_mapped_step(ran: tuple[Path, xr.Dataset]) -> None:
+    """Each frame of the maps has the profile of its step; that of the last is shown first."""
+    profiles = Page(ran[0]).profiles
+    captions = [profiles["pictures"][number]["caption"] for number in profiles["frames"]]
+    assert [caption.partition(", at ")[2] for caption in captions] == [
+        "depth 5 µm.",
+        "depth 10 µm.",
+    ]
+    assert len({picture["source"] for picture in profiles["pictures"]}) == 2
+
+
+def test_of_many_steps_some_profiles_are_drawn(tmp_path: Path) -> None:
+    """With more mapped steps than profiles a frame shows the nearest, which its caption names."""
+    few = {**RUN, "grid": {"points": 16, "size": "0.4 mm"}, "corrections": []}
+    steps = {"loading": {"depth": {"start": "5 um", "stop": "9 um", "num": 18}}}
+    pl.run(few | steps, directory=tmp_path, progress=False)
+    profiles = Page(next(tmp_path.glob("*.html"))).profiles
+    assert len(profiles["pictures"]) == 9
+    assert len(profiles["frames"]) == 18
+    assert profiles["pictures"][profiles["frames"][-1]]["caption"].endswith("depth 9 µm.")
+
+
 def test_what_was_prescribed_is_named(tmp_path: Path) -> None:
     """The list of steps, the caption of the maps and the answer name a prescribed force."""
     page = page_of(tmp_path, loading={"force": ["1 uN", "2 uN"]})
@@ -349,7 +380,7 @@ def test_study(studied: tuple[Path, xr.Dataset]) -> None:
     page = Page(path)
     rows = page.table("The last load step of each run")
     assert len(rows) == 2
-    flat = [table.isel({"indenter.radius": index, "step": -1}) for index in range(2)]
+    flat = [table.isel(indenter_radius=index, step=-1) for index in range(2)]
     for row, run in zip(rows, flat, strict=True):
         assert run["run"].item().startswith(row["file"].removesuffix("…"))
         assert (row["steps"], row["status"]) == ("2/2", "converged")
@@ -532,7 +563,7 @@ def saved(browser: Chrome, ending: str) -> list[int]:
 def test_browser_shows_tables_whole_on_a_narrow_screen(
     browser: Chrome, ran: tuple[Path, xr.Dataset]
 ) -> None:
-    """At 400 px neither the page nor any table is wider than the window, each value with a head."""
+    """At 400 px neither page nor tables and code are cut, and each value has its head."""
     size = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": False}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     try:
@@ -541,14 +572,38 @@ def test_browser_shows_tables_whole_on_a_narrow_screen(
             "return [document.documentElement, ...document.querySelectorAll('.scroll')]"
             ".filter((part) => part.scrollWidth > part.clientWidth).length"
         )
+        high = browser.execute_script(
+            "return [...document.querySelectorAll('.scroll, .code pre')]"
+            ".filter((part) => part.scrollHeight > part.clientHeight + 1).length"
+        )
         heads = browser.execute_script(
             "return [...document.querySelectorAll('td')].map((cell) => cell.dataset.label)"
         )
     finally:
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
-    assert wide == 0
+    assert (wide, high) == (0, 0)
     assert all(heads)
     assert "depth [µm]" in heads
+
+
+def test_browser_prints_both_maps_side_by_side(
+    browser: Chrome, ran: tuple[Path, xr.Dataset]
+) -> None:
+    """On paper of 190 mm the maps share a row; one below the other they would fill two pages."""
+    size = {"width": 718, "height": 1000, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    try:
+        show(browser, ran[0])
+        tops = browser.execute_script(
+            "return [...document.querySelectorAll('.panel')]"
+            ".map((part) => part.getBoundingClientRect().top)"
+        )
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+        browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert len(tops) == 2
+    assert tops[0] == tops[1]
 
 
 def shown_marks(browser: Chrome) -> set[str]:
@@ -623,6 +678,12 @@ def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset]) -> N
     WebDriverWait(browser, 20).until(lambda _: picture(browser) != before)
     assert shown_marks(browser) == {"0"}
     assert browser.find_element(By.CSS_SELECTOR, ".note").text.startswith("At depth 5 µm: force")
+    profile = browser.find_element(By.CSS_SELECTOR, "figure.follows")
+    assert profile.text == "Pressure and gap along x through the centre, at depth 5 µm."
+    of_first = profile.find_element(By.CSS_SELECTOR, "img").get_attribute("src")
+    select.send_keys(Keys.ARROW_DOWN)
+    WebDriverWait(browser, 20).until(lambda _: profile.text.endswith("at depth 10 µm."))
+    assert profile.find_element(By.CSS_SELECTOR, "img").get_attribute("src") != of_first
     browser.find_element(By.CSS_SELECTOR, "input").click()
     assert errors(browser) == []
     # A map fills a good part of the window.

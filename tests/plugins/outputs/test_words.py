@@ -18,6 +18,9 @@ from matplotlib.text import Text
 
 import pellicle as pl
 from pellicle.config.coordinates import Coordinate, tell_apart
+from pellicle.fitting.curves.readers import SourceStream
+from pellicle.fitting.many import fit_sources
+from pellicle.fitting.report.page import save_report
 from pellicle.model.paths import walk
 from pellicle.results.variables import VARIABLES, wording
 from pellicle_plugins.outputs.base import scaled
@@ -108,8 +111,11 @@ class Visible(HTMLParser):
 def labels_of_maps(page: str) -> list[str]:
     """Return the texts that the script of a page shows: names and labels of maps."""
     shown = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', page, re.DOTALL)
-    maps = [json.loads(data) for data in shown]
+    scripts = [json.loads(data) for data in shown]
+    maps = [data for data in scripts if "fields" in data]
+    pictures = [picture for data in scripts for picture in data.get("pictures", ())]
     return [
+        *(picture[text] for picture in pictures for text in ("caption", "description")),
         *(field["name"] for data in maps for field in data["fields"]),
         *(frame["label"] for data in maps for frame in data["frames"]),
     ]
@@ -163,6 +169,74 @@ def test_no_page_has_a_key(drawn: tuple[list[str], Path, Path]) -> None:
         texts = [*Visible(page).texts, *labels_of_maps(page)]
         assert "surface tension" in texts
         assert keys(texts, RUN) == set()
+
+
+STICKING: dict[str, Any] = {
+    "grid": {"points": 24, "size": "20 um"},
+    "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
+    "indenter": {"type": "paraboloid", "radius": "20 um"},
+    "interaction": {"type": "linear", "work_of_adhesion": "0.5 mJ/m^2", "range": "0.3 um"},
+    "loading": {"depth": {"start": "0.2 um", "stop": "0.6 um", "num": 3, "back": True}},
+    "outputs": [{"type": "figures"}, {"type": "html"}],
+}
+RELAXING: dict[str, Any] = {
+    "grid": {"points": 24, "size": "20 um"},
+    "kernel": {
+        "type": "viscoelastic",
+        "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
+        "relaxation": [{"fraction": 0.5, "time": "1 s"}],
+    },
+    "indenter": {"type": "paraboloid", "radius": "20 um"},
+    "loading": {
+        "depth": [
+            {"to": "0.5 um", "time": "1 s", "num": 2},
+            {"amplitude": "50 nm", "frequency": "1 Hz", "cycles": 1, "num": 8},
+        ]
+    },
+    "outputs": [{"type": "figures"}, {"type": "html"}],
+}
+
+
+# Cells of a quick test are wide for the zone; what is drawn is not less.
+@pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
+@pytest.mark.parametrize(
+    ("run", "word"),
+    [(STICKING, "work of adhesion"), (RELAXING, "storage stiffness K′")],
+    ids=["adhesion", "oscillation"],
+)
+def test_adhesion_and_time_are_in_words(run: dict[str, Any], word: str, tmp_path: Path) -> None:
+    """Figures and pages with a path that sticks, or with times and an oscillation, have no key."""
+    with pytest.MonkeyPatch.context() as monkeypatch, texts_drawn(monkeypatch) as texts:
+        pl.run(run, directory=tmp_path, progress=False, threads=1)
+    page = next(tmp_path.glob("*.html")).read_text(encoding="utf-8")
+    shown = [*Visible(page).texts, *labels_of_maps(page)]
+    assert len(texts) > 50
+    assert word in " ".join(shown)
+    assert keys([*texts, *shown], run) == set()
+
+
+def test_fits_and_populations_are_in_words(tmp_path: Path) -> None:
+    """Nor have figures and pages of one curve, a pool and a population, nor what notebooks show."""
+    bead, random = pl.indenter("sphere", radius="5 um"), np.random.default_rng(2)
+    depth = np.linspace(-0.5e-6, 1.5e-6, 120)
+    curves = {}
+    for name, modulus in (("a1", 2e3), ("a2", 2.1e3), ("b1", 3e3)):
+        force = modulus * bead.force_curve(depth, 3e-6).force  # type: ignore[attr-defined]
+        curves[name] = depth, force + 0.01 * force.max() * random.standard_normal(depth.size)
+    config = pl.FitConfig(indenter=bead, poissons_ratio=0.5)
+    fits = fit_sources(config, SourceStream(config.files(curves)), None, progress=False)
+    pool = pl.fit_pooled(curves, indenter=bead, poissons_ratio=0.5, progress=False)
+    one = pl.fit(*curves["a1"], indenter=bead, poissons_ratio=0.5)
+    shown = []
+    with pytest.MonkeyPatch.context() as monkeypatch, texts_drawn(monkeypatch) as texts:
+        for fit in (one, pool, fits):
+            page = save_report(fit, tmp_path / "fit.html", "Beads").read_text(encoding="utf-8")
+            shown += [*Visible(page).texts, *Visible(fit._repr_html_()).texts]
+    text = " ".join(shown)
+    assert len(texts) > 100
+    assert "3 of 3 curves were fitted. Median: Young's modulus" in text
+    assert "Fit of 3 curves" in text
+    assert keys([*texts, *shown], {}) == set()
 
 
 def test_the_walk_finds_keys() -> None:

@@ -21,8 +21,8 @@ WORK_OF_ADHESION = Parameter(
     "work_of_adhesion", "J/m^2", logarithmic=True, shared=True, plausible=(1e-7, 10.0)
 )
 """w."""
-_SEARCH, _NODES = 160, 120
-"""Nodes of the search for the instability, and of the branch above it."""
+_SEARCH, _BEYOND, _NODES = 160, 24, 120
+"""Nodes of the search for the instability, below and above a depth, and of the branch above it."""
 _DECADES = 6.0
 """Range of depths without adhesion that is searched, below the largest."""
 _STEP = 1e-4
@@ -67,6 +67,8 @@ class AdhesiveModel:
     """Spring constant of the cantilever [N/m]; None if it is infinite or not known."""
     parameters: ClassVar[tuple[Parameter, ...]] = (MODULUS, TENSION, WORK_OF_ADHESION)
     coarse: ClassVar[None] = None
+    is_sudden: ClassVar[bool] = True
+    """The rows at first touch weigh so much that χ² depends on which of them touch."""
     on_base: ClassVar[bool] = True
     accuracy: ClassVar[float] = 1e-5
 
@@ -123,46 +125,59 @@ class AdhesiveModel:
         work, modulus = values[WORK_OF_ADHESION], values[MODULUS]
         tiny = float(np.finfo(float).tiny) ** 0.25
         scale = max(deepest, work / modulus, tiny)
-        top = np.log(scale)
-        for _ in range(200):
-            position, force = self._equilibria(np.array([np.exp(top)]), values)
-            if position[0] > deepest and force[0] > 0:
-                break
-            top += 0.3
-        else:
-            raise ConfigError(
-                f"of {work:.3g} J/m² pulls a solid of {modulus:.3g} Pa out without end",
-                "work_of_adhesion",
-            )
-        grid = np.linspace(top - _DECADES * np.log(10), top, _SEARCH)
-        position, _ = self._equilibria(np.exp(grid), values)
-        index = int(np.argmin(position))
-        start = float(grid[index])
-        if 0 < index < _SEARCH - 1:
-            width = float(grid[1] - grid[0])
-            for _ in range(3):
-                at = start + width * np.array([-1.0, 0.0, 1.0])
-                below, middle, above = self._equilibria(np.exp(at), values)[0].tolist()
+        grid, position = self._searched(float(np.log(scale)), deepest, values)
+        top, index = float(grid[-1]), int(np.argmin(position))
+        start, width = float(grid[index]), float(grid[1] - grid[0])
+        if 0 < index < grid.size - 1:
+            around = position[index - 1 : index + 2]
+            for number in range(2):
+                if number:
+                    at = start + width * np.array([-1.0, 0.0, 1.0])
+                    around, _ = self._equilibria(np.exp(at), values)
+                below, middle, above = around.tolist()
                 bend = below - 2 * middle + above
                 if bend > 0:
                     start += width * float(np.clip((below - above) / (2 * bend), -1.0, 1.0))
                 width /= 10
         nodes = np.exp(start + (top - start) * np.linspace(0, 1, _NODES) ** 2)
-        position, force = self._equilibria(nodes, values)
-        changes = []
-        for parameter in (MODULUS, TENSION):
-            step = _STEP * values[parameter]
-            if parameter == TENSION:
-                step = max(step, 1e-5 * modulus * scale)
-            other = {**values, parameter: values[parameter] + step}
-            varied = self._equilibria(nodes, other)
-            changes.append(((varied[0] - position) / step, (varied[1] - force) / step))
-        elastic, retraction = self._superposed(nodes, values)
-        by_work = -retraction / (2 * work)
-        by_force = elastic.by_depth * modulus * by_work
         softness = 0.0 if self.stiffness is None else 1 / self.stiffness
-        changes.append((by_work + softness * by_force, by_force))
-        return _Branch(position, force, tuple(changes))
+        elastic, retraction = self._superposed(nodes, values)
+        force = modulus * (elastic.force - elastic.by_depth * retraction)
+        tension = values[TENSION]
+        step = max(_STEP * tension, 1e-5 * modulus * scale)
+        varied, other = self._superposed(nodes, {**values, TENSION: tension + step})
+        by_tension = (
+            -(other - retraction) / step,
+            (modulus * (varied.force - varied.by_depth * other) - force) / step,
+        )
+        by_work = -retraction / (2 * work), -elastic.by_depth * modulus * retraction / (2 * work)
+        # At equal depths forces are homogeneous in E*, τ₀ and w, of degree 1, and D of degree 0.
+        depth_by, force_by = (
+            (tension * t + work * w) / modulus for t, w in zip(by_tension, by_work, strict=True)
+        )
+        by_modulus = -depth_by, force / modulus - force_by
+        changes = tuple(
+            (depth + softness * change, change)
+            for depth, change in (by_modulus, by_tension, by_work)
+        )
+        return _Branch(nodes - retraction + softness * force, force, changes)
+
+    def _searched(self, start: float, deepest: float, values: Values) -> tuple[Array, Array]:
+        """Return logarithms of depths without adhesion, and base positions [m] up to one beyond."""
+        step = _DECADES * float(np.log(10)) / _SEARCH
+        grid = np.asarray(start + step * np.arange(-_SEARCH, _BEYOND), dtype=np.float64)
+        for _ in range(80):
+            position, force = self._equilibria(np.exp(grid), values)
+            beyond = (position > deepest) & (force > 0)
+            last = _SEARCH + int(np.argmax(beyond[_SEARCH:]))
+            if beyond[last]:
+                return grid[: last + 1], position[: last + 1]
+            grid = grid + step * (_BEYOND - 1)
+        raise ConfigError(
+            f"of {values[WORK_OF_ADHESION]:.3g} J/m² pulls a solid of {values[MODULUS]:.3g} Pa out "
+            "without end",
+            "work_of_adhesion",
+        )
 
     def _superposed(self, depth: Array, values: Values) -> tuple[Any, Array]:
         """Return the contact without adhesion over E*, and the retraction D [m]."""

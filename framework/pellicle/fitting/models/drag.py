@@ -28,6 +28,8 @@ class DragModel:
     elastic: TensionModel
     history: History
     coarse: ClassVar[None] = None
+    is_sudden: ClassVar[bool] = True
+    """The rows at first touch weigh so much that χ² depends on which of them touch."""
     on_base: ClassVar[bool] = False
 
     @property

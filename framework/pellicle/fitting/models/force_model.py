@@ -9,7 +9,10 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pellicle.arrays import Array
 from pellicle.components import Component, ForceCurve, HasForceCurve
@@ -71,6 +74,14 @@ class ForceModel(Protocol):
 
     def description(self) -> dict[str, Any]:
         """Return indenter and solid as JSON data."""
+
+
+@runtime_checkable
+class HasRows(Protocol):
+    """A force model that belongs to the rows of one curve."""
+
+    def at_rows(self, rows: NDArray[np.intp]) -> ForceModel:
+        """Return the model of some of the rows."""
 
 
 class TensionModel(ForceModel, ABC):

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Mask
 
@@ -65,6 +66,15 @@ class History:
         deepest = loading[1][-1]
         near = loading[1] >= deepest - _DWELL * (deepest - loading[1][0])
         return cls(time, mask, velocity, loading, unloading, float(loading[0][np.argmax(near)]))
+
+    def at_rows(self, rows: NDArray[np.intp]) -> History:
+        """Return the same path with some of the rows."""
+        return replace(
+            self,
+            time=self.time[rows],
+            unloading=self.unloading[rows],
+            velocity=self.velocity[rows],
+        )
 
     def contact_time(self, contact_point: float) -> float:
         """Return when the indenter passes a position on loading; extrapolated before the first."""

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Parameter, Values
@@ -87,7 +88,7 @@ class RelaxingModel(ABC):
         """Return force and derivatives at depths [m] of the rows, of shape (n,)."""
         point = values[CONTACT_POINT]
         course = self._course(point, values)
-        force, by_depth, by_modulus, by_tension = self._at(course, depth, point, values)
+        force, by_depth, by_modulus, by_tension, by_path = self._at(course, depth, point, values)
         derivatives = {
             MODULUS: by_modulus * course.modulus,
             TENSION: by_tension,
@@ -101,20 +102,32 @@ class RelaxingModel(ABC):
                 step *= values[parameter]
             other = {**values, parameter: values[parameter] + step}
             varied = self._course(other[CONTACT_POINT], other)
-            shifted = self._at(varied, depth, point, values)[0]
-            derivatives[parameter] = (shifted - force) / step
+            # The course alone depends on these parameters, the force curve does not.
+            change = by_modulus * values[MODULUS] * (varied.modulus - course.modulus)
+            path = self._path(varied, depth) - self._path(course, depth)
+            derivatives[parameter] = (change + by_path * path) / step
         return ModelForce(force, by_depth, derivatives)
+
+    def at_rows(self, rows: NDArray[np.intp]) -> RelaxingModel:
+        """Return the model of some of the rows."""
+        return replace(self, history=self.history.at_rows(rows))
+
+    def _path(self, course: Course, depth: Array) -> Array:
+        """Return the depth [m] at which the growing contact was as large as at each row."""
+        # The path is smoothed, and the row itself lies beside it.
+        path: Array = np.where(
+            self.history.unloading, course.depth + course.by_depth * depth, depth
+        )
+        return path
 
     def _at(
         self, course: Course, depth: Array, point: float, values: Values
-    ) -> tuple[Array, Array, Array, Array]:
-        """Return force and derivatives by depth, effective modulus and tension."""
+    ) -> tuple[Array, Array, Array, Array, Array]:
+        """Return force and derivatives by depth, effective modulus, tension and `_path`."""
         modulus, tension = values[MODULUS], values[TENSION]
-        unloading = self.history.unloading
-        # The path is smoothed, and the row itself lies beside it.
-        path = np.where(unloading, course.depth + course.by_depth * depth, depth)
+        path = self._path(course, depth)
         effective = modulus * course.modulus
-        chain = np.where(unloading, course.by_depth, 1.0)
+        chain = np.where(self.history.unloading, course.by_depth, 1.0)
         if not tension:
             curve = self.elastic.force_curve(path, 0.0)
             return (
@@ -122,6 +135,7 @@ class RelaxingModel(ABC):
                 effective * curve.by_depth * chain,
                 curve.force,
                 2 * curve.by_length,
+                effective * curve.by_depth,
             )
         low, high = float(effective.min()), float(effective.max())
         if high <= low * (1 + 1e-9):
@@ -139,7 +153,8 @@ class RelaxingModel(ABC):
             force[1] += weight * curve.by_depth
             force[2] += weight * (curve.force - length * curve.by_length)
             force[3] += weight * 2 * curve.by_length
-        return effective * force[0], effective * force[1] * chain, force[2], force[3]
+        by_path = effective * force[1]
+        return effective * force[0], by_path * chain, force[2], force[3], by_path
 
     def _course(self, point: float, values: Values) -> Course:
         """Return the response of the solid to the path from a contact point on."""

@@ -49,7 +49,9 @@ def distributions(rows: Sequence[Row], figure: FigureBase) -> None:
     if len(fitted) == 2:
         _scatter(columns[-1], rows, kinds)
     if len(labels) > 1:
-        columns[0].legend(fontsize="small")
+        handles, names = columns[0].get_legend_handles_labels()
+        # Inside the axes it would lie on bars, and beside them on the next axes.
+        figure.legend(handles, names, loc="outside upper center", ncols=_GROUPS, fontsize="small")
 
 
 def _values(rows: Sequence[Row], parameter: Parameter) -> tuple[Array, str]:

@@ -30,6 +30,7 @@ from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
 from pellicle.fitting.statistics.profile import Estimate
 from pellicle.report.plotting import save_figure as save_drawing
+from pellicle.report.style import LINES
 from pellicle.units import axis_unit
 
 from . import distributions
@@ -175,7 +176,13 @@ def curves(fit: PooledFit, axes: Axes) -> None:
         measured = _relative_depth(member, member.position, parameters)
         axes.plot(measured, data, ".", color=f"C{number}", alpha=0.3, markersize=2)
         depth = _relative_depth(member, position, parameters)
-        axes.plot(depth, model, color=f"C{number}", label=fit.curves[number].name)
+        axes.plot(
+            depth,
+            model,
+            LINES[number % len(LINES)],
+            color=f"C{number}",
+            label=fit.curves[number].name,
+        )
     axes.set_ylabel("force / largest force")
     if len(fit.curves) <= _LEGEND_CURVES:
         axes.legend(fontsize="small")
@@ -231,7 +238,7 @@ def likelihood_map(fit: Fit, axes: Axes) -> None:
 def _mark_interval(estimate: Estimate, scale: float, line: Callable[..., object]) -> None:
     for end in (estimate.low, estimate.high):
         if end is not None:
-            line(end * scale, color="C3", linewidth=0.8, linestyle=":")
+            line(end * scale, color="0.2", linewidth=1.0, linestyle=":")
 
 
 def _likelihood_grid(fit: Fit) -> tuple[Array, Array, Array]:

@@ -18,12 +18,13 @@ from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.result import FitResult, as_json
 from pellicle.fitting.statistics.profile import CONFIDENCE
+from pellicle.fitting.wording import interval, scale, words
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
 from pellicle.report.plotting import svg
 from pellicle.units import axis_unit, readable
 
-from .answer import answer, interval, scale
+from .answer import answer, answer_of_population
 from .contact_sheet import LEGEND, PAGE, sheets
 from .figures import SIZE, panels
 
@@ -42,6 +43,7 @@ _COLUMNS = (
     ("thickness", "m"),
     ("contact_point", "m"),
 )
+_OF_TENSION = "They are those of an elastic solid under tension, which is not the model chosen."
 _MEANINGS = {
     "interval": "values that describe the data nearly as well; < and >: open to the other side",
     "low": "lower end of the interval",
@@ -63,7 +65,9 @@ def save_report(fit: Fit | PooledFit | ManyFits, path: Path, title: str) -> Path
     results, fields = _many(fit) if isinstance(fit, ManyFits) else _fit(fit)
     advice = "" if isinstance(fit, ManyFits) else fit.advice
     figures: list[Block] = [
-        Picture(svg(p.draw, p.size or SIZE), p.caption, p.caption) for p in panels(fit)
+        Picture(svg(p.draw, size), p.caption, p.caption, wide=size[0] > 2 * size[1])
+        for p in panels(fit)
+        for size in (p.size or SIZE,)
     ]
     if isinstance(fit, ManyFits):
         figures += _sheets(fit)
@@ -89,8 +93,9 @@ def save_report(fit: Fit | PooledFit | ManyFits, path: Path, title: str) -> Path
 def _fit(fit: Fit | PooledFit) -> tuple[list[Block], list[Block]]:
     """Return results and inputs of a fit or a pooled fit."""
     results: list[Block] = [
-        Text(answer(fit)),
+        Text(answer(fit), lead=True),
         Notice(_sentence(fit.comparison), good=not fit.doubt),
+        *_rivals(fit),
     ]
     if isinstance(fit, Fit):
         results += [*_warnings(fit.warnings), _estimates(fit), *_notes(fit)]
@@ -104,10 +109,15 @@ def _many(fits: ManyFits) -> tuple[list[Block], list[Block]]:
     """Return results and inputs of a table of many fits."""
     rows = fits.rows
     failed = [f"{row['curve']}: {row['status']}" for row in rows if row["status"] != FITTED]
-    summary = f"{len(rows) - len(failed)} of {len(rows)} curves were fitted."
+    good = not failed and all(row["accepted"] for row in rows)
+    lost = f"{len(failed)} of {len(rows)} curves could not be fitted:"
     messages = [f"{row['curve']}: {text}" for row in rows for text in row.get("messages", ())]
     models = [row["model"] for row in rows if "model" in row]
-    blocks: list[Block] = [Notice(summary, not failed, _first(failed))]
+    blocks: list[Block] = [Text(answer_of_population(fits), lead=True)]
+    if failed:
+        blocks.append(Notice(lost, good=False, details=_first(failed)))
+    elif good:
+        blocks.append(Notice("Every curve was fitted and accepted.", good=True))
     if fits.notes:
         blocks.append(Notice("Population:", good=False, details=_first(fits.notes)))
     if any(row["accepted"] for row in rows):
@@ -154,7 +164,8 @@ def _groups(fits: ManyFits) -> Table:
         values = part.median, part.lower_quartile, part.upper_quartile
         texts = [readable(value, part.unit, 4) for value in values]
         counts = [f"{part.n} of {part.curves}", str(part.outliers)]
-        rows.append([part.parameter.replace("_", " "), part.group, *counts, *texts])
+        words = part.parameter.replace("_", " ").replace("youngs", "Young's")
+        rows.append([words, part.group, *counts, *texts])
     return Table("The accepted curves.", columns, rows)
 
 
@@ -218,15 +229,30 @@ def _estimates(fit: Fit | PooledFit) -> Table:
         bound = f"{estimate.bound * factor:.2g}" if is_known else "none"
         bound = "" if estimate.held else bound
         value = f"{estimate.value * factor:.4g}"
-        name = name.replace("_", " ").replace("youngs", "Young's")
-        rows.append([name, value, interval(estimate), unit, bound])
+        rows.append([words(name), value, interval(estimate), unit, bound])
     heads = ("parameter", "value", "interval", "unit", "bound")
     columns = [
         Column(head, meaning=_MEANINGS.get(head, ""), words=head in ("parameter", "unit"))
         for head in heads
     ]
     caption = f"Estimates, with {100 * CONFIDENCE:.0f} % intervals of the profile likelihood."
+    if fit.chosen is not None:
+        caption += f" {_OF_TENSION}"
     return Table(caption, columns, rows)
+
+
+def _rivals(fit: FitResult) -> list[Block]:
+    """Return the pull-off force, and the table of the explanations that were compared."""
+    if fit.rivals is None:
+        return []
+    rows = fit.rivals.rows()
+    columns = {
+        Column(head, words=head in ("model", "parameters")): [row[head] for row in rows]
+        for head in rows[0]
+    }
+    table = _table("What describes the data, best first; below 6, ΔAIC is a tie.", columns)
+    pull_off = fit.rivals.pull_off
+    return [*([Text(_sentence(pull_off))] if pull_off else []), table]
 
 
 def _data(fit: Fit) -> Table:
@@ -276,8 +302,9 @@ def _inputs(models: Sequence[Mapping[str, Any]]) -> Table:
             text = ", ".join(values)
         else:
             text = f"{values[0]} … {values[-1]} ({distinct} values)"
-        rows.append([name, text, field.meaning])
-    columns = [Column(head, words=True) for head in ("field", "value", "meaning")]
+        words = "type" if field.words == field.part else field.words
+        rows.append([field.part, words, text, field.meaning])
+    columns = [Column(head, words=True) for head in ("of", "input", "value", "meaning")]
     return Table("The indenter, and the known properties of the solid.", columns, rows)
 
 

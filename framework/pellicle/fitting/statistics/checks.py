@@ -94,9 +94,10 @@ def judged(likelihood: Likelihood, parameters: Coordinates) -> tuple[NoiseEstima
     count = int(residuals.before.sum())
     if count < _QUIET:
         source, before = "residuals of the fit", None
+        lie = "point lies" if count == 1 else "points lie"
         messages: tuple[str, ...] = (
-            f"only {count} points lie before contact, so the noise is taken from the residuals of "
-            "the fit, and drift or adhesion before contact cannot be detected; start further out, "
+            f"only {count} {lie} before contact, so the noise is taken from the residuals of the "
+            "fit, and drift or adhesion before contact cannot be detected; start further out, "
             "or fit the baseline too if the force out there is not 0",
         )
     else:
@@ -171,9 +172,9 @@ def _spikes(residuals: Residuals) -> list[FailedCheck]:
         return []
     first = residuals.likelihood.position[int(np.argmax(wild)) + 1]
     message = (
-        f"{count} points lie more than {_WILD:g} standard deviations from their neighbours, first "
-        f"the one at {first:.6g} m: such spikes are not normal noise, and shift the fit; leave "
-        "them out"
+        f"{'1 point lies' if count == 1 else f'{count} points lie'} more than {_WILD:g} standard "
+        f"deviations from the neighbours, first the one at {first:.6g} m: such spikes are not "
+        "normal noise, and shift the fit; leave them out"
     )
     return [FailedCheck("spikes", message)]
 

@@ -14,9 +14,11 @@ from scipy.optimize import least_squares
 from pellicle.arrays import Array, Mask
 from pellicle.errors import ConvergenceError
 from pellicle.fitting.curves.curve import Segment
-from pellicle.fitting.models.force_model import ForceModel
+from pellicle.fitting.models.force_model import ForceModel, HasRows
 from pellicle.fitting.models.history import History, constant_speed, last_row_of_loading
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, Parameter
+
+from .condensed import Condensation, Rows
 
 REACH = np.log(100.0)
 """Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""
@@ -31,6 +33,8 @@ _METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 60), ("
 _TOLERANCE = 1e-10
 _ROUGH_METHODS: tuple[tuple[Literal["dogbox", "trf"], int], ...] = (("dogbox", 30), ("trf", 60))
 _ROUGH_TOLERANCE = 1e-7
+_NODES = 32
+"""Half the number of nodes that a condensation tries first."""
 _SLOWEST = np.log(30.0)
 """Logarithm of the ratio of a relaxation time, either way, to the one that a search starts from."""
 _BALANCE_STEPS = 200
@@ -123,6 +127,14 @@ class ChiSquared(ABC):
     @abstractmethod
     def coarse(self) -> ChiSquared | None:
         """Return the same with force curves from coarser grids; None if none is simulated."""
+
+    def condensed(self, parameters: Coordinates, tolerance: float) -> ChiSquared:
+        """Return the same χ² from a model that is evaluated at fewer rows, if it is that smooth.
+
+        At ``parameters`` the change of the model is at most ``tolerance`` in the unit of χ, which
+        moves no estimate by more than that many standard errors.
+        """
+        return self
 
     @cached_property
     def _column(self) -> dict[Parameter, int]:
@@ -253,6 +265,8 @@ class Likelihood(ChiSquared):
     """Time of each row [s], of shape (n,); None if it is not known."""
     segment: Segment = "approach"
     """Pass that was measured; rows of one are sorted by position, those of both by time."""
+    condensation: Condensation | None = None
+    """Sum of squares over more rows, of which those here are the nodes."""
 
     @cached_property
     def history(self) -> History:
@@ -364,6 +378,40 @@ class Likelihood(ChiSquared):
         coarse = self.force_model.coarse
         return None if coarse is None else self.with_models([coarse])
 
+    def condensed(self, parameters: Coordinates, tolerance: float) -> Likelihood:
+        """Return the same χ² from a model that is evaluated at fewer rows, if it is that smooth."""
+        if getattr(self.force_model, "is_sudden", False):
+            return self
+        force, _ = self._balanced(parameters)
+        groups, count = self._smooth(parameters[CONTACT_POINT]), _NODES
+        while 4 * count <= self.force.size:
+            condensation = Condensation.of(groups, self.force, count)
+            if condensation.error(force) <= tolerance * self.noise:
+                rows, model = condensation.nodes, self.force_model
+                return replace(
+                    self,
+                    position=self.position[rows],
+                    force=self.force[rows],
+                    time=None if self.time is None else self.time[rows],
+                    force_model=model.at_rows(rows) if isinstance(model, HasRows) else model,
+                    condensation=condensation,
+                )
+            count *= 2
+        return self
+
+    def _smooth(self, point: float) -> list[tuple[Rows, Array, float | None]]:
+        """Return rows of loading, dwell and unloading, a coordinate, and where models bend."""
+        size, time = self.force.size, self.history.time
+        kind = np.zeros(size)
+        if self.segment == "both":
+            kind = np.where(self.first_pass, np.where(time < self.history.top, 0.0, 1.0), 2.0)
+        groups: list[tuple[Rows, Array, float | None]] = []
+        for value in np.unique(kind):
+            rows = np.flatnonzero(kind == value)
+            dwells = value == 1
+            groups.append((rows, (time if dwells else self.base)[rows], None if dwells else point))
+        return groups
+
     def depth(self, parameters: Coordinates) -> Array:
         """Return the position relative to the contact point [m]."""
         depth: Array = self.position - parameters[CONTACT_POINT]
@@ -417,7 +465,10 @@ class Likelihood(ChiSquared):
     def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return (model − force)/noise, of shape (n,), and its Jacobian."""
         force, jacobian = self._balanced(parameters)
-        return (force - self.force) / self.noise, jacobian / self.noise
+        if self.condensation is None:
+            return (force - self.force) / self.noise, jacobian / self.noise
+        residuals, jacobian = self.condensation.residuals(force, jacobian)
+        return residuals / self.noise, jacobian / self.noise
 
     def _balanced(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return force and Jacobian at the exact position of the base rather than the noisy tip.

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.special import fdtrc, ndtr, ndtri
 
 from pellicle.arrays import Array, Mask
+from pellicle.fitting.models.adhesive import WORK_OF_ADHESION
 from pellicle.fitting.parameters import OFFSET, SLOPE, Coordinates, Parameter
 
 from .likelihood import Likelihood
@@ -160,7 +161,9 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     independent = residuals.independent_noise(before)
     line = np.column_stack([np.ones(points), travel / np.ptp(residuals.likelihood.travel)])
     # The force as measured, since a fitted slope of the baseline absorbs part of a dip.
-    measured = residuals.likelihood.force[before]
+    # A model of adhesion has a dip of its own.
+    adheres = WORK_OF_ADHESION in residuals.likelihood.force_model.parameters
+    measured = force if adheres else residuals.likelihood.force[before]
     slope, change = _slope(measured, line)
     messages: tuple[str, ...] = ()
     if SLOPE in residuals.baseline and ndtr(slope / independent.deviation) < CHANCE:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -88,6 +89,11 @@ class Pool(ChiSquared):
         if not any(model.coarse for model in models):
             return None
         return self.with_models([model.coarse or model for model in models])
+
+    def condensed(self, parameters: Coordinates, tolerance: float) -> Pool:
+        """Return the same χ² from models that are evaluated at fewer rows, if they are smooth."""
+        members = tuple(m.condensed(part, tolerance) for m, part in self.curves(parameters))
+        return self if all(map(operator.is_, members, self.members)) else Pool(members, self.free)
 
     def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return a QR-compressed residual vector, six entries per curve, and its Jacobian.

@@ -39,6 +39,10 @@ from .pooled_likelihood import Pool
 
 _THIN = 200
 """Rows of a curve that is scanned for initial guesses."""
+_LONG = 3000
+"""Rows of a curve beyond which searches are condensed; below, the rows cost little."""
+_COARSE = 0.3
+"""Error of the condensed χ² of a search, in its unit; the minimum is that of all rows."""
 _INCOMPRESSIBLE = 0.5
 """Poisson's ratio of a layer, whose effect is that of another thickness to first order."""
 _THICKNESSES = (2.0, 10.0)
@@ -99,15 +103,21 @@ class Rival:
 
         ``starts`` may lack the parameters of its own, of which it has guesses.
         """
-        mine, minima = self.of(chi_squared), []
+        mine, minima, was_thin = self.of(chi_squared), [], False
+        is_long = max(m.force.size for m, _ in chi_squared.curves(starts[0])) > _LONG
         for start in starts:
             whole = self.start(mine, start)
             known = [p for p in self.own if p in start]
             guesses = [{}] if len(known) == len(self.own) else self._guesses(mine, whole)
             for guess in guesses:
                 with suppress(ConvergenceError, PellicleError):
-                    minima.append(mine.minimise(whole | guess, rough=True))
-        return least(minima) if minima else None
+                    thin = mine.condensed(whole | guess, _COARSE) if is_long else mine
+                    was_thin = was_thin or thin is not mine
+                    minima.append(thin.minimise(whole | guess, rough=True))
+        if not minima:
+            return None
+        best = least(minima)
+        return mine.minimise(best.parameters, rough=True) if was_thin else best
 
     def _guesses(self, chi_squared: ChiSquared, start: Coordinates) -> list[Coordinates]:
         members = chi_squared.curves(start)

@@ -1,0 +1,73 @@
+"""What a notebook shows of a fit and of a population of fits."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from typing import TYPE_CHECKING
+
+from pellicle.fitting.many import ManyFits
+from pellicle.fitting.result import FitResult
+from pellicle.fitting.wording import interval, scale
+from pellicle.model.html import summary
+from pellicle.units import readable
+
+from .answer import answer, answer_of_population
+from .figures import SIZE, Panel, panels
+
+if TYPE_CHECKING:
+    from pellicle.fitting.fit import Fit
+    from pellicle.fitting.pooled import PooledFit
+
+_DOTS_PER_INCH = 60
+
+
+def html_of_fit(fit: Fit | PooledFit) -> str:
+    """Return the answer, the estimates with their intervals, and the curve with its fit."""
+    rows = []
+    for name, estimate in fit.estimates().items():
+        factor, unit = scale(estimate)
+        words = name.replace("_", " ").replace("youngs", "Young's")
+        rows.append([words, f"{estimate.value * factor:.4g}", interval(estimate), unit])
+    count = len(fit.curve_rows())
+    title = f"Fit of {count} curves" if count else "Fit of a curve"
+    sentence = f"{answer(fit)} {_state(fit)}"
+    heads = "parameter", "value", "95 % interval", "unit"
+    return summary(title, sentence, heads, rows, picture=_picture(panels(fit)))
+
+
+def _state(fit: FitResult) -> str:
+    """Return whether a tension is needed, and the number of warnings."""
+    state = f"{fit.comparison[:1].upper()}{fit.comparison[1:]}."
+    count = len(fit.warnings)
+    return f"{state} {count} warning{'s' * (count > 1)}: see warnings." if count else state
+
+
+def html_of_population(fits: ManyFits) -> str:
+    """Return how many curves were fitted, the quartiles of each group, and their distributions."""
+    rows = [
+        [
+            part.parameter.replace("_", " ").replace("youngs", "Young's"),
+            part.group,
+            f"{part.n} of {part.curves}",
+            *(readable(v, part.unit, 4) for v in (part.median, part.lower_quartile)),
+            readable(part.upper_quartile, part.unit, 4),
+        ]
+        for part in fits.summary()
+    ]
+    heads = "parameter", "group", "accepted", "median", "lower quartile", "upper quartile"
+    title = f"Fits of {len(fits.rows)} curves"
+    picture = _picture(panels(fits)[-1:])
+    return summary(title, answer_of_population(fits), heads, rows, picture=picture)
+
+
+def _picture(shown: list[Panel]) -> bytes:
+    """Return the first of some panels as a small PNG; empty if there is none."""
+    from matplotlib.figure import Figure
+
+    if not shown:
+        return b""
+    figure = Figure(figsize=shown[0].size or SIZE, layout="constrained")
+    shown[0].draw(figure)
+    with BytesIO() as file:
+        figure.savefig(file, format="png", dpi=_DOTS_PER_INCH)
+        return file.getvalue()

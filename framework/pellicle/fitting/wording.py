@@ -1,0 +1,64 @@
+"""Names, units and intervals of what a fit determines, as people read them."""
+
+from __future__ import annotations
+
+from pellicle.units import Scale, axis_unit, printed
+
+from .statistics.profile import Estimate
+
+_WORDS = {
+    "youngs_modulus": "Young's modulus",
+    "offset": "offset of the baseline",
+    "slope": "slope of the baseline",
+    "chi_squared": "χ²",
+}
+
+
+def words(name: str) -> str:
+    """Return the name of a parameter or a key in words."""
+    for key, text in _WORDS.items():
+        name = name.replace(key, text)
+    return name.replace("_", " ")
+
+
+def scale(estimate: Estimate, *, si: bool = False) -> Scale:
+    """Return the unit for the value and the ends of an estimate, with a prefix unless ``si``."""
+    ends = [end for end in (estimate.low, estimate.high) if end is not None]
+    # The value of an interval that is open to one side is not shown.
+    values = ends if len(ends) == 1 or not estimate.value else [estimate.value]
+    if si:
+        return Scale(1.0, printed(estimate.unit))
+    return axis_unit(values, estimate.unit)
+
+
+def interval(estimate: Estimate, *, si: bool = False) -> str:
+    """Return an interval in the unit of `scale`; of an open one the end that it has."""
+    shown = scale(estimate, si=si)
+    if estimate.held:
+        return "fixed"
+    low, high = (
+        None if end is None else shown.number(end) for end in (estimate.low, estimate.high)
+    )
+    if low is None and high is None:
+        return "open"
+    if low is None:
+        return f"< {high}"
+    return f"> {low}" if high is None else f"{low} to {high}"
+
+
+def in_words(estimate: Estimate, *, si: bool = False, sought: bool = True) -> str:
+    """Return an estimate with its interval: ``5 mN/m (4.8 to 5.2)``, or ``< 3.8 µN/m``.
+
+    An open interval that was not ``sought`` is left out.
+    """
+    shown = scale(estimate, si=si)
+    value = shown.text(estimate.value)
+    if not sought and estimate.low is None and estimate.high is None:
+        return value
+    if estimate.held:
+        return f"fixed at {value}"
+    if estimate.low is None and estimate.high is None:
+        return "that this measurement does not determine"
+    text = interval(estimate, si=si)
+    is_open = None in (estimate.low, estimate.high)
+    return shown.with_unit(text) if is_open else f"{value} ({text})"

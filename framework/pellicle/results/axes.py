@@ -1,0 +1,50 @@
+"""The names of the dimensions of a study's table, in files and in Python."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+from pellicle.model.paths import python_names
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+PARAMETER = "parameter"
+"""Attribute of a coordinate of `with_python_names`: the dotted path of the parameter."""
+
+
+def with_python_names(table: xr.Dataset) -> xr.Dataset:
+    """Return a table whose dimensions have names that Python can write, such as kernel_tension.
+
+    Expressions and outputs name a parameter by its dotted path. It stays the name of a second
+    coordinate with an index, for ``table["kernel.tension"]`` and ``sel`` with a mapping.
+    """
+    axes, names = _axes_and_names(table)
+    table = table.rename_dims({dim: names[dim] for dim in axes if names[dim] != dim})
+    for dim, keys in axes.items():
+        for key in keys:
+            name, axis = names[key], table[key]
+            if name == key:
+                continue
+            described = axis.attrs | {PARAMETER: key}
+            table = table.assign_coords({name: (names[dim], axis.values, described)})
+            if key != dim:
+                table = table.set_xindex(name)
+    return table
+
+
+def with_paths(table: xr.Dataset) -> xr.Dataset:
+    """Return a table whose dimensions are the dotted paths of their parameters, as in run files."""
+    axes, names = _axes_and_names(table)
+    renamed = {names[dim]: dim for dim in axes if names[dim] != dim and names[dim] in table.dims}
+    copies = [name for key, name in names.items() if name != key and name in table.coords]
+    # An index keeps the dimension with which it was made; swap_dims makes a new one.
+    stale = [dim for dim in renamed.values() if dim in table.xindexes]
+    return table.drop_vars(copies).drop_indexes(stale).swap_dims(renamed)
+
+
+def _axes_and_names(table: xr.Dataset) -> tuple[dict[str, list[str]], dict[str, str]]:
+    """Return the parameters along each dimension, and the name in Python of each parameter."""
+    axes: dict[str, list[str]] = json.loads(table.attrs.get("axes", "{}"))
+    return axes, python_names([key for keys in axes.values() for key in keys])

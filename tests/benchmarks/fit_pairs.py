@@ -1,0 +1,246 @@
+"""How good fits of a tension beside another effect are: error over bound, and coverage.
+
+Retractions that adhere come from the closed theory, at 60 to 2000 points.  Power-law curves at two
+speeds come from the model that is fitted, so that they test the search and the intervals only.
+Each is fitted by the search of the comparison of rivals.  Run it:
+``python tests/benchmarks/fit_pairs.py [curves [seed [names of kinds]]]``; with ``--keep FILE``
+each score is appended to a file, and those that it has are not repeated.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path as File
+from typing import Any
+
+import fit_rivals
+import numpy as np
+from fit_rivals import DEPTH, MODULUS_, NOISE, RADIUS, Sample, Truth, path
+
+from pellicle.errors import PellicleError
+from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
+from pellicle.fitting.models.force_model import ClosedFormModel
+from pellicle.fitting.models.relaxing import EXPONENT, PowerLawModel
+from pellicle.fitting.parameters import (
+    CONTACT_POINT,
+    MODULUS,
+    OFFSET,
+    SLOPE,
+    TENSION,
+    Coordinates,
+    Parameter,
+)
+from pellicle.fitting.statistics.checks import fit_single, judged
+from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood, Minimum, least
+from pellicle.fitting.statistics.pooled_likelihood import Pool
+from pellicle.fitting.statistics.profile import (
+    ImprovedMinimum,
+    chi_squared_threshold,
+    confidence_interval,
+)
+from pellicle.fitting.statistics.rivals import rivals
+from pellicle_plugins.analytic.adhesion import Adhesion
+from pellicle_plugins.indenters.paraboloid import Paraboloid
+
+BEAD = Paraboloid(radius=RADIUS)
+ELASTIC = ClosedFormModel(BEAD)
+FREE = CONTACT_POINT, MODULUS, TENSION
+KINDS = "retraction", "two speeds", "one speed"
+CONTACT = 1e-6
+"""Contact point [m]."""
+
+Score = dict[str, tuple[float, bool]]
+"""By parameter, error over the Cramér–Rao bound, and whether the interval holds the truth."""
+
+
+def _at(tension: float, **own: float) -> Coordinates:
+    at = {CONTACT_POINT: CONTACT, MODULUS: float(np.log(MODULUS_)), TENSION: tension}
+    known = {p.name: p for p in (WORK_OF_ADHESION, EXPONENT)}
+    at |= {known[name]: known[name].coordinate(value) for name, value in own.items()}
+    return at | {OFFSET: 0.0, SLOPE: 0.0}
+
+
+def retraction(random: np.random.Generator) -> tuple[Likelihood, Likelihood, Coordinates]:
+    """Return a measured retraction, the same with the right model, and the truth."""
+    points = int(np.exp(random.uniform(np.log(60), np.log(2000))))
+    ratio = float(np.exp(random.uniform(np.log(0.03), np.log(1.0))))
+    tension = ratio * RADIUS * MODULUS_ / 2
+    top = MODULUS_ * fit_rivals._scale(DEPTH)
+    work = random.uniform(0.02, 0.1) * top / (1.5 * np.pi * RADIUS)
+    theory = Adhesion(BEAD, MODULUS_, tension, work)
+    end = theory.instability(np.inf)
+    branch = theory.equilibrium(np.geomspace(float(end.contact_radius), RADIUS, 3000))
+    depth = np.linspace(-fit_rivals.BEFORE, 1.0, points) * DEPTH * RADIUS
+    touches = depth > branch.depth[0]
+    force = np.where(touches, np.interp(depth, branch.depth, branch.force), 0.0)
+    noise = random.uniform(*NOISE) * float(force.max())
+    force = force + noise * random.standard_normal(points)
+    curve = Likelihood(depth + CONTACT, force, ELASTIC, noise, FREE, segment="retract")
+    states = attachment(curve.base, curve.force, curve.moves_out)
+    model = AdhesiveModel(ELASTIC, curve.moves_out, states)
+    right = replace(curve, force_model=model, free=(*FREE, WORK_OF_ADHESION))
+    return curve, right, _at(tension, work_of_adhesion=work)
+
+
+def relaxing(
+    random: np.random.Generator, speeds: Iterable[float]
+) -> tuple[ChiSquared, ChiSquared, Coordinates]:
+    """Return measured approaches, the same with the right model, and the truth."""
+    ratio = float(np.exp(random.uniform(np.log(0.03), np.log(1.0))))
+    alpha = random.uniform(0.1, 0.3)
+    truth = _at(ratio * RADIUS * MODULUS_ / 2, relaxation_exponent=alpha)
+    share, curves, right = random.uniform(*NOISE), [], []
+    for rate in speeds:
+        rows = path(rate=rate)
+        position = rows.depth * DEPTH * RADIUS + CONTACT
+        still = Likelihood(position, np.zeros_like(position), ELASTIC, 1.0, FREE, time=rows.time)
+        still = replace(still, force_model=PowerLawModel(ELASTIC, still.history))
+        force = still.model(truth)
+        noise = share * float(force.max())
+        still = replace(still, force=force + noise * random.standard_normal(force.size))
+        still = replace(still, noise=noise, free=(*FREE, EXPONENT))
+        right.append(still)
+        curves.append(replace(still, force_model=ELASTIC, free=FREE))
+    if len(curves) == 1:
+        return curves[0], right[0], truth
+    return Pool.of(curves), Pool.of(right), _joined(Pool.of(right), truth)
+
+
+def _joined(pool: Pool, part: Coordinates) -> Coordinates:
+    return pool.joined([part] * len(pool.members))
+
+
+def minimum_of(curve: ChiSquared, code: str) -> tuple[ChiSquared, Minimum, float]:
+    """Return χ² of a rival at the noise of its residuals, its minimum, and the threshold."""
+    members = [member for member, _ in curve.curves(dict.fromkeys(curve.parameters, 0.0))]
+    singles = [fit_single(member, {OFFSET: 0.0, SLOPE: 0.0}) for member in members]
+    chi: Any = (
+        replace(curve, members=tuple(s.likelihood for s in singles))
+        if isinstance(curve, Pool)
+        else singles[0].likelihood
+    )
+    parts = [single.parameters for single in singles]
+    start = chi.joined(parts) if isinstance(chi, Pool) else parts[0]
+    by_code = {rival.code: rival for rival in rivals(chi, start)}
+    rival, single = by_code[code], by_code[code.partition("+")[2]]
+    without = single.minimum(chi, [start | {TENSION: 0.0}, start])
+    starts = [start]
+    if without is not None:
+        scale = chi.ranges[TENSION].scale
+        starts += [without.parameters | {TENSION: part * scale} for part in (0.03, 0.3)]
+    best = rival.minimum(chi, starts)
+    assert best is not None
+    mine = rival.of(chi)
+    judgements = [judged(member, part)[0] for member, part in mine.curves(best.parameters)]
+    own = [
+        replace(member, noise=judgement.noise.deviation)
+        for (member, _), judgement in zip(mine.curves(best.parameters), judgements, strict=True)
+    ]
+    mine = Pool.of(own) if isinstance(mine, Pool) else own[0]
+    freedom = sum(judgement.noise.freedom for judgement in judgements)
+    return mine, mine.minimise(best.parameters), chi_squared_threshold(freedom)
+
+
+def score_of(name: str, number: int, seed: int) -> dict[str, Any]:
+    """Return errors over bounds and coverage of one curve, or the verdict at one speed."""
+    random = np.random.default_rng([seed, number, *name.encode()])
+    if name == "one speed":
+        return {"verdict": one_speed(random)}
+    measured: ChiSquared
+    right: ChiSquared
+    if name == "retraction":
+        measured, right, truth = retraction(random)
+        code, own = "tension+adhesion", WORK_OF_ADHESION
+    else:
+        measured, right, truth = relaxing(random, (1.0, 0.1))
+        code, own = "tension+power_law", EXPONENT
+    chi, best, threshold = minimum_of(measured, code)
+    bounds = right.bounds(truth, right.free)
+    parameters = MODULUS, TENSION, own
+    points = chi.force.size if isinstance(chi, Likelihood) else 0
+    return {"points": points} | {
+        p.name: scored(chi, best, p, threshold, truth, bounds) for p in parameters
+    }
+
+
+def scored(
+    chi: ChiSquared,
+    best: Minimum,
+    p: Parameter,
+    threshold: float,
+    truth: Mapping[Parameter, float],
+    bounds: Mapping[Parameter, float],
+) -> tuple[float, bool]:
+    """Return the error of a coordinate over its bound, and whether its interval holds the truth."""
+    for _ in range(5):
+        try:
+            low, high = confidence_interval(chi, best, p, threshold)
+            break
+        except ImprovedMinimum as improved:
+            best = least([best, improved.minimum])
+        except PellicleError:
+            low = high = None
+            break
+    held = (low is None or low <= truth[p]) and (high is None or truth[p] <= high)
+    return (best.parameters[p] - truth[p]) / bounds[p], bool(held)
+
+
+def one_speed(random: np.random.Generator) -> str:
+    """Return what the fit of an approach of a tensed power-law solid says."""
+    curve, _, _ = relaxing(random, (1.0,))
+    assert isinstance(curve, Likelihood)
+    sample = Sample(Truth(lambda rows: rows.depth, ("tension+power_law",)), random)
+    assert curve.time is not None
+    fit = fit_rivals.fitted(
+        sample, fit_rivals.Curve(curve.position, curve.force, curve.time), "approach"
+    )
+    return fit_rivals.verdict_of(fit)
+
+
+def kept(file: File | None, names: Iterable[str], curves: int, seed: int) -> dict[str, Any]:
+    """Return the scores by kind and number, from a file or computed and appended to it."""
+    results: dict[str, Any] = {name: {} for name in names}
+    if file is not None and file.exists():
+        for line in file.read_text().splitlines():
+            name, number, of, values = json.loads(line)
+            if of == seed and name in results and number < curves:
+                results[name][number] = values
+    for number in range(curves):
+        for name in names:
+            if number not in results[name]:
+                results[name][number] = score = score_of(name, number, seed)
+                if file is not None:
+                    with file.open("a") as lines:
+                        print(json.dumps([name, number, seed, score]), file=lines)
+    return results
+
+
+def main() -> None:
+    """Print a row of a table for each kind and parameter."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("curves", type=int, nargs="?", default=200)
+    parser.add_argument("seed", type=int, nargs="?", default=7)
+    parser.add_argument("names", nargs="*", metavar="kind")
+    parser.add_argument("--keep", type=File, help="file that keeps the scores")
+    options = parser.parse_args()
+    results = kept(options.keep, options.names or KINDS, options.curves, options.seed)
+    print("kind | parameter | curves | rms error over the bound | interval holds")
+    print("--- | --- | --- | --- | ---")
+    for name, scores in results.items():
+        values = list(scores.values())
+        if name == "one speed":
+            for verdict in sorted({value["verdict"] for value in values}):
+                count = sum(value["verdict"] == verdict for value in values)
+                print(f"{name} | {verdict} | {len(values)} | | {count}")
+            continue
+        for parameter in [key for key in values[0] if key != "points"]:
+            errors, held = zip(*(value[parameter] for value in values), strict=True)
+            rms = float(np.sqrt(np.mean(np.square(errors))))
+            print(f"{name} | {parameter} | {len(values)} | {rms:.3f} | {100 * np.mean(held):.1f} %")
+
+
+if __name__ == "__main__":
+    main()
