@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner, Result
@@ -23,3 +24,14 @@ def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Result
         return result
 
     return call
+
+
+@pytest.fixture
+def no_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let fits of this process skip rivals: most of their time, and tested elsewhere."""
+
+    def skipped(*arguments: Any, **options: Any) -> None:
+        """Compare nothing."""
+
+    for module in ("fit", "pooled"):
+        monkeypatch.setattr(f"pellicle.fitting.{module}.compare", skipped)

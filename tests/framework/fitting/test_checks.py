@@ -73,6 +73,7 @@ def test_curves_of_the_model_pass(name: str) -> None:
     assert claims == 20 if name.startswith("tension") else claims <= 2
 
 
+@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize("baseline", ["none", "offset", "slope"])
 def test_dip_before_contact_is_adhesion_with_any_baseline(baseline: str) -> None:
     """A force below the baseline just before contact is adhesion, whatever baseline is fitted."""
@@ -83,6 +84,7 @@ def test_dip_before_contact_is_adhesion_with_any_baseline(baseline: str) -> None
     assert "adhesion" in result.to_dict()["failed_checks"][0]["code"]
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_advice_on_drift_mends_it() -> None:
     """A drift that an offset leaves is said with the baseline that fits it, which passes."""
     position, force = white(1)
@@ -96,6 +98,7 @@ def test_advice_on_drift_mends_it() -> None:
     assert not fit(position, force, baseline="slope").failed_checks
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_slope_that_takes_up_attraction_is_cautioned() -> None:
     """A fitted baseline that falls towards contact may be attraction, and one that rises not."""
     position, force = white(1)
@@ -107,6 +110,7 @@ def test_slope_that_takes_up_attraction_is_cautioned() -> None:
     assert not fit(position, risen, baseline="slope").messages
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_offset_is_said_and_mended() -> None:
     """A baseline off 0 is said, with its value and the baseline that fits it."""
     position, force = white(2)
@@ -124,6 +128,7 @@ def _widths(result: pl.Fit) -> float:
     return result.reduced_modulus.high - result.reduced_modulus.low
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_correlated_noise_widens_and_white_noise_does_not() -> None:
     """Noise of the same size makes wider intervals where neighbours share it, and they hold."""
     covered = slow_noise = 0
@@ -143,6 +148,7 @@ def test_correlated_noise_widens_and_white_noise_does_not() -> None:
     assert slow_noise >= 7
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_steps_of_the_detector_are_seen() -> None:
     """Steps larger than the noise are said, and their rounding is the least noise."""
     position, force = white(4, length=0.3 * RADIUS, noise=0.001)
@@ -155,6 +161,7 @@ def test_steps_of_the_detector_are_seen() -> None:
     assert resolution(force) == 0
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_spikes_are_counted() -> None:
     """Rows far from both neighbours are said to be spikes."""
     position, force = white(5)
@@ -163,6 +170,7 @@ def test_spikes_are_counted() -> None:
     assert spikes.message.startswith("3 points")
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_pattern_shows_without_rows_before_contact() -> None:
     """Where no row lies before contact a pattern in contact is still seen."""
     position, force = measured(RIVALS["softening by 15 %"])
@@ -171,6 +179,7 @@ def test_pattern_shows_without_rows_before_contact() -> None:
     assert "pattern" in codes(fit(position[228:], force[228:]))
 
 
+@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize(("depth", "ratio"), [(0.2, 0.95), (0.5, 0.87), (0.8, 0.78)])
 def test_deep_paraboloid_says_what_a_sphere_changes(depth: float, ratio: float) -> None:
     """A ball fitted as a paraboloid seems too soft, and the sphere is named with its modulus."""
@@ -274,6 +283,7 @@ def test_slope_of_the_baseline_cannot_reproduce_any_curve() -> None:
     assert np.ptp(steps) < 1e-9 * steps.mean()
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_far_positions_under_a_cantilever() -> None:
     """Positions that are rounded, a kilometre away, are fitted all the same."""
     position, force = white(1)
@@ -282,6 +292,7 @@ def test_far_positions_under_a_cantilever() -> None:
     assert far.reduced_modulus.value == pytest.approx(near.reduced_modulus.value, rel=1e-3)
 
 
+@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -300,6 +311,7 @@ def test_absurd_values_are_refused(
         fit(*change(*white(1)))
 
 
+@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize("stiffness", [1e-300, 1e300])
 def test_absurd_spring_constants_are_refused(stiffness: float) -> None:
     """A cantilever whose bending is nothing, or all, of the position is refused."""
@@ -307,6 +319,7 @@ def test_absurd_spring_constants_are_refused(stiffness: float) -> None:
         fit(*white(1), spring_constant=stiffness)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_no_interval_is_narrower_than_its_bound() -> None:
     """Near the end of a tension, and where a model is far from linear, no bound is given."""
     cone = Cone(half_angle=1.2)

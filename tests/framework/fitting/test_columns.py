@@ -17,6 +17,8 @@ from pellicle.fitting.curves.curve import Curve, clean
 from pellicle.fitting.curves.readers import read
 from pellicle.fitting.curves.roles import column_map
 
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
 Array = NDArray[np.float64]
 Z = np.array([1.5, 2.5, 3.5, 4.5])
 """[um]"""

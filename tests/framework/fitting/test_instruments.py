@@ -23,6 +23,8 @@ from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.framework.fitting import instruments
 from tests.pictures import drawn_width
 
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
 Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS, SPRING, SENSITIVITY = 5e3, 3e-6, 10e-6, 0.05, 50e-9
 GIVEN = Calibration(spring_constant=SPRING, sensitivity=SENSITIVITY)

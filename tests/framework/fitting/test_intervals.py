@@ -18,6 +18,8 @@ from pellicle.fitting.statistics.profile import (
     confidence_interval,
 )
 
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
 BEST = {CONTACT_POINT: 2.0, OFFSET: -1.0, MODULUS: 3.0}
 
 

@@ -22,6 +22,8 @@ from pellicle.fitting.models.simulation import Simulation
 from pellicle.fitting.parameters import MODULUS, TENSION, THICKNESS
 from pellicle.fitting.statistics.design import _designs
 
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
 Array = NDArray[np.float64]
 Cli = Callable[..., Result]
 TRUE_MODULUS, TRUE_TENSION, THICK, RATIO, RADIUS = 3e3, 2e-3, 4e-6, 0.5, 5e-6

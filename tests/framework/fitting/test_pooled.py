@@ -29,6 +29,8 @@ from pellicle.fitting.statistics.profile import widen
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.pictures import drawn_width
 
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
 Array = NDArray[np.float64]
 TRUE_MODULUS, TRUE_TENSION = 2e3, 5e-3
 RADII = (5e-6, 40e-6)

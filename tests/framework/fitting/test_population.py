@@ -35,6 +35,8 @@ from pellicle.fitting.report.contact_sheet import sheets
 from pellicle.runs.lock import locked
 from tests.framework.fitting.test_many import OPTIONS, curve, save
 
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
 Cli = Callable[..., Result]
 Row = dict[str, Any]
 FIXED = (*OPTIONS, "--fix", "tension=0")

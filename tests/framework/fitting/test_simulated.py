@@ -15,6 +15,8 @@ from pellicle.fitting.models.interpolated import SimulatedCurve
 from pellicle.fitting.models.simulation import half_widths, plan, simulate
 from pellicle.fitting.models.solid import scaled, solid
 
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
 Array = NDArray[np.float64]
 LAYER = {"type": "bonded_layer", "thickness": "4 um"}
 RADIUS = 2e-6

@@ -23,6 +23,8 @@ from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere
 from tests.pictures import drawn_width
 
+pytestmark = pytest.mark.usefixtures("no_rivals")
+
 Array = NDArray[np.float64]
 MODULUS_TRUE, RADIUS = 5e3, 10e-6
 

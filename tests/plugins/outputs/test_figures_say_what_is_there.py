@@ -82,7 +82,7 @@ def test_round_off_is_no_gap(folder: Path) -> None:
 def _gaps(path: Path) -> list[tuple[float, float]]:
     """Return the lowest and the highest gap of each frame of a page."""
     text = path.read_text(encoding="utf-8")
-    (data,) = re.findall(r'<script type="application/json">(.*?)</script>', text, re.DOTALL)
+    (data,) = re.findall(r'<script [^>]*class="maps">(.*?)</script>', text, re.DOTALL)
     fields = [frame["fields"][1] for frame in json.loads(data)["frames"]]
     return [(field["low"], field["high"]) for field in fields]
 

@@ -148,7 +148,7 @@ def test_approach_and_retraction_are_told_apart(bead: tuple[Path, pl.Result]) ->
 def test_the_page_maps_both_pressures(bead: tuple[Path, pl.Result]) -> None:
     """The traction in colours centred at 0, the wall pressure beside it; others are empty."""
     text = (bead[0] / "run.html").read_text(encoding="utf-8")
-    (script,) = re.findall(r"<script[^>]*>(\{.*?\})</script>", text, re.DOTALL)
+    (script,) = re.findall(r'<script [^>]*class="maps">(.*?)</script>', text, re.DOTALL)
     data = json.loads(script)
     names = [field["name"] for field in data["fields"]]
     assert names == ["pressure", "wall pressure", "gap"]
