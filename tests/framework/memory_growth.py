@@ -6,6 +6,7 @@ in what another has freed, and after a small run, which loads all else that the 
 
 from __future__ import annotations
 
+import gc
 import importlib
 import json
 import os
@@ -47,6 +48,7 @@ def growth(kind: dict[str, Any], threads: int) -> int:
     child = os.fork()
     if not child:
         solve(kind | small(kind), threads)
+        gc.collect()
         before = status("VmRSS")
         assert solve(kind, threads).converged
         os.write(writing, str(status("VmHWM") - before).encode())

@@ -89,7 +89,6 @@ KINDS = {
     "periodic, eight steps": _kind(
         512, "periodic", loading={"depth": [1e-6 * (step + 1) for step in range(8)]}
     ),
-    "periodic, little contact, many outputs": _kind(1024, "periodic", **ALL_OUTPUTS),
     "periodic, full contact, many outputs": _kind(1024, "periodic", **_full(1024), **ALL_OUTPUTS),
     "free, a solid that relaxes": _kind(
         512, kernel=_relaxing(5), loading={"depth": [2e-5] * 4, "time": [0, 1, 2, 3]}
