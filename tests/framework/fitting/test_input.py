@@ -20,7 +20,6 @@ from pellicle.fitting.curves.readers import read
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.pictures import drawn_width
 
-
 Array = NDArray[np.float64]
 MODULUS, TENSION, RADIUS, POINT = 5e3, 7.5e-3, 10e-6, 1e-6
 HEADER = "position [um],force [nN]"
