@@ -90,7 +90,9 @@ def judge(
     needed = least_domain(run, index, contact)
     if needed > min(run.grid.size):
         return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
-            size="{:g} × {:g} m".format(*run.grid.size), least=needed
+            size=" × ".join(readable(length, "m", DIGITS) for length in run.grid.size),
+            # A little more, or the rounded length would be refused in turn.
+            least=readable(1.001 * needed, "m", DIGITS),
         )
     if lost is not None:
         loss = f" and lost {readable(lost, 'J', DIGITS)}" if lost > 0 else ""
