@@ -111,7 +111,7 @@ def fit(
         A configuration or its TOML file.  Without position and force, the curve that it names is
         fitted.
     progress
-        Show the progress of a study and of the fit on a terminal.
+        Show the progress of a study and of the fit on a terminal or in a notebook.
     **options
         Fields of `FitConfig`, which replace those of ``config``, and fields of the indenter:
         ``indenter="paraboloid", radius="5 um", fix={"tension": 0}``.

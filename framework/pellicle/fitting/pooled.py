@@ -154,7 +154,7 @@ def fit_pooled(
     curves
         As for `fit_many`.
     progress
-        Show the progress of studies and of the fit on a terminal.
+        Show the progress of studies and of the fit on a terminal or in a notebook.
     config, **options
         As for `fit_many`, but a contact point cannot be fixed.  ``contact_points=True`` determines
         the interval of each contact point too.  Each needs searches over the parameters of all

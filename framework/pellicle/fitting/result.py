@@ -256,10 +256,20 @@ def write_json(value: object, path: Path) -> Path:
 
 @contextmanager
 def status_line(enabled: bool) -> Iterator[Callable[[str], None]]:
-    """Show the stage of a fit on a terminal; yield a function that sets its description."""
+    """Show the stage of a fit while it runs; yield a function that sets its description.
+
+    It is shown on a terminal and in a notebook.
+    """
     from rich.console import Console
 
     console = Console(stderr=True)
+    if enabled and console.is_jupyter:
+        from pellicle.runs.notebook_bar import NotebookBar
+
+        with NotebookBar() as bar:
+            task = bar.add_task("fitting", total=None, message="")
+            yield lambda stage: bar.update(task, message=stage)
+        return
     if not (enabled and console.is_terminal):
         yield lambda stage: None
         return

@@ -43,7 +43,7 @@ def solve_steps(
     origin = provenance(run)
     solid = Relaxation.of(run)
     for index in range(len(steps), len(run.loading.values)):
-        here, others = replace(setting, state=steps.state), 0
+        here, others = replace(setting, state=steps.state, path=steps.path), 0
         if solid:
             here = solid.setting(here, steps.field("pressure"), steps.field("displacement"))
             others = solid.applications
@@ -106,7 +106,7 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Re
     if isinstance(target, Search):
         return reach(setting, target, run.solver, monitor)
     problem = setting.problem(target)
-    solution = solution_of(run.solver, problem, setting.state, monitor)
+    solution = solution_of(run.solver, problem, setting.start(problem), monitor)
     step = Reached(
         equilibrium_of(problem, solution),
         solution.iterations,

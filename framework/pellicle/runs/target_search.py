@@ -134,7 +134,7 @@ class _Trials:
     def _try(self, control: float) -> float:
         goal = self.search.goal
         problem = self.setting.problem(self.search.control(control))
-        solution = solution_of(self.solver, problem, self.setting.state, self.monitor)
+        solution = solution_of(self.solver, problem, self.setting.start(problem), self.monitor)
         equilibrium = equilibrium_of(problem, solution)
         self.iterations += solution.iterations
         value = self.search.measure(equilibrium)

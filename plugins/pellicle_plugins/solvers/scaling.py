@@ -41,7 +41,9 @@ class ScaledSolver(IterativeSolver):
 
 
 def _scaled(state: State, length: float, pressure: float) -> State:
-    return State(state.pressure * pressure, state.wall * pressure, state.depth * length)
+    scaled = state.pressure * pressure
+    wall = scaled if state.wall is state.pressure else state.wall * pressure
+    return State(scaled, wall, state.depth * length)
 
 
 def height_unit(problem: Problem) -> float:

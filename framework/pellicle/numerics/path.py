@@ -1,0 +1,124 @@
+"""Extrapolate the last two load steps of a path to the control of the next one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple, Self
+
+import numpy as np
+
+from pellicle.arrays import Array, Mask
+from pellicle.grid import Boundary
+
+from .problem import Depth, Problem
+from .solution import State
+
+# Longest step, over the last one, to which is extrapolated.
+_FARTHEST: Final = 2.0
+# Beside a smooth contact the gap grows with this power of the distance.
+_GAP_POWER: Final = 1.5
+# Pressure of cells that join, over the greatest.
+_JOINING: Final = 1e-9
+
+
+class PathPoint(NamedTuple):
+    """A load step as the start of an extrapolation."""
+
+    state: State
+    gap: Array
+    """Gap [m]; +inf where there is no indenter."""
+
+
+class Start(State):
+    """The state at the end of the last step, with the one that the path leads to.
+
+    A solver that starts from `ahead` must return the same solution as from the state itself.
+    """
+
+    ahead: State | None = None
+    """The last two steps extrapolated to the control of the problem."""
+
+    @classmethod
+    def of(cls, state: State, ahead: State) -> Self:
+        """Return a state with its extrapolation."""
+        start = cls(*state)
+        start.ahead = ahead
+        return start
+
+
+def start_of(problem: Problem, state: State | None, path: Sequence[PathPoint]) -> State | None:
+    """Return the start of a load step: ``state``, with its extrapolation if there is one.
+
+    Parameters
+    ----------
+    problem
+        The load step.
+    state
+        The state at the end of the last step.
+    path
+        The last two load steps, the earlier one first; fewer if there are no more.
+
+    Nothing is extrapolated across a reversal of the path, to more than twice the last step, with a
+    law that acts across the gap, and in a solid that relaxes, whose next state also depends on
+    what earlier steps have left behind.
+    """
+    if state is None or len(path) < 2 or problem.law or problem.left is not None:
+        return state
+    before, last = path
+    reached = [_control(problem, point.state) for point in (before, last)]
+    step = reached[1] - reached[0]
+    ratio = (problem.value - reached[1]) / step if step else 0.0
+    if not 0 < ratio <= _FARTHEST or not before.state.contact.any():
+        return state
+    pressure = _pressure_ahead(problem, before, last, ratio)
+    return Start.of(
+        state, State(pressure, pressure, last.state.depth + ratio * _depth(before, last))
+    )
+
+
+def _depth(before: PathPoint, last: PathPoint) -> float:
+    return last.state.depth - before.state.depth
+
+
+def _control(problem: Problem, state: State) -> float:
+    """Return the depth of the base [m] or the force [N] of a state, as `Problem.value` is."""
+    total = float(state.pressure.sum())
+    if isinstance(problem.control, Depth):
+        return state.depth + problem.operator.deflection(total)
+    return total * problem.grid.cell_area
+
+
+def _pressure_ahead(problem: Problem, before: PathPoint, last: PathPoint, ratio: float) -> Array:
+    """Return the extrapolated pressure [Pa], > 0 on the extrapolated contact.
+
+    In contact the pressure changes linearly, and cells where it falls to 0 leave. The gap of the
+    cells beside the contact changes linearly too; farther away the edge moves evenly through the
+    gap to the power 2/3, since the gap grows with the distance to the power 3/2. Cells whose gap
+    closes join with a pressure that only marks them.
+    """
+    contact = last.state.contact
+    pressure = last.state.pressure + ratio * (last.state.pressure - before.state.pressure)
+    np.maximum(pressure, 0.0, out=pressure)
+    # Only cells that came closer can join; a gap is infinite in both steps or in none.
+    coming = np.flatnonzero((last.gap < before.gap) & ~contact)
+    gaps = [np.maximum(point.gap.ravel()[coming], 0.0) for point in (before, last)]
+    linear = gaps[1] + ratio * (gaps[1] - gaps[0])
+    one, two = (gap ** (1 / _GAP_POWER) for gap in gaps)
+    joins = (
+        np.where(
+            _beside(contact, problem.grid.boundary).ravel()[coming],
+            linear,
+            two + ratio * (two - one),
+        )
+        < 0
+    )
+    pressure.ravel()[coming[joins]] = _JOINING * float(pressure.max())
+    return pressure
+
+
+def _beside(contact: Mask, boundary: Boundary) -> Mask:
+    """Return the cells that have an edge in common with a cell of the contact."""
+    padded = np.pad(contact, 1, mode="wrap" if boundary == "periodic" else "constant")
+    rows, columns = padded[:, 1:-1], padded[1:-1]
+    neighbours: Mask = rows[:-2] | rows[2:] | columns[:, :-2] | columns[:, 2:]
+    return neighbours & ~contact
