@@ -218,9 +218,7 @@ def test_an_effect_beside_tension_has_to_beat_tension_alone(
     """Of tied explanations with tension the one with fewer parameters counts."""
     ranked = {"tension+adhesion": 0.0, "tension": gain, "adhesion": 40.0, "none": 3000.0}
     rivals = {
-        code: Rival(
-            code, code.replace("+", " and "), "tension" in code, lambda chi_squared: chi_squared
-        )
+        code: Rival(code, code.replace("+", " and "), "tension" in code, TENSED.build)
         for code in ranked
     } | {rival.code: rival for rival in (NONE, TENSED)}
     fits = [RivalFit(rivals[code], 0.0, aic, aic, {}, {}) for code, aic in ranked.items()]
