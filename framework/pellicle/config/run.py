@@ -170,7 +170,11 @@ class Run(FromFile):
 
         values = list(inputs(json.loads(self.to_json())))
         types = {i.name: i.value for i in values}
-        rows = [(i.part, i.words, i.value, i.meaning) for i in values]
+        rows = [
+            (i.part, "type" if i.words == i.part else i.words, i.value, i.meaning)
+            for i in values
+            if i.name != "title"
+        ]
         sentence = f"{types['indenter']} on {types['kernel']}"
         return summary(self.title or "Run", sentence, ("of", "input", "value", "meaning"), rows)
 
