@@ -353,8 +353,8 @@ def test_missing_points_are_refused_or_filled() -> None:
             None,
             r"^path: the domain reaches along y .* grid\.size at most 1\.1 mm",
         ),
-        (["1.4 mm", "0.6 mm"], None, r"along x .* at most 0.0013 m along x"),
-        ("0.3 mm", ["0.1 mm", "0.3 mm"], r"^centre: .* at most 0.0002 m along x, or move centre"),
+        (["1.4 mm", "0.6 mm"], None, r"along x .* at most 1.3 mm along x"),
+        ("0.3 mm", ["0.1 mm", "0.3 mm"], r"^centre: .* at most 200 µm along x, or move centre"),
     ],
 )
 def test_domain_that_does_not_fit_the_scan(size: object, centre: object, message: str) -> None:

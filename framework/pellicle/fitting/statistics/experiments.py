@@ -128,7 +128,7 @@ def _measurements(likelihood: Likelihood, point: float) -> Iterator[Measurement]
         if deepest > 0 and (radius is None or factor * deepest <= _DEEPEST * radius):
             words = "shallower" if factor < 1 else "deeper"
             yield Measurement(
-                f"a {words} curve, to {factor * deepest * 1e6:.2g} µm",
+                f"a {words} curve, to {readable(factor * deepest, 'm', 2)}",
                 factor * down,
                 factor * forth,
                 "approach",
