@@ -48,8 +48,8 @@ def path(extrapolated: bool, depths: tuple[float, ...], length: float = 1.0) -> 
 def test_path_is_the_same_in_fewer_applications() -> None:
     """Forces agree to 1e-4 πwR, contacts to a cell in 500; steps with two states before cost less.
 
-    Measured: 32, 41, 42 applications instead of 44, 45, 48. The first two steps, and the one at which
-    the path turns, have one state and cost the same.
+    Measured: 32, 41, 42 applications instead of 44, 45, 48. The first two steps and the one at
+    which the path turns have one state and cost the same.
     """
     depths = tuple(DOWN + BACK)
     one, two = path(False, depths), path(True, depths)
