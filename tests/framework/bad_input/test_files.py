@@ -176,15 +176,15 @@ def test_output_folder_that_cannot_be_written(
 
 def test_disk_that_fills_up(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """A write that fails in a later step is no traceback and costs no earlier step."""
-    write, room = Path.write_bytes, [1]
+    save, room = storage._save, [1]
 
-    def fail(path: Path, data: bytes) -> int:
+    def fail(content: BytesIO, path: Path) -> None:
         if not room:
             raise OSError(28, "No space left on device")
         room.pop()
-        return write(path, data)
+        save(content, path)
 
-    monkeypatch.setattr(Path, "write_bytes", fail)
+    monkeypatch.setattr(storage, "_save", fail)
     outcome = cli("run", "start.toml", "-o", "out")
     assert outcome.exit_code == 2
     says(outcome.message, "out/start.h5: cannot be written (No space left on device)")
