@@ -295,7 +295,9 @@ def solution_of(
         depth = real_number(solver, "solve().state.depth", value.state.depth)
         state = State(pressure, wall.copy(), depth)
     jumped = bool(value.jumped) or (adheres and _in_contact(state) != _in_contact(start))
-    return Solution(state, int(value.iterations), value.stop, jumped)
+    return Solution(
+        state, int(value.iterations), value.stop, jumped, adheres and bool(value.extrapolated)
+    )
 
 
 def _in_contact(state: State | Array | None) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Boundary
 
+from .front import Traction, same_patches, shifted
 from .problem import Depth, Problem
 from .solution import State
 
@@ -27,6 +28,8 @@ class PathPoint(NamedTuple):
     state: State
     gap: Array
     """Gap [m]; +inf where there is no indenter."""
+    energy: float = np.nan
+    """`Equilibrium.energy` [J]; NaN if it is not known."""
 
 
 class Start(State):
@@ -58,26 +61,26 @@ def start_of(problem: Problem, state: State | None, path: Sequence[PathPoint]) -
     path
         The last two load steps, the earlier one first; fewer if there are no more.
 
-    Nothing is extrapolated across a reversal of the path, to more than twice the last step, with a
-    law that acts across the gap, and in a solid that relaxes, whose next state also depends on
-    what earlier steps have left behind.
+    Nothing is extrapolated across a reversal of the path or a jump, to more than twice the last
+    step, and in a solid that relaxes, whose next state also depends on what earlier steps have left
+    behind. Neither is it with a law that acts before there is contact: its contacts come and go
+    within a step, and at which position of the lattice may depend on the start.
     """
-    if state is None or len(path) < 2 or problem.law or problem.left is not None:
+    if state is None or len(path) < 2 or problem.left is not None:
         return state
     before, last = path
     reached = [_control(problem, point.state) for point in (before, last)]
     step = reached[1] - reached[0]
     ratio = (problem.value - reached[1]) / step if step else 0.0
-    if not 0 < ratio <= _FARTHEST or not before.state.contact.any():
+    touches = before.state.contact.any() and last.state.contact.any()
+    if not 0 < ratio <= _FARTHEST or not touches:
         return state
+    depth = last.state.depth + ratio * (last.state.depth - before.state.depth)
+    if problem.law:
+        ahead = _sticking_ahead(problem, before.state, last.state, ratio)
+        return state if ahead is None else Start.of(state, State(*ahead, depth))
     pressure = _pressure_ahead(problem, before, last, ratio)
-    return Start.of(
-        state, State(pressure, pressure, last.state.depth + ratio * _depth(before, last))
-    )
-
-
-def _depth(before: PathPoint, last: PathPoint) -> float:
-    return last.state.depth - before.state.depth
+    return Start.of(state, State(pressure, pressure, depth))
 
 
 def _control(problem: Problem, state: State) -> float:
@@ -122,3 +125,37 @@ def _beside(contact: Mask, boundary: Boundary) -> Mask:
     rows, columns = padded[:, 1:-1], padded[1:-1]
     neighbours: Mask = rows[:-2] | rows[2:] | columns[:, :-2] | columns[:, 2:]
     return neighbours & ~contact
+
+
+def _sticking_ahead(
+    problem: Problem, before: State, last: State, ratio: float
+) -> tuple[Array, Array] | None:
+    """Return the extrapolated traction and wall pressure [Pa] of a contact that sticks.
+
+    None if a patch of the contact or its zone comes, goes, splits or merges, which is for the
+    descent from the last state to find.
+    """
+    law, boundary = problem.law, problem.grid.boundary
+    assert law
+    if not law.needs_contact:
+        return None
+    strength = law.strength()
+    one, two = (_traction(state, strength) for state in (before, last))
+    if not same_patches(one.across != 0, two.across != 0, boundary):
+        return None
+    ahead = shifted(problem.grid, one, two, ratio)
+    contact = ahead.contact & np.isfinite(problem.profile)
+    across = np.where(contact, -strength, np.clip(ahead.across, -strength, 0.0))
+    if not same_patches(two.contact, contact, boundary):
+        return None
+    if not same_patches(two.across != 0, across != 0, boundary):
+        return None
+    least = _JOINING * float(last.wall.max())
+    wall = np.where(contact, np.maximum(ahead.wall, least), 0.0)
+    return wall + across, wall
+
+
+def _traction(state: State, strength: float) -> Traction:
+    contact = state.contact
+    across = np.where(contact, -strength, state.pressure - state.wall)
+    return Traction(contact, np.where(contact, state.pressure - across, 0.0), across)

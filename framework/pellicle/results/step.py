@@ -121,11 +121,17 @@ class Steps:
 
     @property
     def path(self) -> tuple[PathPoint, ...]:
-        """The last two steps, or fewer if there are no more; the earlier one first."""
-        return tuple(
-            PathPoint(self._state(index), self._fields["gap"].values[index])
-            for index in range(max(0, len(self) - 2), len(self))
-        )
+        """The last two steps that converged, without one between; the earlier one first."""
+        points: list[PathPoint] = []
+        for index in range(max(0, len(self) - 2), len(self)):
+            scalars = self._scalars[index]
+            if not scalars["converged"].item():
+                points.clear()
+                continue
+            energy = scalars["energy"].item() if "energy" in scalars else np.nan
+            gap = self._fields["gap"].values[index]
+            points.append(PathPoint(self._state(index), gap, energy))
+        return tuple(points)
 
     @property
     def last(self) -> xr.Dataset | None:

@@ -12,6 +12,7 @@ from pellicle.components.calls import solution_of
 from pellicle.components.checked_law import law_of
 from pellicle.config.run import Run
 from pellicle.numerics.labels import labelled
+from pellicle.numerics.path import PathPoint
 from pellicle.numerics.problem import Depth, Equilibrium, equilibrium_of
 from pellicle.numerics.solution import State, Stop
 
@@ -116,8 +117,27 @@ def jump_energy(before: xr.Dataset | None, equilibrium: Equilibrium) -> float:
     if before is None or not before["converged"].item():
         return float("nan")
     depth, force, energy = (before[name].item() for name in ("depth", "force", "energy"))
+    lost, uncertain = _lost_energy(depth, force, energy, equilibrium)
+    return 0.0 if lost <= uncertain else lost
+
+
+def leaves_path(before: PathPoint, equilibrium: Equilibrium) -> bool:
+    """Whether an equilibrium is not the continuous continuation of the step ``before``.
+
+    A patch has come or gone, or the energy changed by more or less than the work of the step.
+    """
+    state = before.state
+    force = float(state.pressure.sum()) * equilibrium.problem.grid.cell_area
+    lost, uncertain = _lost_energy(state.depth, force, before.energy, equilibrium)
+    return not abs(lost) <= uncertain or asperity_jumped(state, equilibrium)
+
+
+def _lost_energy(
+    depth: float, force: float, energy: float, equilibrium: Equilibrium
+) -> tuple[float, float]:
+    """Return the energy [J] lost since a state, and by how much it is uncertain."""
     step = equilibrium.depth - depth
     lost = energy - equilibrium.energy + 0.5 * (force + equilibrium.force) * step
     missed = 0.5 * abs((equilibrium.force - force) * step)
     greatest = max(abs(force), abs(equilibrium.force)) * abs(step)
-    return 0.0 if lost <= _MISSED * missed + _UNCERTAIN * greatest else float(lost)
+    return float(lost), _MISSED * missed + _UNCERTAIN * greatest

@@ -133,7 +133,7 @@ def test_coarser_grid_samples_the_surface() -> None:
 def test_finer_grid_is_warned_about_and_goes_through_the_points() -> None:
     """Three cells to a point keep the heights of the points; a warning says what that means."""
     grid = pl.Grid(points=[117, 99], size=["1.3 mm", "1.1 mm"])
-    with pytest.warns(UserWarning, match=r"cells of 1\.11e-05 .* are finer than the points"):
+    with pytest.warns(UserWarning, match=r"cells of 11\.1 µm × .* are finer than the points"):
         fine = _profile(grid, level="none")
     assert (fine <= 0).all()
     shift = fine[1::3, 1::3] - _profile(level="none")
@@ -351,10 +351,10 @@ def test_missing_points_are_refused_or_filled() -> None:
         (
             "1.2 mm",
             None,
-            r"^path: the domain reaches along y .* grid\.size at most 0.0011 m",
+            r"^path: the domain reaches along y .* grid\.size at most 1\.1 mm",
         ),
-        (["1.4 mm", "0.6 mm"], None, r"along x .* at most 0.0013 m along x"),
-        ("0.3 mm", ["0.1 mm", "0.3 mm"], r"^centre: .* at most 0.0002 m along x, or move centre"),
+        (["1.4 mm", "0.6 mm"], None, r"along x .* at most 1.3 mm along x"),
+        ("0.3 mm", ["0.1 mm", "0.3 mm"], r"^centre: .* at most 200 µm along x, or move centre"),
     ],
 )
 def test_domain_that_does_not_fit_the_scan(size: object, centre: object, message: str) -> None:
