@@ -52,7 +52,7 @@ def _reason(message: str, text: str) -> str:
     if position and (value := _unquoted(lines[int(position[1]) - 1])):
         if value in ("True", "False"):
             return f"{value} is {value.lower()} in TOML ({position[0]})"
-        return f"texts, and values with a unit, stand in quotes: \"{value}\" ({position[0]})"
+        return f'texts, and values with a unit, stand in quotes: "{value}" ({position[0]})'
     if twice := re.match(r"Cannot declare \((.*?),?\) twice(.*)", message):
         table = ".".join(name.strip(" '\"") for name in twice[1].split(","))
         return f"[{table}] is there already{twice[2]}; leave one [{table}], with the keys of both"
