@@ -290,7 +290,7 @@ class FitConfig(FromFile, Calibration):
         if "loading" in (base or {}):
             raise ConfigError(
                 "makes this a run, not the configuration of a fit: use run in place of fit "
-                "(`pellicle run` in a shell); the keys of a fit are those of `pellicle explain fit`",
+                "(`pellicle run` in a shell); `pellicle explain fit` lists the keys of a fit",
                 "loading",
             )
         options = {name: value for name, value in options.items() if value is not None}
