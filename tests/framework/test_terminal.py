@@ -269,7 +269,7 @@ _WORDS = ["check c.toml", "explain tensed_membrane", "show a.h5", "show study"]
         ),
         (
             "cp1252",
-            ["new d.toml", "run b.toml -o c", "validate"],
+            ["new new.toml", "run b.toml -o c", "validate"],
             ["depth [µm]", "[mm²]", "title:    Delta layer", "wrote c", "all 16 cases passed", "²"],
         ),
     ],

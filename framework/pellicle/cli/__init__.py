@@ -8,6 +8,8 @@ from __future__ import annotations
 import sys
 import traceback
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Annotated, Any
 
 import typer
@@ -41,11 +43,45 @@ class _Command(TyperCommand):
         return _named_by_use(super().get_params(ctx))
 
 
+def _misuse(error: Any) -> str:
+    """Return in one line what is wrong with the words on a command line, as typer found it."""
+    message = str(error.format_message())
+    if getattr(error, "param", None) is not None and error.message:
+        # Later versions of typer check values with pydantic.
+        details = getattr(error.__cause__, "errors", list)()
+        reason = error.message.rstrip(".")
+        if details and (cause := details[0].get("ctx", {}).get("error")):
+            reason = str(cause)
+        elif details:
+            from pellicle.model.messages import refusal
+
+            reason = refusal(details[0])
+        message = f"{error.param.opts[0]}: {reason}"
+    command = error.ctx.command_path if error.ctx else "pellicle"
+    return f"{message.rstrip('.')}{'' if message.endswith('?') else ';'} see `{command} --help`"
+
+
+@contextmanager
+def _misuse_in_one_line() -> Iterator[None]:
+    try:
+        yield
+    except Exception as error:
+        # The exceptions of click, which typer includes or imports; one of them is the help.
+        if not hasattr(error, "format_message") or type(error).__name__ == "NoArgsIsHelpError":
+            raise
+        echo(f"error: {_misuse(error)}", err=True)
+        raise typer.Exit(BAD_INPUT) from None
+
+
 class _Group(TyperGroup):
     """Turns errors into one message and an exit code: bad input causes no traceback."""
 
     def get_params(self, ctx: Any) -> list[Any]:
         return _named_by_use(super().get_params(ctx))
+
+    def make_context(self, *args: Any, **kwargs: Any) -> Any:
+        with _misuse_in_one_line():
+            return super().make_context(*args, **kwargs)
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         for stream in (sys.stdout, sys.stderr):
@@ -60,7 +96,7 @@ class _Group(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         try:
-            with warnings.catch_warnings():
+            with _misuse_in_one_line(), warnings.catch_warnings():
                 warnings.showwarning = print_warning
                 return super().invoke(ctx)
         except PellicleError as error:

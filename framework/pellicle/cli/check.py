@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from pellicle.errors import ConfigError
 
 from .printing import echo, print_json, print_table
 
@@ -26,19 +29,32 @@ def check(
         typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the file."),
     ] = None,
     error: Annotated[
-        float,
-        typer.Option(min=1e-6, max=0.5, help="Allowed relative error of force and depth."),
-    ] = 0.01,
+        str,
+        typer.Option(help="Allowed relative error of force and depth: 1% or 0.01."),
+    ] = "1%",
     json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI.")] = False,
 ) -> None:
     """Check a run or a study, and estimate its errors and memory from coarser grids."""
     from pellicle.config.study import Study, from_toml
 
+    allowed = _allowed(error.strip())
     configuration = from_toml(file, set_ or ())
     if isinstance(configuration, Study):
-        _check_study(configuration, error, json=json)
+        _check_study(configuration, allowed, json=json)
     else:
-        _check_run(configuration, error, json=json)
+        _check_run(configuration, allowed, json=json)
+
+
+def _allowed(text: str) -> float:
+    """Return the relative error that a share or a percentage states."""
+    with suppress(ValueError):
+        share = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+        if 1e-6 <= share <= 0.5:
+            return share
+    raise ConfigError(
+        f"{text!r} is not allowed; give a percentage from 0.0001% to 50%, or a share such as 0.01",
+        "--error",
+    )
 
 
 def _check_run(run: Run, error: float, *, json: bool) -> None:
@@ -78,7 +94,6 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
 
     A smaller domain is suggested only where it fits every run.
     """
-    from pellicle.errors import ConfigError
     from pellicle.runs.advice import advise
     from pellicle.studies.summary import run_names
     from pellicle.studies.table import StudyTable

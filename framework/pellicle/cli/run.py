@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from .exits import INTERRUPTED
-from .printing import echo, print_json, print_table
+from .printing import echo, print_json, print_table, print_warning
 from .results import (
     exit_by_convergence,
     exit_by_status,
@@ -21,6 +21,9 @@ from .results import (
 if TYPE_CHECKING:
     from pellicle.config.run import Run
     from pellicle.config.study import Study
+
+_LARGE = 1.0
+"""Edge of a domain [m] that is more likely a number whose unit was left out."""
 
 
 def run(
@@ -71,6 +74,7 @@ def run(
     from pellicle.config.study import Study, from_toml
 
     configuration = from_toml(file, set_ or ())
+    _warn_of_size(configuration)
     folder = directory or Path(file.stem)
     shown = _Shown(quiet, si, json)
     if dry_run:
@@ -80,6 +84,21 @@ def run(
     else:
         stem = folder / file.stem
         _run_one(configuration, stem, shown, threads=threads, overwrite=overwrite)
+
+
+def _warn_of_size(configuration: Run | Study) -> None:
+    """Warn of a domain so large that its unit is more likely to be missing."""
+    from pellicle.config.study import Study
+
+    if isinstance(configuration, Study):
+        size = max(max(point.run.grid.size) for point in configuration.points)
+    else:
+        size = max(configuration.grid.size)
+    if size > _LARGE:
+        print_warning(
+            f"grid.size is {size:g} m; a number without a unit is in SI: give one, such as "
+            f"'{size:g} um', if that is not meant"
+        )
 
 
 class _Shown(NamedTuple):
@@ -94,6 +113,7 @@ def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: b
     from pellicle.config.study import Study
     from pellicle.runs.journal import Journal
     from pellicle.studies.runner import RunTask, plan, tasks
+    from pellicle.units import readable
 
     if isinstance(configuration, Study):
         planned = list(plan(tasks(configuration, stem.parent, overwrite=overwrite)))
@@ -109,6 +129,7 @@ def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: b
                 "run": task.name,
                 "file": str(task.journal.path),
                 "points": f"{nx} × {ny}",
+                "size": " × ".join(readable(edge, "m", 3) for edge in task.run.grid.size),
                 "steps": str(task.steps),
                 "memory": f"{task.memory / 1e6:.3g} MB",
                 "state": problem or (state if finished else "to do"),
@@ -117,7 +138,7 @@ def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: b
     if json:
         print_json({"runs": rows})
         return
-    print_table(["run", "file", "points", "steps", "memory", "state"], rows)
+    print_table(["run", "file", "points", "size", "steps", "memory", "state"], rows)
     done = sum(finished >= task.steps for task, finished, _ in planned)
     most = max(task.memory for task, *_ in planned) / 1e6
     echo(

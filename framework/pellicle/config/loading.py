@@ -237,4 +237,10 @@ def prescribed_in(data: Mapping[str, Any]) -> str:
         if problems:
             raise ConfigError(problems)
         reason = "prescribes nothing"
-    raise ConfigError(f"{reason}; give exactly one of {', '.join(known)}")
+    remedy = f"give exactly one of {', '.join(known)}"
+    if given:
+        # One that an override adds stands last.
+        last = [name for name in data if name in given][-1]
+        value = data[last] if isinstance(data[last], (str, float, int)) else "…"
+        remedy += f'; to set another one, replace the table: --set loading="{{{last} = {value!r}}}"'
+    raise ConfigError(f"{reason}; {remedy}")

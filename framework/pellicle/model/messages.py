@@ -22,7 +22,9 @@ def nearest(word: object, known: Iterable[str]) -> str:
 
 def similar(word: object, known: Iterable[str]) -> str:
     """Return ``did you mean 'x'?`` if one of the known words is similar, or an empty text."""
-    close = difflib.get_close_matches(str(word), sorted(known), n=1)
+    names, word = sorted(known), str(word)
+    beginning = [name for name in names if len(word) > 2 and name.startswith(word)]
+    close = difflib.get_close_matches(word, names, n=1) or beginning
     return f"did you mean {close[0]!r}?" if close else ""
 
 
@@ -76,13 +78,18 @@ def _translated(model: type[BaseModel], detail: ErrorDetails, field: str) -> Ite
             message = (
                 f"{shown(detail['input'])} is not allowed; {nearest(detail['input'], allowed)}"
             )
-        case kind:
-            wanted = _WANTED.get(kind, "").format(**detail.get("ctx", {}))
-            remedy = f"give {wanted}" if wanted else detail["msg"].replace("Input", "it")
-            message = f"{shown(detail['input'])} is not allowed; {remedy}"
+        case _:
+            message = refusal(detail)
             if description := _description(model, field):
                 message += f" ({description})"
     yield Problem(field, message)
+
+
+def refusal(detail: ErrorDetails) -> str:
+    """Return what is wrong with a value of the wrong type or size, and what to give instead."""
+    wanted = _WANTED.get(detail["type"], "").format(**detail.get("ctx", {}))
+    remedy = f"give {wanted}" if wanted else detail["msg"].replace("Input", "it")
+    return f"{shown(detail['input'])} is not allowed; {remedy}"
 
 
 _WANTED = {

@@ -23,6 +23,14 @@ KEYS_AND_TYPES = {
         "kernel.type='tensed_membran'",
         ["kernel.type: 'tensed_membran' is not a kernel", "did you mean 'tensed_membrane'?"],
     ),
+    "beginning of a type": (
+        "kernel.type='tensed'",
+        ["kernel.type: 'tensed' is not a kernel", "did you mean 'tensed_membrane'?"],
+    ),
+    "second prescription": (
+        "loading.force='1 uN'",
+        ["loading: prescribes depth and force", "--set loading=\"{force = '1 uN'}\""],
+    ),
     "unknown type in a list": (
         "corrections.0.type='yastrebo'",
         ["corrections.0.type: 'yastrebo' is not a correction", "did you mean 'yastrebov'?"],
@@ -295,3 +303,39 @@ def test_options(cli: Cli, arguments: list[str], words: list[str]) -> None:
     assert outcome.exit_code == 2
     for word in words:
         assert word.lower() in outcome.message.lower()
+
+
+COMMAND_LINES = {
+    "choice": (
+        ["plot", "x", "--format", "jpg"],
+        "--format: 'jpg' is not one of 'png', 'svg', 'pdf'",
+    ),
+    "text for a number": (["explore", "--port", "foo"], "--port: 'foo' "),
+    "number out of range": (["run", "x", "--threads", "0"], "--threads: "),
+    "share beyond 1": (["check", "x", "--error", "5"], "--error: '5' is not allowed; give a perc"),
+    "percentage beyond 50": (["check", "x", "--error", "60%"], "--error: '60%' is not allowed"),
+    "missing argument": (["run"], "see `"),
+    "unknown option": (["run", "x", "--foo"], "--foo; see `"),
+    "option of the program": (["--foo"], "--foo; see `"),
+    "unknown command": (["rnu"], "'rnu'"),
+}
+
+
+@pytest.mark.parametrize(("words", "message"), COMMAND_LINES.values(), ids=COMMAND_LINES)
+def test_misused_command_line(cli: Cli, words: list[str], message: str) -> None:
+    """A command line that cannot be read is answered in one line, in words of the user."""
+    outcome = cli(*words)
+    assert outcome.exit_code == 2
+    assert outcome.message.startswith("error: ")
+    assert outcome.message.count("\n") == 1
+    says(outcome.message, message)
+    assert "Value error" not in outcome.message
+
+
+def test_size_without_a_unit(cli: Cli) -> None:
+    """A domain of 200 m, a unit left out, is warned of before anything is solved."""
+    outcome = cli("run", "start.toml", "--dry-run", "--set", "grid.size=200")
+    assert outcome.exit_code == 0
+    assert "200 m × 200 m" in outcome.stdout
+    says(outcome.message, "warning: grid.size is 200 m", "'200 um'")
+    assert cli("run", "start.toml", "--dry-run").message == ""
