@@ -138,3 +138,53 @@ def test_load_of_nothing(tmp_path: Path) -> None:
     """Loading a file that is not there is a StorageError that names the path."""
     with pytest.raises(pl.StorageError, match=r"none\.h5: no such file"):
         pl.load(tmp_path / "none.h5")
+
+
+SOLID = {"reduced_modulus": "10 kPa", "poissons_ratio": 0.45}
+LAYER = {**SOLID, "thickness": "2 um"}
+
+
+@pytest.mark.parametrize(
+    ("kernel", "depth", "message"),
+    [
+        ({"type": "bonded_layer", **LAYER}, 3e-6, "through a layer 2 µm thick to its rigid base"),
+        (
+            {"type": "coated", "tension": 0.01, "substrate": {"type": "bonded_layer", **LAYER}},
+            3e-6,
+            "pressed down by 2.9",
+        ),
+        ({"type": "layered", "layers": [LAYER], "substrate": "rigid"}, 3e-6, "through a layer"),
+        ({"type": "half_space", "reduced_modulus": "10 kPa"}, 60e-6, "slopes in contact reach 1."),
+        ({"type": "bonded_layer", **LAYER}, 1.9e-6, ""),
+        ({"type": "layered", "layers": [LAYER], "substrate": SOLID}, 3e-6, ""),
+    ],
+)
+def test_beyond_the_theory(kernel: dict[str, Any], depth: float, message: str) -> None:
+    """A solved contact through a layer, or as deep as the indenter is round, is warned of."""
+    run = {
+        "grid": {"points": 32, "size": 30 * depth},
+        "kernel": kernel,
+        "indenter": {"type": "paraboloid", "radius": "50 um"},
+        "loading": {"depth": [depth / 4, depth]},
+    }
+    if message:
+        with pytest.warns(pl.ConvergenceWarning, match=f"step 2: .*{message}"):
+            result = pl.run(run, progress=False)
+    else:
+        result = pl.run(run, progress=False)
+        assert result.beyond_theory() == {}
+    assert set(result.dataset["status_code"].values) == {"CONVERGED"}
+
+
+def test_study_beyond_the_theory() -> None:
+    """A study warns once, however many of its runs go through the layer."""
+    study = {
+        "grid": {"points": 16, "size": "90 um"},
+        "kernel": {"type": "bonded_layer", **LAYER},
+        "indenter": {"type": "paraboloid", "radius": "50 um"},
+        "loading": {"depth": ["4 um"]},
+        "study": {"vary": {"kernel.reduced_modulus": ["1 kPa", "2 kPa"]}},
+    }
+    with pytest.warns(UserWarning, match="in at least one run the surface is pressed") as caught:
+        pl.run_study(study, progress=False)
+    assert len(caught) == 1

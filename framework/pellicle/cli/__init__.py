@@ -48,7 +48,7 @@ def _misuse(error: Any) -> str:
     message = str(error.format_message())
     if getattr(error, "param", None) is not None and error.message:
         # Later versions of typer check values with pydantic.
-        details = getattr(error.__cause__, "errors", list)()
+        details: list[Any] = getattr(error.__cause__, "errors", list)()
         reason = error.message.rstrip(".")
         if details and (cause := details[0].get("ctx", {}).get("error")):
             reason = str(cause)

@@ -215,6 +215,8 @@ def exit_by_convergence(result: Result) -> None:
     for caveats in (result.coarse(), result.steep(), result.cramped()):
         if caveats:
             print_warning(first_message(caveats))
+    for message in result.beyond_theory().values():
+        print_warning(message)
     if not result.converged:
         raise typer.Exit(NOT_CONVERGED)
 

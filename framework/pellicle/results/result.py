@@ -18,6 +18,7 @@ from pellicle.model.legs import number_of_steps
 from pellicle.units import axis_unit, readable
 
 from . import storage
+from .limits import beyond_theory
 from .path import oscillations_of, path_variables
 from .status import Status
 from .variables import FIELDS, REQUIRED, VARIABLES, damage
@@ -91,6 +92,13 @@ class Result:
     def cramped(self) -> list[tuple[int, str]]:
         """Return number and status of each step whose domain is small for the solid's memory."""
         return self._of([Status.SMALL_DOMAIN])
+
+    def beyond_theory(self) -> dict[str, str]:
+        """Return what lies far outside the theory at the largest contact, with a message on each.
+
+        The equations are solved all the same, and the statuses do not tell it.
+        """
+        return beyond_theory(self.dataset, self.configuration)
 
     def _of(self, statuses: list[Status]) -> list[tuple[int, str]]:
         codes = self.dataset["status_code"].values

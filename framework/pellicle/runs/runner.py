@@ -75,7 +75,8 @@ def run(
     Warns
     -----
     ConvergenceWarning
-        A step of the result is marked as not converged, or as too coarse.
+        A step of the result is marked as not converged, or as too coarse, or the largest contact
+        is far outside the theory.
     """
     threads = checked_threads(threads)
     run, name = _as_run(configuration)
@@ -89,6 +90,8 @@ def run(
     for steps in (result.coarse(), result.steep(), result.cramped()):
         if steps:
             warnings.warn(first_message(steps), ConvergenceWarning, stacklevel=2)
+    for message in result.beyond_theory().values():
+        warnings.warn(message, ConvergenceWarning, stacklevel=2)
     return result
 
 

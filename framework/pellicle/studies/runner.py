@@ -250,6 +250,8 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
             task.run, task.journal, task.outputs, bar, threads=threads, lock=False
         )
     messages = [str(warning.message) for warning in caught]
+    # Equal messages of several runs are shown once.
+    messages += [f"in at least one run {subject}" for subject in executed.result.beyond_theory()]
     return executed.result.dataset.drop_dims(["x", "y"]).assign_attrs({_WARNINGS: messages})
 
 

@@ -321,6 +321,9 @@ def _status(result: Result) -> Notice:
     if cramped := result.cramped():
         sentences.append(f"In {len(cramped)} of {done} the domain is small for this solid.")
         details.append(f"S{first_message(cramped)[1:]}")
+    for subject, message in result.beyond_theory().items():
+        sentences.append(f"At the largest contact {subject}.")
+        details.append(f"S{message[1:]}")
     return Notice(" ".join(sentences), not details and done == total, details)
 
 
