@@ -21,10 +21,23 @@ _NARROWEST_TEXT = 16
 
 
 def echo(text: str = "", err: bool = False) -> None:
-    """Print a line; typer would write UTF-8 where the environment wants ASCII."""
+    """Print a text; on a terminal, lines that are too long for it are broken between words.
+
+    typer would write UTF-8 where the environment wants ASCII.
+    """
     stream = sys.stderr if err else sys.stdout
+    if stream.isatty():
+        width = Console(stderr=err).width
+        text = "\n".join(part for line in text.split("\n") for part in _in_words(line, width))
     stream.write(f"{text}\n")
     stream.flush()
+
+
+def _in_words(line: str, width: int) -> list[str]:
+    """Return a line in parts of whole words that fit a width; a longer word is not broken."""
+    if cell_len(line) <= width:
+        return [line]
+    return textwrap.wrap(line, width, break_long_words=False, break_on_hyphens=False)
 
 
 class Column(NamedTuple):

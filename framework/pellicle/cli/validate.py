@@ -8,7 +8,7 @@ import typer
 
 from pellicle.errors import PluginError
 
-from .printing import print_columns, print_json
+from .printing import echo, print_columns, print_json
 
 if TYPE_CHECKING:
     from pellicle.components import Case
@@ -43,18 +43,20 @@ def validate(
         ]
         print_json({"passed": passed, "cases": cases})
     else:
+        names = "case", [verdict.case.name for verdict in done]
         print_columns(
             [
-                ("case", [verdict.case.name for verdict in done]),
+                names,
                 ("expected", [_value(v.case.expected, v.case) for v in done]),
                 ("computed", [_value(v.computed, v.case) for v in done]),
                 ("error", [f"{verdict.error:.1e}" for verdict in done]),
                 ("allowed", [f"{verdict.case.tolerance:.0e}" for verdict in done]),
                 ("verdict", ["ok" if verdict.passed else "FAILED" for verdict in done]),
-                ("source", [verdict.case.source for verdict in done]),
             ]
         )
-        typer.echo(_summary(done))
+        echo()
+        print_columns([names, ("source", [verdict.case.source for verdict in done])])
+        echo(_summary(done))
     raise typer.Exit(0 if passed else 1)
 
 

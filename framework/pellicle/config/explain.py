@@ -180,6 +180,8 @@ def _default(value: Any, unit: str) -> str:
         return "none"
     if isinstance(value, Component):
         return value.type_name
+    if isinstance(value, BaseModel):
+        return "see below"
     if isinstance(value, bool):
         return str(value).lower()
     return readable(value, unit) if not isinstance(value, dict) else str(value)

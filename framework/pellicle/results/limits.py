@@ -37,9 +37,9 @@ def beyond_theory(dataset: xr.Dataset, configuration: Mapping[str, Any]) -> dict
     thickness, deepest = base_depth(configuration["kernel"]), float(displacement[contact].max())
     if deepest > thickness:
         messages[DEEP] = (
-            f"step {step}: the surface is pressed down by {readable(deepest, 'm', DIGITS)}, through "
-            f"a layer {readable(thickness, 'm', DIGITS)} thick to its rigid base: the numbers are "
-            "those of the equations, not of an experiment; press in less far"
+            f"step {step}: the surface is pressed down by {readable(deepest, 'm', DIGITS)}, "
+            f"through a layer {readable(thickness, 'm', DIGITS)} thick to its rigid base: the "
+            "numbers are those of the equations, not of an experiment; press in less far"
         )
     slope = steepest(displacement, contact, Grid(**configuration["grid"]))
     if slope > _STEEPEST and Status.STEEP.name not in dataset["status_code"].values:

@@ -16,7 +16,11 @@ class Skin(Kernel):
 
     tension: Annotated[
         Tension,
-        Field(title="surface tension", description="tension τ₀ of the skin [N/m], 0 for none"),
+        Field(
+            title="surface tension",
+            examples=["5 mN/m"],
+            description="tension τ₀ of the skin [N/m], 0 for none",
+        ),
     ] = 0.0
     bending: Annotated[
         BendingStiffness,

@@ -625,7 +625,12 @@ def _origin(attributes: dict[str, str], configuration: dict[str, Any]) -> Iterat
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:
     name, folder = f"{stem.name}.toml", stem.parent.resolve().name or stem.name
-    yield Code(tomli_w.dumps(configuration), "The whole configuration, in SI.", name)
+    units = (
+        "with the units that were given; numbers without one are"
+        if "study" in configuration
+        else ""
+    )
+    yield Code(tomli_w.dumps(configuration), f"The whole configuration, {units} in SI.", name)
     yield Code(
         f"pellicle run {shlex.quote(name)} -o {shlex.quote(folder)}",
         "With that file in the current folder, and the files that it names at their paths; their "
