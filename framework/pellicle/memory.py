@@ -17,7 +17,7 @@ _OPERATOR = {"free": 9.0, "periodic": 4.75}
 # The same on a line of cells along x, whose transforms are twice as long and need tables.
 _LINE = 14.0
 # The solver active_set in full contact, and any solver without `HasMemory`.
-_SOLVER = {"free": 15.8, "periodic": 10.1}
+_SOLVER = {"free": 15.8, "periodic": 10.2}
 # What a solve takes more where an interaction acts: eight rounds of three fields, from which the
 # next is extrapolated, and the fields of two rounds.
 _STICKS = 41.0

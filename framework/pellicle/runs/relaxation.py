@@ -158,12 +158,13 @@ def history_arrays(run: Run) -> float:
     """Return the peak memory of the history of a solid, in arrays of the grid's shape.
 
     These are the branches, twice as they are brought forward, what they leave behind and the
-    profile that it displaces; under a skin also the strain and the operators that are kept.
+    profile that it displaces, and what malloc keeps of them; under a skin also the strain and the
+    operators that are kept.
     """
     kernel, branches = run.kernel, branches_of(run.kernel)
     if not branches:
         return 0.0
-    arrays = 2 * len(branches) + 3.0
+    arrays = 2 * len(branches) + 6.0
     assert isinstance(kernel, HasRelaxation)
     if kernel.without_skin() != kernel:
         steps = {TimeStep.of(branches, duration) for duration in run.loading.durations}

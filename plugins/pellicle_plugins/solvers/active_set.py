@@ -19,7 +19,7 @@ from pellicle.numerics.solution import Progress, Solution, State, Stop
 
 from .adhesion import AdhesionSolver
 from .adhesive_response import with_zone
-from .blocks import over_blocks
+from .blocks import blocks
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
 from .nested_grids import coarse_solution, coarser, prolonged
 from .preconditioner import OnContact, Preconditioner
@@ -305,7 +305,7 @@ def _iterate(
     inside = displacement.ravel()[pressed] - problem.profile.ravel()[pressed]
     depth = problem.depth(inside)
     u, f = displacement.ravel(), problem.profile.ravel()
-    lowest = min(over_blocks(lambda block: float((u[block] - f[block]).min()), u.size))
+    lowest = min(float((u[block] - f[block]).min()) for block in blocks(u.size))
     error = max(float(np.abs(inside - depth).max(initial=0.0)), depth - lowest)
     scale = problem.height_scale(pressed, depth, float(trial.sum()))
     progress = before.progress if before else Progress()

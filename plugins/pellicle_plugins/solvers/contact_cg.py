@@ -11,7 +11,7 @@ from pellicle.arrays import Array, Cells
 from pellicle.numerics.initial_guess import dot
 from pellicle.numerics.problem import Problem
 
-from .blocks import over_blocks
+from .blocks import blocks
 from .preconditioner import OnContact
 
 # Sign-certainty factors: the sign of a cell counts as final if its value exceeds this multiple of
@@ -99,13 +99,15 @@ def inner_solve(
     while descent > 0 and stagnant < _STAGNATION:
         mean = float(direction.mean()) if uniform else 0.0
         varying = direction - mean if uniform else direction
-        size = float(np.abs(varying).max()) or 1.0
+        size = max(float(varying.max()), -float(varying.min())) or 1.0
         field.fill(0)
-        field.ravel()[cells] = varying / size
+        for block in blocks(cells.size):
+            field.ravel()[cells[block]] = varying[block] / size
         change = problem.operator(field, out=field)
         if uniform:
             change += (mean / size) * uniform.displacement
-        inside = change.ravel()[cells] * size
+        inside = change.ravel()[cells]
+        inside *= size
         curvature = dot(direction, inside)
         if curvature <= 0:
             break
@@ -211,13 +213,11 @@ def _misclassified(
     signs are certain.
     """
     u, f, contact = displacement.ravel(), problem.profile.ravel(), preconditioner.contact.ravel()
-
-    def penetrating_in(block: slice) -> Cells:
-        below = u[block] - f[block] < depth - margin
-        return block.start + np.flatnonzero(np.greater(below, contact[block], out=below))
-
-    tensile = np.flatnonzero(on_contact < 0)
-    penetrating = np.concatenate(list(over_blocks(penetrating_in, u.size)))
+    below = np.empty(u.size, dtype=bool)
+    for block in blocks(u.size):
+        np.less(u[block] - f[block], depth - margin, out=below[block])
+    np.greater(below, contact, out=below)
+    tensile, penetrating = np.flatnonzero(on_contact < 0), np.flatnonzero(below)
     number = tensile.size + penetrating.size
     if last:
         certainty, step, change, depth_change = last
@@ -245,16 +245,18 @@ class _Directions:
         spring = problem.operator.deflection(1.0) * preconditioner.preconditioner.stiffest
         self._lift: Array | None = None
         if self._keeps_force or spring:
-            self._lift = preconditioner(np.ones(preconditioner.cells.size))
+            self._lift = preconditioner(np.ones(preconditioner.cells.size)).astype(np.float64)
             total = float(self._lift.sum())
             self._lift /= total if self._keeps_force else total + 1 / spring
 
     def __call__(self, residual: Array) -> Array:
         """Return the preconditioned residual, made free of net force or conjugate to `_Uniform`."""
         # The mean would use up digits of single precision.
-        direction = self._preconditioner(residual, self.mean(residual))
+        direction = self._preconditioner(residual, self.mean(residual)).astype(np.float64)
         if self._lift is not None:
-            direction -= self._lift * float(direction.sum())
+            total = float(direction.sum())
+            for block in blocks(direction.size):
+                direction[block] -= self._lift[block] * total
         if self._uniform:
             direction -= self._uniform.share(direction)
         return direction

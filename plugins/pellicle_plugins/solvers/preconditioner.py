@@ -117,7 +117,7 @@ class OnContact:
         self._extension = preconditioner._extension(self._indices)
         self._values = np.zeros(self._extension.shape, dtype=np.float32)
 
-    def __call__(self, residual: Array, mean: float = 0.0) -> Array:
+    def __call__(self, residual: Array, mean: float = 0.0) -> Field:
         """Return the residual minus ``mean``, preconditioned.
 
         Both arrays have one value per cell of `cells`.
@@ -126,9 +126,10 @@ class OnContact:
         # A power of two changes no digit, and keeps small residuals in single precision.
         size = 2.0 ** math.frexp(greatest)[1]
         self._set((residual - mean) / size)
-        force = self.preconditioner._stiffen(self._extension.apply(self._values))
-        direction = self._apply_transpose(force)
-        direction *= size
+        direction = self._apply_transpose(
+            self.preconditioner._stiffen(self._extension.apply(self._values))
+        )
+        direction *= np.float32(size)
         return direction
 
     def extended(self, values: Array | Field) -> Field:
@@ -154,7 +155,9 @@ class OnContact:
             size = float(np.abs(values).max())
             field = np.zeros(self._extension.shape, dtype=np.float32)
             field[np.divmod(off, forces.shape[1])] = values / size
-            transferred.ravel()[self.cells] += self._apply_transpose(field) * size
+            transferred.ravel()[self.cells] += np.multiply(
+                self._apply_transpose(field), size, dtype=np.float64
+            )
         return transferred
 
     def _set(self, values: Array | Field) -> None:
@@ -163,10 +166,10 @@ class OnContact:
         field[self._indices[:number]] = values
         field[self._indices[number:]] = values[self._sources]
 
-    def _apply_transpose(self, force: Field) -> Array:
+    def _apply_transpose(self, force: Field) -> Field:
         """Return Eᵀ applied to a field, one value for each cell of `cells`."""
         number = self.cells.size
-        values = self._extension.apply_transpose(force).ravel()[self._indices].astype(np.float64)
+        values = self._extension.apply_transpose(force).ravel()[self._indices]
         np.add.at(values[:number], self._sources, values[number:])
         return values[:number]
 
