@@ -37,6 +37,9 @@ class Stiffness:
         """The stiffness of the stiffest wave [Pa/m]."""
         self._symbol = np.asarray(stiffness / self.greatest, dtype=np.float32)
 
-    def __call__(self, field: Field) -> Field:
-        """Return K applied to a field; for a field in m the pressure is `greatest` times this."""
-        return convolve(field, self._symbol, self.shape, self._workspace)
+    def __call__(self, field: Field, out: Field | None = None) -> Field:
+        """Return K applied to a field, in ``out``, which may be ``field``, or a new array.
+
+        For a field in m the pressure is `greatest` times this.
+        """
+        return convolve(field, self._symbol, self.shape, self._workspace, out)

@@ -94,14 +94,15 @@ class Preconditioner:
         return np.concatenate(copies), np.concatenate(sources)
 
     def _stiffen(self, field: Field) -> Field:
-        """Return K applied to a field on the extension's plane; beyond the period it is 0."""
+        """Return K applied to a field on the extension's plane, in its place.
+
+        Beyond the period it is 0.
+        """
         mx, my = self._plane
-        force = self._stiffness(field[:mx, :my])
-        if self._padded == self._plane:
-            return force
-        padded = np.zeros(self._padded, dtype=np.float32)
-        padded[:mx, :my] = force
-        return padded
+        self._stiffness(field[:mx, :my], out=field[:mx, :my])
+        field[mx:] = 0
+        field[:, my:] = 0
+        return field
 
 
 class OnContact:
@@ -115,7 +116,6 @@ class OnContact:
         """Flat indices of the cells of the contact on the grid."""
         self._indices, self._sources = preconditioner._on_the_plane(self.cells)
         self._extension = preconditioner._extension(self._indices)
-        self._values = np.zeros(self._extension.shape, dtype=np.float32)
 
     def __call__(self, residual: Array, mean: float = 0.0) -> Field:
         """Return the residual minus ``mean``, preconditioned.
@@ -125,18 +125,15 @@ class OnContact:
         greatest = max(float(residual.max()) - mean, mean - float(residual.min()))
         # A power of two changes no digit, and keeps small residuals in single precision.
         size = 2.0 ** math.frexp(greatest)[1]
-        self._set((residual - mean) / size)
-        direction = self._apply_transpose(
-            self.preconditioner._stiffen(self._extension.apply(self._values))
-        )
+        extended = self._apply((residual - mean) / size)
+        direction = self._apply_transpose(self.preconditioner._stiffen(extended))
         direction *= np.float32(size)
         return direction
 
     def extended(self, values: Array | Field) -> Field:
         """Return E applied to one value per cell of `cells`, on the grid."""
         nx, ny = self.contact.shape
-        self._set(values)
-        return self._extension.apply(self._values)[:nx, :ny]
+        return self._apply(values)[:nx, :ny]
 
     def transferred(self, forces: Array) -> Array:
         """Return forces [Pa] after transferring those off the contact onto it by Eᵀ.
@@ -160,11 +157,14 @@ class OnContact:
             )
         return transferred
 
-    def _set(self, values: Array | Field) -> None:
-        """Write one value for each cell of `cells` to the extension's plane."""
-        number, field = self.cells.size, self._values.ravel()
-        field[self._indices[:number]] = values
-        field[self._indices[number:]] = values[self._sources]
+    def _apply(self, values: Array | Field) -> Field:
+        """Return E applied to one value for each cell of `cells`, on the extension's plane."""
+        field = np.zeros(self._extension.shape, dtype=np.float32)
+        number, flat = self.cells.size, field.ravel()
+        flat[self._indices[:number]] = values
+        flat[self._indices[number:]] = values[self._sources]
+        del values
+        return self._extension.apply(field)
 
     def _apply_transpose(self, force: Field) -> Field:
         """Return Eᵀ applied to a field, one value for each cell of `cells`."""
