@@ -164,7 +164,7 @@ def history_arrays(run: Run) -> float:
     kernel, branches = run.kernel, branches_of(run.kernel)
     if not branches:
         return 0.0
-    arrays = 2 * len(branches) + 6.0
+    arrays = 2 * len(branches) + 3.0
     assert isinstance(kernel, HasRelaxation)
     if kernel.without_skin() != kernel:
         steps = {TimeStep.of(branches, duration) for duration in run.loading.durations}
