@@ -158,8 +158,7 @@ def history_arrays(run: Run) -> float:
     """Return the peak memory of the history of a solid, in arrays of the grid's shape.
 
     These are the branches, twice as they are brought forward, what they leave behind and the
-    profile that it displaces, and what malloc keeps of them; under a skin also the strain and the
-    operators that are kept.
+    profile that it displaces; under a skin also the strain and the operators that are kept.
     """
     kernel, branches = run.kernel, branches_of(run.kernel)
     if not branches:
