@@ -50,7 +50,6 @@ def advised(
     chi_squared: ChiSquared,
     tensed: Explanation,
     others: Sequence[Explanation],
-    noises: Sequence[float],
 ) -> str:
     """Return which measurement would separate a model with tension from others, and how many.
 
@@ -59,10 +58,9 @@ def advised(
     among those that have to be told apart is what a measurement is worth.
     """
     members = chi_squared.members if isinstance(chi_squared, Pool) else (chi_squared,)
-    first = members[0]
-    assert isinstance(first, Likelihood)
+    likelihood = members[0]
+    assert isinstance(likelihood, Likelihood)
     part = _part(chi_squared, tensed[1])
-    likelihood = replace(first, noise=noises[0])
     best: tuple[float, str] | None = None
     for measurement in _measurements(likelihood, part[CONTACT_POINT]):
         worth = np.inf

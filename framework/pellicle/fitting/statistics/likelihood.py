@@ -14,7 +14,7 @@ from scipy.optimize import least_squares
 from pellicle.arrays import Array, Mask
 from pellicle.errors import ConvergenceError
 from pellicle.fitting.curves.curve import Segment
-from pellicle.fitting.models.force_model import ForceModel, HasRows
+from pellicle.fitting.models.force_model import ForceModel, HasRows, ModelForce
 from pellicle.fitting.models.history import History, constant_speed, last_row_of_loading
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, Parameter
 
@@ -423,29 +423,27 @@ class Likelihood(ChiSquared):
 
     def model(self, parameters: Coordinates) -> Array:
         """Return the force [N] at every position."""
-        return (
-            self._balanced(parameters)[0]
-            if self.force_model.on_base
-            else self._model(self.position, parameters)[0]
-        )
+        if self.force_model.on_base:
+            return self._balanced(parameters)[0]
+        return self._elastic(self.position, parameters).force + self._baseline(parameters)
 
-    def _model(self, position: Array, parameters: Coordinates) -> tuple[Array, Array, Array]:
-        """Return force [N], its Jacobian by coordinate, and its derivative by depth.
-
-        The Jacobian has shape (n, number of parameters), the others (n,).
-        """
-        model = self.force_model
+    def _elastic(self, position: Array, parameters: Coordinates) -> ModelForce:
+        """Return the force of the model without the baseline."""
+        model, point = self.force_model, parameters[CONTACT_POINT]
         values = {p: p.value(parameters[p]) for p in model.parameters}
-        point = parameters[CONTACT_POINT]
-        elastic = model.force(position - point, {**values, CONTACT_POINT: point})
+        return model.force(position - point, {**values, CONTACT_POINT: point})
+
+    def _baseline(self, parameters: Coordinates) -> Array:
+        return parameters[OFFSET] + parameters[SLOPE] * self.travel
+
+    def _by_coordinate(self, elastic: ModelForce, parameters: Coordinates) -> Array:
+        """Return the Jacobian of the force by coordinate, of shape (n, number of parameters)."""
         by_point = elastic.by_parameter.get(CONTACT_POINT, 0.0) - elastic.by_depth
-        force = elastic.force + parameters[OFFSET] + parameters[SLOPE] * self.travel
         columns = [
-            elastic.by_parameter[p] * (value if p.logarithmic else 1.0)
-            for p, value in values.items()
+            elastic.by_parameter[p] * (p.value(parameters[p]) if p.logarithmic else 1.0)
+            for p in self.force_model.parameters
         ]
-        jacobian = np.column_stack([by_point, *columns, np.ones_like(self.travel), self.travel])
-        return force, jacobian, elastic.by_depth
+        return np.column_stack([by_point, *columns, np.ones_like(self.travel), self.travel])
 
     def fitted(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return position [m] and force [N] of the model, both without noise.
@@ -476,22 +474,22 @@ class Likelihood(ChiSquared):
         There the force solves F = P(z − F/k). P is convex in the depth, so Newton's iteration is
         monotonic after its first step.
         """
+        baseline = self._baseline(parameters)
         if self.stiffness is None or self.force_model.on_base:
-            return self._model(self.base, parameters)[:2]
+            elastic = self._elastic(self.base, parameters)
+            return elastic.force + baseline, self._by_coordinate(elastic, parameters)
         force = self.force.copy()
         # Positions far from 0 are rounded, and so is the force that balances them.
         rounding = 8 * float(np.finfo(float).eps * np.max(np.abs(self.base))) * self.stiffness
         tolerance = max(_BALANCE_TOLERANCE * float(np.ptp(self.force)), rounding)
         for _ in range(_BALANCE_STEPS):
-            response, jacobian, by_depth = self._model(
-                self.base - force / self.stiffness, parameters
-            )
-            give = 1 + by_depth / self.stiffness
-            step = (response - force) / give
+            elastic = self._elastic(self.base - force / self.stiffness, parameters)
+            give = 1 + elastic.by_depth / self.stiffness
+            step = (elastic.force + baseline - force) / give
             force += step
             # Negated so that NaN ends the iteration.
             if not np.max(np.abs(step)) > tolerance:
-                return force, jacobian / give[:, None]
+                return force, self._by_coordinate(elastic, parameters) / give[:, None]
         raise ConvergenceError(
             f"the force of the cantilever does not balance that of the solid in {_BALANCE_STEPS} "
             "steps; is the spring constant right?"

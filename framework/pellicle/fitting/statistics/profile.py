@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -133,16 +133,8 @@ def profile_likelihood(
         if TENSION in likelihood.free and without.chi_squared <= best.chi_squared + 1e-6:
             # Of equally good minima, this one has a tension of exactly 0.
             best = without
-        ends: dict[Parameter, Ends] = {}
-        failures = []
         try:
-            for parameter in parameters:
-                report(f"interval of {parameter.name}")
-                try:
-                    ends[parameter] = confidence_interval(likelihood, best, parameter, threshold)
-                except ConvergenceError:
-                    ends[parameter] = None, None
-                    failures.append(parameter.name)
+            ends, failures = profile_intervals(likelihood, best, threshold, parameters, report)
         except ImprovedMinimum as improved:
             again = likelihood.minimise(improved.minimum.parameters)
             best = least([again, improved.minimum])
@@ -156,6 +148,42 @@ def profile_likelihood(
                 )
             bounds = likelihood.deviations(best.parameters)
             return ProfileResult(likelihood, best, without, wider, bounds, messages)
+
+
+def profile_intervals(
+    likelihood: ChiSquared,
+    best: Minimum,
+    threshold: float,
+    parameters: Iterable[Parameter],
+    report: Callable[[str], None] = lambda stage: None,
+) -> tuple[dict[Parameter, Ends], list[str]]:
+    """Return intervals of parameters, and the names of those whose search fails: they are open.
+
+    Raises
+    ------
+    ImprovedMinimum
+        A profile falls below ``best``.
+    """
+    ends: dict[Parameter, Ends] = {}
+    failures = []
+    for parameter in parameters:
+        report(f"interval of {parameter.name}")
+        try:
+            ends[parameter] = confidence_interval(likelihood, best, parameter, threshold)
+        except ConvergenceError:
+            ends[parameter] = None, None
+            failures.append(parameter.name)
+    return ends, failures
+
+
+def curvature_interval(
+    parameter: Parameter, best: Minimum, bounds: Coordinates, threshold: float
+) -> Ends:
+    """Return the ends that the curvature of χ² gives; None for one beyond the limits."""
+    value, width = best.parameters[parameter], float(np.sqrt(threshold)) * bounds[parameter]
+    if not np.isfinite(width) or (parameter.logarithmic and width > REACH):
+        return None, None
+    return value - width if value - width > parameter.minimum else None, value + width
 
 
 def widen(
