@@ -130,9 +130,10 @@ def minimum_of(curve: ChiSquared, code: str) -> tuple[ChiSquared, Minimum, float
     starts = [start]
     if without is not None:
         scale = chi.ranges[TENSION].scale
-        starts += [without.parameters | {TENSION: part * scale} for part in (0.03, 0.3)]
-    best = rival.minimum(chi, starts)
-    assert best is not None
+        starts += [without[1].parameters | {TENSION: part * scale} for part in (0.03, 0.3)]
+    pair = rival.minimum(chi, starts)
+    assert pair is not None
+    rival, best = pair
     mine = rival.of(chi)
     judgements = [judged(member, part)[0] for member, part in mine.curves(best.parameters)]
     own = [

@@ -156,8 +156,8 @@ def compare(
     full
         Whether all explanations get intervals; otherwise only the one that is chosen.
     pairs
-        Whether a tension beside another effect is always compared; otherwise only if no single
-        effect passes its checks.
+        Whether a tension is compared beside each other effect; otherwise only if no single effect
+        passes its checks, or beside one that leads, and adhesion.
     report
         Called with the name of each explanation.
     """
@@ -166,25 +166,29 @@ def compare(
         NONE.code: (NONE, without),
         TENSED.code: (TENSED, best),
     }
+
+    def add(rival: Rival, starts: Sequence[Coordinates]) -> None:
+        report(rival.words)
+        pair = rival.minimum(chi_squared, starts)
+        if pair is not None:
+            minima[rival.code] = pair
+
     for rival in every:
         if rival.code not in minima and not rival.has_tension:
-            report(rival.words)
-            starts = [without.parameters, best.parameters]
-            minimum = rival.minimum(chi_squared, starts)
-            if minimum is not None:
-                minima[rival.code] = (rival, minimum)
+            add(rival, [without.parameters, best.parameters])
     quiet, failed = _at_its_noise(chi_squared, minima)
-    if pairs or any(check.of_model for check in failed):
-        for rival in every:
-            if rival.code in minima or not rival.has_tension:
-                continue
-            report(rival.words)
-            _, single = minima.get(rival.code.partition("+")[2], (NONE, without))
-            starts = [best.parameters, *_tensed(chi_squared, single)]
-            minimum = rival.minimum(chi_squared, starts)
-            if minimum is not None:
-                minima[rival.code] = (rival, minimum)
-        quiet, failed = _at_its_noise(chi_squared, minima)
+    alone = {code: _criterion(chi_squared, pair) for code, pair in minima.items()}
+    every_pair = pairs or any(check.of_model for check in failed)
+    for rival in every:
+        single = rival.code.partition("+")[2]
+        # What leads alone may hide a tension beside it, as a tension may hide adhesion.
+        leads = single == min(alone, key=alone.__getitem__) or (
+            single == "adhesion" and alone.get(single, np.inf) + _OF_MANY <= alone[NONE.code]
+        )
+        if single and (every_pair or leads):
+            start = minima.get(single, (NONE, without))[1]
+            add(rival, [best.parameters, *_tensed(chi_squared, start)])
+    quiet, failed = _at_its_noise(chi_squared, minima)
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
     comparison = _judge(quiet, fits, failed)

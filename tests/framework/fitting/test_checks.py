@@ -261,7 +261,7 @@ def test_fit_with_a_cantilever_and_a_baseline_ends(
 ) -> None:
     """A curve that the model cannot describe takes no more than thousands of evaluations."""
     count = 0
-    whole = Likelihood._model
+    whole = Likelihood._elastic
 
     def counted(*arguments: Any) -> object:
         nonlocal count
@@ -269,7 +269,7 @@ def test_fit_with_a_cantilever_and_a_baseline_ends(
         assert count < 30_000
         return whole(*arguments)
 
-    monkeypatch.setattr(Likelihood, "_model", counted)
+    monkeypatch.setattr(Likelihood, "_elastic", counted)
     result = fit(*_cantilever(5e-4), spring_constant=5e-4, baseline=baseline)
     assert result.failed_checks
 
