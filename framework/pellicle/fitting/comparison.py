@@ -15,16 +15,15 @@ from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
 from .parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from .statistics.checks import judged
 from .statistics.experiments import advised
-from .statistics.likelihood import ChiSquared, Likelihood, Minimum, least
+from .statistics.likelihood import ChiSquared, Likelihood, Minimum
 from .statistics.noise import FailedCheck, doubt_of_tension
 from .statistics.pooled_likelihood import Pool
 from .statistics.profile import (
     Ends,
     Estimate,
-    ImprovedMinimum,
     curvature_interval,
     estimate_of,
-    profile_intervals,
+    profiled,
 )
 from .statistics.rivals import NONE, TENSED, Rival, rivals
 from .wording import in_words, words
@@ -38,10 +37,6 @@ _FIRST_TENSIONS = (0.03, 0.3)
 _FAR = 100.0
 """Difference of AIC beyond which intervals come from the curvature of χ²: their models describe the
 curves so badly that profiles, a third of the time of a comparison, would say nothing more."""
-_RESTARTS = 5
-"""Largest number of searches for intervals, each from a minimum that the last improved."""
-_FINE = 0.1
-"""Error of the condensed χ² of which intervals are sought, in its unit."""
 Intervals = Literal["none", "profile", "curvature"]
 Verdict = Literal["needed", "not shown", "undecided", "other"]
 
@@ -204,7 +199,7 @@ def _with_intervals(
     fits, better = comparison.fits, chosen
     if chosen.intervals != "profile":
         minimum = Minimum(chosen.parameters, chosen.chi_squared)
-        minimum, ends = _profiled(mine, minimum, threshold)
+        minimum, ends = profiled(mine, minimum, threshold, _reported(mine))
         better = replace(
             chosen,
             chi_squared=minimum.chi_squared,
@@ -297,7 +292,7 @@ def _ranked(
         ends: dict[Parameter, Ends] = {}
         intervals: Intervals = "none"
         if threshold is not None and _aic(mine, start) - first <= _FAR:
-            minimum, ends = _profiled(mine, start, threshold)
+            minimum, ends = profiled(mine, start, threshold, _reported(mine))
             intervals = "profile"
         elif threshold is not None:
             bounds = mine.deviations(start.parameters)
@@ -328,25 +323,6 @@ def _reported(chi_squared: ChiSquared) -> list[Parameter]:
     """Return the fitted parameters of which a comparison tells the values."""
     beside = (CONTACT_POINT.name, OFFSET.name, SLOPE.name)
     return [p for p in chi_squared.parameters if p in chi_squared.free and p.name not in beside]
-
-
-def _profiled(
-    chi_squared: ChiSquared, minimum: Minimum, threshold: float
-) -> tuple[Minimum, dict[Parameter, Ends]]:
-    """Return intervals of profiles, and the minimum, which a profile may have improved."""
-    ends: dict[Parameter, Ends] = {}
-    for _ in range(_RESTARTS):
-        thin = chi_squared.condensed(minimum.parameters, _FINE)
-        near = minimum if thin is chi_squared else thin.minimise(minimum.parameters, rough=True)
-        try:
-            ends, _ = profile_intervals(thin, near, threshold, _reported(chi_squared))
-            break
-        except ImprovedMinimum as improved:
-            again = chi_squared.minimise(improved.minimum.parameters, rough=True)
-            if thin is chi_squared:
-                again = least([again, improved.minimum])
-            minimum = least([minimum, again])
-    return minimum, ends
 
 
 def _estimates(

@@ -25,6 +25,10 @@ _FIRST = 1e-2
 """First trial, as a share of the way to the limit, where the bound lies beyond the limit."""
 _LEAST = 1e-12
 """Smallest share of the way to the limit that is resolved."""
+_RESTARTS = 10
+"""Largest number of searches for intervals, each from a minimum that the last improved."""
+_FINE = 0.1
+"""Error of a condensed χ² of which intervals are sought, in its unit."""
 _IMPROVEMENT = 1e-3
 """Decrease of χ² by which another minimum counts as better."""
 
@@ -174,6 +178,30 @@ def profile_intervals(
             ends[parameter] = None, None
             failures.append(parameter.name)
     return ends, failures
+
+
+def profiled(
+    chi_squared: ChiSquared,
+    minimum: Minimum,
+    threshold: float,
+    parameters: Sequence[Parameter],
+) -> tuple[Minimum, dict[Parameter, Ends]]:
+    """Return the minimum, which a profile may have improved, and intervals of profiles.
+
+    They are those of a condensed χ² if the curve is long, and open if every search for them ends in
+    a better minimum than the last.
+    """
+    for _ in range(_RESTARTS):
+        thin = chi_squared.condensed(minimum.parameters, _FINE)
+        near = minimum if thin is chi_squared else thin.minimise(minimum.parameters, rough=True)
+        try:
+            return minimum, profile_intervals(thin, near, threshold, parameters)[0]
+        except ImprovedMinimum as improved:
+            again = chi_squared.minimise(improved.minimum.parameters, rough=True)
+            # A minimum of the condensed χ² is none of the χ² of all rows.
+            known = [improved.minimum] if thin is chi_squared else []
+            minimum = least([minimum, again, *known])
+    return minimum, {}
 
 
 def curvature_interval(
