@@ -183,7 +183,7 @@ def _planned(likelihood: Likelihood, measurement: Measurement) -> Likelihood:
         likelihood,
         position=measurement.base,
         force=np.zeros_like(measurement.base),
-        noise=likelihood.noise * np.sqrt(_ROWS / likelihood.force.size),
+        noise=likelihood.noise_of(likelihood.force.size / _ROWS),
         force_model=model,
         time=measurement.time,
         segment=measurement.segment,

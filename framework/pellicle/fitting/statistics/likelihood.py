@@ -19,6 +19,7 @@ from pellicle.fitting.models.history import History, constant_speed, last_row_of
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, Parameter
 
 from .condensed import Condensation, Rows
+from .memory import differenced
 
 REACH = np.log(100.0)
 """Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""
@@ -267,6 +268,9 @@ class Likelihood(ChiSquared):
     """Pass that was measured; rows of one are sorted by position, those of both by time."""
     condensation: Condensation | None = None
     """Sum of squares over more rows, of which those here are the nodes."""
+    memory: float = 0.0
+    """Exponent d of noise whose power falls as f^(−2d); ``noise`` is that of the differences which
+    make it independent."""
 
     @cached_property
     def history(self) -> History:
@@ -300,9 +304,13 @@ class Likelihood(ChiSquared):
             self,
             position=self.position[rows],
             force=self.force[rows],
-            noise=self.noise / np.sqrt(step),
+            noise=self.noise_of(step),
             time=None if self.time is None else self.time[rows],
         )
+
+    def noise_of(self, step: float) -> float:
+        """Return the noise [N] of rows ``step`` times as far apart with as much information."""
+        return self.noise * float(step ** (self.memory - 0.5))
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -380,7 +388,7 @@ class Likelihood(ChiSquared):
 
     def condensed(self, parameters: Coordinates, tolerance: float) -> Likelihood:
         """Return the same χ² from a model that is evaluated at fewer rows, if it is that smooth."""
-        if getattr(self.force_model, "is_sudden", False):
+        if self.memory or getattr(self.force_model, "is_sudden", False):
             return self
         force, _ = self._balanced(parameters)
         groups, count = self._smooth(parameters[CONTACT_POINT]), _NODES
@@ -453,6 +461,10 @@ class Likelihood(ChiSquared):
         force, _ = self._balanced(parameters)
         return self.base - force / self.stiffness if self.stiffness else self.position, force
 
+    def misfit(self, parameters: Coordinates) -> Array:
+        """Return model − force [N], of shape (n,), as measured."""
+        return self._balanced(parameters)[0] - self.force
+
     def resampled(self, points: int) -> Likelihood:
         """Return the same with forces interpolated at evenly spaced positions of the base."""
         base = np.linspace(self.base[0], self.base[-1], points)
@@ -461,8 +473,14 @@ class Likelihood(ChiSquared):
         return replace(self, position=position, force=force)
 
     def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
-        """Return (model − force)/noise, of shape (n,), and its Jacobian."""
+        """Return (model − force)/noise, of shape (n,), and its Jacobian.
+
+        Of noise with a memory, its fractional differences.
+        """
         force, jacobian = self._balanced(parameters)
+        if self.memory:
+            jacobian = differenced(jacobian, self.memory)
+            return differenced(force - self.force, self.memory) / self.noise, jacobian / self.noise
         if self.condensation is None:
             return (force - self.force) / self.noise, jacobian / self.noise
         residuals, jacobian = self.condensation.residuals(force, jacobian)
