@@ -295,7 +295,7 @@ def _shape(type_: str, radius: float = 1.0) -> HasForceCurve:
     return indenter
 
 
-def _pink(random: np.random.Generator, points: int) -> Array:
+def pink_noise(random: np.random.Generator, points: int) -> Array:
     """Return noise of variance 1 whose power falls as 1/f."""
     frequencies = np.fft.rfftfreq(4 * points)
     frequencies[0] = np.inf
@@ -355,7 +355,9 @@ class Sample:
         top = float(np.abs(self.truth.force(path())).max())
         size = force.size
         noise = (
-            _pink(self.random, size) if self.truth.coloured else self.random.standard_normal(size)
+            pink_noise(self.random, size)
+            if self.truth.coloured
+            else self.random.standard_normal(size)
         )
         deepest = self.truth.depth * RADIUS
         scale = MODULUS_ * _scale(self.truth.depth)

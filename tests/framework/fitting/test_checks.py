@@ -55,6 +55,7 @@ def codes(result: pl.Fit) -> list[str]:
     return [check.code for check in result.failed_checks]
 
 
+@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize("name", MARKED)
 def test_no_tension_is_claimed_in_silence_where_the_curve_shows_another_cause(name: str) -> None:
     """Curves that bear a mark of what bends them are not said to need a tension without a word.
@@ -64,6 +65,7 @@ def test_no_tension_is_claimed_in_silence_where_the_curve_shows_another_cause(na
     assert not any(outcome.is_silent for outcome in outcomes(MARKED[name], 5, seed=7))
 
 
+@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize("name", CONTROLS)
 def test_curves_of_the_model_pass(name: str) -> None:
     """Curves that the model describes fail checks by chance only, and true tensions are claimed."""

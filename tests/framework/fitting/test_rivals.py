@@ -8,6 +8,7 @@ from typing import Any
 import fit_rivals
 import numpy as np
 import pytest
+from fit_pairs import score_of
 from fit_rivals import KINDS, MODULUS_, RADIUS, Sample, fitted, path
 from numpy.typing import NDArray
 from scipy.special import beta
@@ -180,6 +181,72 @@ def test_comparison_in_full() -> None:
     assert [m["delta_aic"] for m in models] == sorted(m["delta_aic"] for m in models)
     assert models[0]["parameters"]["reduced_modulus"]["high"] is not None
     assert len(fit.rivals.rows()) == len(models)
+    for model in models:
+        far = model["delta_aic"] > 100
+        assert model["intervals"] == ("curvature" if far else "profile")
+        for estimate in model["parameters"].values():
+            low, high = estimate["low"], estimate["high"]
+            assert low is None or low <= estimate["value"]
+            assert high is None or high >= estimate["value"]
+
+
+def test_intervals_hold_the_value_where_the_elastic_model_fails() -> None:
+    """The noise of an elastic model that fails is not that of the model which is chosen."""
+    solid = sample("power law", 1)
+    curve = solid.measured(path("both"))
+    thin = fit_rivals.Curve(curve.position[::4], curve.force[::4], curve.time[::4])
+    chosen = fitted(solid, thin, "both").chosen
+    assert chosen is not None
+    assert chosen.rival.code == "power_law"
+    for estimate in chosen.estimates.values():
+        assert estimate.low is not None
+        assert estimate.high is not None
+        assert estimate.low < estimate.value < estimate.high
+        # About two standard errors either way; these intervals were half as wide.
+        assert estimate.high - estimate.low == pytest.approx(4 * estimate.bound, rel=0.2)
+
+
+def test_balance_of_a_cantilever_derives_the_force_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Derivatives of a model with a memory are those of the last Newton step only."""
+    count = 0
+    whole = PowerLawModel._derivatives
+
+    def counted(*arguments: Any) -> Any:
+        nonlocal count
+        count += 1
+        return whole(*arguments)
+
+    monkeypatch.setattr(PowerLawModel, "_derivatives", counted)
+    force = np.maximum(ROWS.depth, 0.0) ** 1.5 * 1e-9
+    likelihood = Likelihood(
+        ROWS.depth * DEPTH, force, PowerLawModel(ELASTIC, HISTORY), 1e-12, (), 0.005, ROWS.time
+    )
+    at = {CONTACT_POINT: 1e-10, MODULUS: np.log(MODULUS_), TENSION: 1e-3, EXPONENT: 0.2}
+    likelihood.linearised(at | {OFFSET: 0.0, SLOPE: 0.0})
+    assert count == 1
+
+
+def test_interval_of_the_work_of_adhesion_where_no_jump_is_seen() -> None:
+    """As the end of the branch passes a row χ² jumps, which must not end the interval."""
+    score = score_of("retraction", 22, 7)
+    assert all(score[name][1] for name in ("reduced_modulus", "tension", "work_of_adhesion"))
+
+
+def test_tension_that_adhesion_hides() -> None:
+    """Where adhesion leads, the tension beside it is compared, in the short form too."""
+    random = np.random.default_rng([7, 13, *b"tension and adhesion"])
+    solid = Sample(KINDS["tension and adhesion"](random), random)
+    fit = fitted(solid, solid.measured(path()))
+    assert fit.rivals is not None
+    assert "tension+adhesion" in [tie.rival.code for tie in fit.rivals.tied]
+
+
+def test_noise_of_1_over_f_is_neither_tension_nor_drift() -> None:
+    """A tenth of tests/benchmarks/fit_rivals.py: no claim, and intervals that hold."""
+    results = list(fit_rivals.outcomes("1/f noise", 6, 11, follow=False))
+    assert not any(result.verdict in ("needed", "undecided") for result in results)
+    assert sum(result.covers for result in results) >= 5
+    assert sum(result.right for result in results) >= 5
 
 
 def test_the_chosen_model_is_the_answer(tmp_path: Path) -> None:
