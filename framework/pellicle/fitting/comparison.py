@@ -346,14 +346,16 @@ def _judge(
 ) -> Comparison:
     """Return the verdict on ranked explanations."""
     alone = {fit.rival.code: fit.aic for fit in fits if not fit.rival.has_tension}
-    # A tension beside an effect that does as well alone is no explanation of its own.
+    tensed = next(fit for fit in fits if fit.rival == TENSED)
+    # A pair of which either part does as well alone is no explanation of its own.
     with_tension = next(
         fit
         for fit in fits
         if fit.rival == TENSED
         or (
             fit.rival.has_tension
-            and alone.get(fit.rival.code.partition("+")[2], np.inf) - fit.aic >= MARGIN
+            and min(tensed.aic, alone.get(fit.rival.code.partition("+")[2], np.inf)) - fit.aic
+            >= MARGIN
         )
     )
     without = [fit for fit in fits if not fit.rival.has_tension]
@@ -375,7 +377,6 @@ def _judge(
             verdict, sentence = "other", f"{first.rival.words} describes {curves}, without tension"
     elif doubt:
         verdict = "other"
-        tensed = next(fit for fit in fits if fit.rival == TENSED)
         chosen = fits[0] if tensed.aic >= MARGIN else None
         sentence = (
             f"no model describes {curves}: that of least AIC is {fits[0].rival.words}, and it "

@@ -251,7 +251,7 @@ def test_pool_of_curves_that_fail_needs_no_tension() -> None:
 
 def _cantilever(stiffness: float) -> tuple[Array, Array]:
     """Return position and force of a solid that stiffens, under a soft cantilever, with noise."""
-    base = np.linspace(-0.3, 1.0, 400) * 1.5e-6
+    base = np.linspace(-0.3, 1.0, 200) * 1.5e-6
     seen = 0.8 * stiffness * 1.5e-6 * np.maximum(base / 1.5e-6, 0.0) ** 2.2
     seen += 0.005 * seen.max() * np.random.default_rng(3).standard_normal(base.size)
     return base - seen / stiffness, seen

@@ -243,10 +243,10 @@ def test_tension_that_adhesion_hides() -> None:
 
 def test_noise_of_1_over_f_is_neither_tension_nor_drift() -> None:
     """A tenth of tests/benchmarks/fit_rivals.py: no claim, and intervals that hold."""
-    results = list(fit_rivals.outcomes("1/f noise", 6, 11, follow=False))
+    results = list(fit_rivals.outcomes("1/f noise", 4, 11, follow=False))
     assert not any(result.verdict in ("needed", "undecided") for result in results)
-    assert sum(result.covers for result in results) >= 5
-    assert sum(result.right for result in results) >= 5
+    assert sum(result.covers for result in results) >= 3
+    assert sum(result.right for result in results) >= 3
 
 
 def test_the_chosen_model_is_the_answer(tmp_path: Path) -> None:

@@ -121,6 +121,11 @@ class ChiSquared(ABC):
     def accuracy(self) -> float:
         """Error of the model relative to the largest force; noise below it cannot be resolved."""
 
+    @property
+    @abstractmethod
+    def is_sudden(self) -> bool:
+        """Whether χ² jumps as a row touches, where searches to the last digit do not end."""
+
     @abstractmethod
     def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
         """Return the likelihood and the coordinates of each curve."""
@@ -342,6 +347,11 @@ class Likelihood(ChiSquared):
         """Error of the model relative to the largest force."""
         return self.force_model.accuracy
 
+    @property
+    def is_sudden(self) -> bool:
+        """Whether χ² jumps as a row touches."""
+        return bool(getattr(self.force_model, "is_sudden", False))
+
     @cached_property
     def ranges(self) -> Mapping[Parameter, Range]:
         """Scale and limits of each coordinate; the scale of a force model's follows its unit."""
@@ -388,7 +398,7 @@ class Likelihood(ChiSquared):
 
     def condensed(self, parameters: Coordinates, tolerance: float) -> Likelihood:
         """Return the same χ² from a model that is evaluated at fewer rows, if it is that smooth."""
-        if self.memory or getattr(self.force_model, "is_sudden", False):
+        if self.memory or self.is_sudden:
             return self
         force, _ = self._balanced(parameters)
         groups, count = self._smooth(parameters[CONTACT_POINT]), _NODES

@@ -277,7 +277,8 @@ def _end(
     def excess(share: float) -> float:
         """Return √Δχ² − √threshold, which is nearly linear in the distance."""
         start = path[max(nearer for nearer in path if nearer <= share)]
-        minimum = likelihood.minimise(start | {parameter: value + share * span}, (parameter,))
+        at = start | {parameter: value + share * span}
+        minimum = likelihood.minimise(at, (parameter,), rough=likelihood.is_sudden)
         if minimum.chi_squared < best.chi_squared - _IMPROVEMENT:
             raise ImprovedMinimum(minimum)
         path[share] = minimum.parameters
