@@ -16,6 +16,7 @@ from scipy.special import beta
 import pellicle as pl
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.drag import DRAG, DragModel
+from pellicle.fitting.models.drift import DRIFT, DriftModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
 from pellicle.fitting.models.history import History, constant_speed
 from pellicle.fitting.models.relaxing import (
@@ -69,6 +70,7 @@ def test_power_law_pressed_at_constant_speed(alpha: float) -> None:
         (PowerLawModel(ELASTIC, HISTORY), {TENSION: 1e-3, EXPONENT: 0.2}),
         (StandardLinearModel(ELASTIC, HISTORY), {TENSION: 1e-3, SHARE: 0.3, RELAXATION_TIME: 0.3}),
         (DragModel(ELASTIC, HISTORY), {TENSION: 1e-3, DRAG: 50.0}),
+        (DriftModel(ELASTIC, HISTORY), {TENSION: 1e-3, DRIFT: 1e-10}),
         (
             AdhesiveModel(ELASTIC, ROWS.sense < 0, np.zeros(ROWS.sense.size), 0.05),
             {TENSION: 1e-3, WORK_OF_ADHESION: 1e-6},
@@ -156,6 +158,21 @@ def test_both_passes_show_a_tension() -> None:
     fit = fitted(solid, solid.measured(path("both")), "both")
     assert fit.tension_needed
     assert fit.comparison.startswith("tension is needed")
+
+
+def test_both_passes_show_drift() -> None:
+    """A force that grows with time over both passes is drift, with its rate, and no tension."""
+    solid = sample("no tension", 5)
+    curve = solid.measured(path("both"))
+    top = float(curve.force.max())
+    force = curve.force + 0.03 * top * (curve.time - curve.time[0])
+    chosen = fitted(solid, curve._replace(force=force), "both").chosen
+    assert chosen is not None
+    assert chosen.rival.code == "drift"
+    rate = chosen.estimates["drift"]
+    assert rate.low is not None
+    assert rate.high is not None
+    assert rate.low < 0.03 * top < rate.high
 
 
 def test_two_speeds_show_relaxation() -> None:

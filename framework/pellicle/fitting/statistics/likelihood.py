@@ -122,9 +122,9 @@ class ChiSquared(ABC):
         """Error of the model relative to the largest force; noise below it cannot be resolved."""
 
     @property
-    @abstractmethod
     def is_sudden(self) -> bool:
         """Whether χ² jumps as a row touches, where searches to the last digit do not end."""
+        return False
 
     @abstractmethod
     def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
@@ -363,6 +363,7 @@ class Likelihood(ChiSquared):
             "N": height,
             "N/m": height / span,
             "J/m^2": height / span,
+            "N/s": height / duration,
             "Pa s": height * duration / span**2,
             "": 1.0,
         }

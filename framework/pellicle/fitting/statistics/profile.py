@@ -255,8 +255,12 @@ def confidence_interval(
     value, (scale, low, high) = best.parameters[parameter], likelihood.ranges[parameter]
     if parameter.logarithmic and not parameter.is_length:
         low, high = value - REACH, value + REACH
-    elif np.isinf(high):
-        high = float(np.exp(REACH)) * max(value, scale)
+    else:
+        farthest = float(np.exp(REACH)) * max(abs(value), scale)
+        low, high = (
+            limit if np.isfinite(limit) else sign * farthest
+            for limit, sign in ((low, -1), (high, 1))
+        )
     return (
         _end(likelihood, best, parameter, low, threshold),
         _end(likelihood, best, parameter, high, threshold),

@@ -13,6 +13,7 @@ from pellicle.components import HasContactRadius, HasForceCurve, HasLayerForceCu
 from pellicle.errors import ConvergenceError, PellicleError
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.drag import DRAG, DragModel
+from pellicle.fitting.models.drift import DRIFT, DriftModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel, TensionModel
 from pellicle.fitting.models.layer import FreeLayerModel
 from pellicle.fitting.models.relaxing import (
@@ -266,6 +267,16 @@ def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
             False,
             lambda member: DragModel(_elastic(member), member.history),
             (DRAG,),
+        )
+    if all(member.segment == "both" for member in members):
+        # On one pass it is a sloping baseline.
+        yield Rival(
+            "drift",
+            "drift in time",
+            False,
+            lambda member: DriftModel(_elastic(member), member.history),
+            (DRIFT,),
+            (OFFSET,),
         )
     elastic = [_elastic(member) for member in members]
     if all(
