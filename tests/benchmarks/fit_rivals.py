@@ -30,6 +30,7 @@ from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from pellicle.fitting.pooled import pool_sources
 from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle.units import Quantity
 from pellicle_plugins.analytic.adhesion import Adhesion
 
 Array = NDArray[np.float64]
@@ -484,12 +485,12 @@ def named_path(sample: Sample, named: str) -> Path | None:
         return path("both")
     if "dwell" in named:
         return path(dwell=True)
-    if speed := re.search(r"second speed of ([\d.e+-]+) µm/s", named):
-        return path(rate=10.0 if float(speed[1]) * 1e-6 > deepest else 0.1)
-    if depth := re.search(r"curve, to ([\d.e+-]+) µm", named):
-        return path(deepest=float(depth[1]) * 1e-6 / deepest)
-    if radius := re.search(r"second radius, ([\d.e+-]+) µm", named):
-        return path(radius=float(radius[1]) * 1e-6 / RADIUS)
+    if speed := re.search(r"second speed of (\S+ \S+m/s)", named):
+        return path(rate=10.0 if Quantity("m/s")(speed[1]) > deepest else 0.1)
+    if depth := re.search(r"curve, to (\S+ \S*m)\b", named):
+        return path(deepest=Quantity("m")(depth[1]) / deepest)
+    if radius := re.search(r"second radius, (\S+ \S*m)\b", named):
+        return path(radius=Quantity("m")(radius[1]) / RADIUS)
     return None
 
 

@@ -246,22 +246,65 @@ def test_fit_tells_failed_curves_from_unusable_input(cli: Cli, folder: Path) -> 
     assert "no such" in cli("fit", "missing.csv", *options, code=2).stderr.lower()
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
-def test_a_process_prints_in_the_code_page_of_its_environment(encoding: str, folder: Path) -> None:
-    """`PYTHONIOENCODING` and NO_COLOR are followed by the whole program."""
-    environment = {**os.environ, "PYTHONIOENCODING": encoding, "NO_COLOR": "1"}
+_SESSION = """
+import json, sys
+from pellicle.cli import app
+for words in json.loads(sys.argv[1]):
+    print("$", *words)
+    try:
+        app(words, prog_name="pellicle")
+    except SystemExit as stop:
+        assert stop.code == 0, (words, stop.code)
+"""
+_WORDS = ["check c.toml", "explain tensed_membrane", "show a.h5", "show study"]
+
+
+@pytest.mark.parametrize(
+    ("encoding", "others", "signs"),
+    [
+        (
+            "ascii",
+            ["new --example fit", "fit fit.toml"],
+            ["depth [um]", "[mm^2]", "title:    Delta layer", "tau0", "Cramer-Rao", " pN, from"],
+        ),
+        (
+            "cp1252",
+            ["new d.toml", "run b.toml -o c", "validate"],
+            ["depth [µm]", "[mm²]", "title:    Delta layer", "wrote c", "all 16 cases passed", "²"],
+        ),
+    ],
+)
+def test_a_process_prints_in_the_code_page_of_its_environment(
+    encoding: str, others: list[str], signs: list[str], folder: Path
+) -> None:
+    """`PYTHONIOENCODING`, NO_COLOR and 80 columns are followed by the whole program."""
+    (folder / "b.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
+    (folder / "c.toml").write_text(STUDY, encoding="utf-8")
+    environment = {
+        **os.environ,
+        "PYTHONIOENCODING": encoding,
+        "NO_COLOR": "1",
+        "FORCE_COLOR": "1",
+        "COLUMNS": "80",
+    }
+    commands = [line.split() for line in _WORDS + others]
     done = subprocess.run(
-        [sys.executable, "-m", "pellicle", "show", "a.h5"],
+        [sys.executable, "-c", _SESSION, json.dumps(commands)],
         cwd=folder,
         env=environment,
         capture_output=True,
-        check=True,
+        check=False,
     )
+    said = done.stderr.decode(encoding)
+    assert done.returncode == 0, said
     shown = done.stdout.decode(encoding)
-    assert ("depth [um]" if encoding == "ascii" else "depth [µm]") in shown
-    assert ("[mm^2]" if encoding == "ascii" else "[mm²]") in shown
+    for sign in signs:
+        assert sign in shown
     assert "\x1b" not in shown
-    assert done.stderr == b""
+    assert "Traceback" not in said
+    # A row of a table has two spaces between its cells; sentences are broken by the terminal.
+    wide = [line for line in shown.splitlines() if len(line) > 80]
+    assert not [line for line in wide if "  " in line]
 
 
 def examples() -> Iterator[Any]:

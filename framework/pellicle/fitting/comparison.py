@@ -347,11 +347,11 @@ def _judge(
     """Return the verdict on ranked explanations."""
     alone = {fit.rival.code: fit.aic for fit in fits if not fit.rival.has_tension}
     tensed = next(fit for fit in fits if fit.rival == TENSED)
-    # A pair of which either part does as well alone is no explanation of its own.
+    # A tension beside an effect explains the curves only if neither does as well alone.
     with_tension = next(
         fit
         for fit in fits
-        if fit.rival == TENSED
+        if fit is tensed
         or (
             fit.rival.has_tension
             and min(tensed.aic, alone.get(fit.rival.code.partition("+")[2], np.inf)) - fit.aic

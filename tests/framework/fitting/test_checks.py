@@ -120,7 +120,7 @@ def test_offset_is_said_and_mended() -> None:
     (check,) = [
         failure for failure in fit(position, shifted).failed_checks if failure.code == "offset"
     ]
-    assert "the force before contact is 3.0" in check.message
+    assert "the force before contact is 30.1 pN" in check.message
     assert not fit(position, shifted, baseline="offset").failed_checks
 
 

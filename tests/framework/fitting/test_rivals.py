@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.special import beta
 
 import pellicle as pl
+from pellicle.fitting.comparison import RivalFit, _judge
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.drag import DRAG, DragModel
 from pellicle.fitting.models.drift import DRIFT, DriftModel
@@ -30,6 +31,7 @@ from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, T
 from pellicle.fitting.report.answer import answer
 from pellicle.fitting.report.page import save_report
 from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle.fitting.statistics.rivals import NONE, TENSED, Rival
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 
@@ -291,3 +293,21 @@ def test_the_chosen_model_is_the_answer(tmp_path: Path) -> None:
     work = float(many["work_of_adhesion"][0])
     assert work == chosen["parameters"]["work_of_adhesion"]["value"]
     assert str(many["chosen_model"].values[0]) == "adhesion"
+
+
+@pytest.mark.parametrize(("gain", "chosen"), [(1.2, None), (7.0, "tension+adhesion")])
+def test_an_effect_beside_tension_has_to_beat_tension_alone(
+    gain: float, chosen: str | None
+) -> None:
+    """Of tied explanations with tension the one with fewer parameters counts."""
+    ranked = {"tension+adhesion": 0.0, "tension": gain, "adhesion": 40.0, "none": 3000.0}
+    rivals = {
+        code: Rival(code, code.replace("+", " and "), "tension" in code, TENSED.build)
+        for code in ranked
+    } | {rival.code: rival for rival in (NONE, TENSED)}
+    fits = [RivalFit(rivals[code], 0.0, aic, aic, {}, {}) for code, aic in ranked.items()]
+    unused: Any = None
+    comparison = _judge(unused, fits, [], [1.0])
+    assert comparison.verdict == "needed"
+    assert (comparison.chosen and comparison.chosen.rival.code) == chosen
+    assert ("beside it there is adhesion" in comparison.sentence) == (chosen is not None)

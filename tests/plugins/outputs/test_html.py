@@ -607,6 +607,17 @@ def test_browser_prints_both_maps_side_by_side(
     assert tops[0] == tops[1]
 
 
+def test_browser_prints_no_empty_page(browser: Chrome, ran: tuple[Path, xr.Dataset]) -> None:
+    """Each page has words on it, and the maps on the screen are as before."""
+    show(browser, ran[0])
+    before = [picture(browser, number) for number in range(2)]
+    pdf = base64.b64decode(browser.print_page())
+    pages = re.findall(rb"/Type /Page\n(.*?)endobj", pdf, re.DOTALL)
+    assert len(pages) > 2
+    assert all(b"/Font" in page for page in pages)
+    assert [picture(browser, number) for number in range(2)] == before
+
+
 def shown_marks(browser: Chrome) -> set[str]:
     """Return the steps whose marks are seen on the curves."""
     marks: list[str] = browser.execute_script(

@@ -14,6 +14,7 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import HasContactRadius
 from pellicle.errors import ConfigError
 from pellicle.fitting.parameters import MODULUS, TENSION, Parameter, Values
+from pellicle.units import readable
 
 from .force_model import ClosedFormModel, ModelForce
 
@@ -178,7 +179,8 @@ class AdhesiveModel:
                 return grid[: last + 1], position[: last + 1]
             grid = grid + step * (_BEYOND - 1)
         raise ConfigError(
-            f"of {values[WORK_OF_ADHESION]:.3g} J/m² pulls a solid of {values[MODULUS]:.3g} Pa out "
+            f"of {readable(values[WORK_OF_ADHESION], 'J/m**2', 3)} pulls a solid of "
+            f"{readable(values[MODULUS], 'Pa', 3)} out "
             "without end",
             "work_of_adhesion",
         )
