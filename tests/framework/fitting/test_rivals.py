@@ -307,7 +307,7 @@ def test_an_effect_beside_tension_has_to_beat_tension_alone(
     } | {rival.code: rival for rival in (NONE, TENSED)}
     fits = [RivalFit(rivals[code], 0.0, aic, aic, {}, {}) for code, aic in ranked.items()]
     unused: Any = None
-    comparison = _judge(unused, fits, [], [1.0])
+    comparison = _judge(unused, fits, [])
     assert comparison.verdict == "needed"
     assert (comparison.chosen and comparison.chosen.rival.code) == chosen
     assert ("beside it there is adhesion" in comparison.sentence) == (chosen is not None)
