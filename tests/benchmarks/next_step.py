@@ -1,10 +1,12 @@
-"""What the next load step of a curve costs, over a cold solve of the same step.
+"""What the load steps of a curve cost, over cold solves of the same steps.
 
-Prints for each case: operator applications on the finest grid of a cold solve, of one started from
-the step before, and of the linear solve alone if the contact were known beforehand, which is what
-no search for the contact can beat; then the time of the started solve over that of the cold one.
+Each step is a given percentage above the one before. Prints for each case the mean operator
+applications of a step on the finest grid: of a cold solve, of one started from the step before, of
+one started from the last two, and of the linear solve alone if the contact were known beforehand,
+which is what no search for the contact can beat; then the time of the path from two states over
+that of the cold solves, first step included, as processor time of one thread, interleaved.
 
-    python tests/benchmarks/next_step.py --points 512 --steps 0.05 0.01
+    python tests/benchmarks/next_step.py --points 512 --steps 0.02
 """
 
 from __future__ import annotations
@@ -20,25 +22,20 @@ import scipy.fft
 
 import pellicle as pl
 from pellicle.numerics.initial_guess import with_force
+from pellicle.numerics.path import PathPoint, start_of
 from pellicle.operators import Array
-from pellicle.problem import Problem, height_scale
+from pellicle.problem import Problem, height_scale, measure
+from pellicle.result import State
 from pellicle_plugins.solvers.contact_cg import inner_solve
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 
 
-def solved(
-    problem: Problem, tolerance: float, start: Array | None, repeats: int
-) -> tuple[Array, int, float]:
-    """Return the pressure, the operator applications and the least processor time."""
-    best = np.inf
-    for _ in range(repeats):
-        before, started = problem.operator.applications, time.process_time()
-        solver = pl.solver("active_set", tolerance=tolerance)
-        state = None if start is None else pl.State(start, start, problem.value)
-        pressure = solver.solve(problem, state, lambda *_: None).pressure
-        best = min(best, time.process_time() - started)
-        used = problem.operator.applications - before
-    return pressure, used, best
+def solved(problem: Problem, tolerance: float, start: State | None) -> tuple[Array, int, float]:
+    """Return the pressure, the operator applications and the processor time."""
+    before, started = problem.operator.applications, time.process_time()
+    solver = pl.solver("active_set", tolerance=tolerance)
+    pressure = solver.solve(problem, start, lambda *_: None).pressure
+    return pressure, problem.operator.applications - before, time.process_time() - started
 
 
 def with_known_contact(problem: Problem, tolerance: float, start: Array, answer: Array) -> int:
@@ -68,24 +65,35 @@ def main() -> None:
     parser.add_argument("--cases", nargs="+", default=["rough", "punch", "smooth"])
     parser.add_argument("--points", type=int, nargs="+", default=[512])
     parser.add_argument("--tension", type=float, nargs="+", default=[0.0, 0.02, 1.0])
-    parser.add_argument("--steps", type=float, nargs="+", default=[0.05, 0.01])
-    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--steps", type=float, nargs="+", default=[0.02])
+    parser.add_argument("--number", type=int, default=30)
     options = parser.parse_args()
-    print("| case | s/L | N | step | cold | started | contact known | time, started ÷ cold |")
-    print("|" + " --- |" * 8)
+    print("| case | s/L | N | step | cold | one state | two states | contact known | time |")
+    print("|" + " --- |" * 9)
     for case, tension, points, step in product(
         options.cases, options.tension, options.points, options.steps
     ):
         given, tolerance, _ = cost.problem(case, points, tension)
+        sums, times, known = np.zeros(3), np.zeros(3), 0
+        path: list[PathPoint] = []
         with scipy.fft.set_workers(1):
-            before, _, _ = solved(given, tolerance, None, 1)
-            following = replace(given, value=given.value * (1 + step))
-            answer, cold, cold_time = solved(following, tolerance, None, options.repeats)
-            _, warm, warm_time = solved(following, tolerance, before, options.repeats)
-            known = with_known_contact(following, tolerance, before, answer)
+            for index in range(options.number):
+                problem = replace(given, value=given.value * (1 + step) ** index)
+                last = path[-1].state if path else None
+                for column, start in enumerate((None, last, start_of(problem, last, path))):
+                    pressure, used, seconds = solved(problem, tolerance, start)
+                    sums[column] += used
+                    times[column] += seconds
+                if last is not None:
+                    known += with_known_contact(problem, tolerance, last.pressure, pressure)
+                equilibrium = measure(problem, pressure)
+                path = [*path[-1:], PathPoint(equilibrium.state, equilibrium.gap)]
+        mean = " | ".join(f"{value / options.number:.1f}" for value in sums)
+        known_mean = known / max(1, options.number - 1)
+        ratio = times[2] / times[0]
         print(
-            f"| {case} | {tension:g} | {points} | {step:.0%} | {cold} | {warm} | {known} "
-            f"| {warm_time / cold_time:.2f} |",
+            f"| {case} | {tension:g} | {points} | {step:.0%} | {mean} | {known_mean:.1f} "
+            f"| {ratio:.2f} |",
             flush=True,
         )
 

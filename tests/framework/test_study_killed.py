@@ -36,7 +36,7 @@ executor = { type = "processes", workers = 2 }
 kernel.tension = { start = "0.1 N/m", stop = "1 N/m", num = 6, spacing = "log" }
 indenter.radius = ["1 mm", "1.2 mm", "1.4 mm"]
 """
-KILLS = 8
+KILLS = 4
 TIMES = {"wall_time"}
 
 

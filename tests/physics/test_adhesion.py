@@ -37,10 +37,10 @@ def test_a_retracted_paraboloid_is_the_closed_theory(length: float, name: str) -
     assert step["status_code"].item() == "STEEP"
     assert abs(float(step["force"]) - force) < 0.02 * FORCE
     assert float(step["contact_radius"]) == pytest.approx(radius, rel=0.03)
-    # Taking off the error that is proportional to the width of the zone leaves that of the cells.
-    limit = float(step["force_extrapolated"])
-    assert abs(limit - force) < min(0.01 * FORCE, abs(float(step["force"]) - force))
-    assert abs(limit - float(step["force"])) == pytest.approx(float(step["force_error"]))
+    # Two wider zones give the limit of none to less than cells err at the width of the step.
+    error = abs(float(step["force"]) - force)
+    assert abs(float(step["force_extrapolated"]) - force) < min(0.0065 * FORCE, error)
+    assert error <= float(step["force_error"]) < 2 * error
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,7 @@ from pellicle.checks import (
 )
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.grid import LARGEST, Grid
+from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
 from pellicle.numerics.relaxation import Branch
 from pellicle.numerics.solution import Solution, State, Stop
@@ -294,7 +295,9 @@ def solution_of(
         depth = real_number(solver, "solve().state.depth", value.state.depth)
         state = State(pressure, wall.copy(), depth)
     jumped = bool(value.jumped) or (adheres and _in_contact(state) != _in_contact(start))
-    return Solution(state, int(value.iterations), value.stop, jumped)
+    return Solution(
+        state, int(value.iterations), value.stop, jumped, adheres and bool(value.extrapolated)
+    )
 
 
 def _in_contact(state: State | Array | None) -> bool:
@@ -341,7 +344,12 @@ def _read_only_problem(problem: Problem) -> Problem:
 
 
 def _read_only_state(state: State) -> State:
-    return State(read_only(state.pressure), read_only(state.wall), state.depth)
+    pressure = read_only(state.pressure)
+    wall = pressure if state.wall is state.pressure else read_only(state.wall)
+    view = State(pressure, wall, state.depth)
+    if isinstance(state, Start) and state.ahead:
+        return Start.of(view, _read_only_state(state.ahead))
+    return view
 
 
 def _require_unchanged(

@@ -14,6 +14,7 @@ from pellicle.grid import Grid
 from pellicle.numerics.gap_law import Law
 from pellicle.numerics.initial_guess import overlap_pressure
 from pellicle.numerics.operators import Operator
+from pellicle.numerics.path import PathPoint, start_of
 from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
 from pellicle.numerics.solution import State
 from pellicle.results.variables import Variable
@@ -39,6 +40,8 @@ class Setting:
     """The traction that acts across the gap; None for hard contact that does not stick."""
     left: Array | None = None
     """Displacement left behind by earlier load steps [m]; None if there is none."""
+    path: tuple[PathPoint, ...] = ()
+    """The last two load steps, the earlier one first; fewer if there are no more."""
 
     @property
     def mean_height(self) -> float:
@@ -52,6 +55,10 @@ class Setting:
         """Return the problem of a load step."""
         profile = self.profile if self.left is None else self.profile - self.left
         return Problem(self.grid, self.operator, profile, control, law=self.law, left=self.left)
+
+    def start(self, problem: Problem) -> State | None:
+        """Return the start of a solve of ``problem``; see `pellicle.numerics.path.start_of`."""
+        return start_of(problem, self.state, self.path)
 
     def force_at(self, depth: float) -> float:
         """Return an estimate of the force [N] at a depth [m], by one application of the operator.

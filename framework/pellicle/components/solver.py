@@ -133,6 +133,10 @@ class IterativeSolver(Solver):
         """Return the solution's state of an iterate; by default its pressure."""
         return self.pressure(state)
 
+    def extrapolated(self, state: Any) -> bool:
+        """Return whether the iteration began from `Start.ahead`; by default False."""
+        return False
+
     def terminate(self, problem: Problem, state: Any) -> Stop | None:
         """Return the reason to end the iteration above the tolerance; None, the default, continues.
 
@@ -166,7 +170,9 @@ class IterativeSolver(Solver):
                 break
             state = self.step(problem, state)
             iteration += 1
-        solution = Solution(self.state(state), iteration, stop)
+        solution = Solution(
+            self.state(state), iteration, stop, extrapolated=self.extrapolated(state)
+        )
         if stop is Stop.STALLED and residual <= _ROUNDINGS * round_off(problem, solution.pressure):
             solution = replace(solution, stop=Stop.ROUND_OFF)
         return solution

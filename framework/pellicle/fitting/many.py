@@ -145,7 +145,7 @@ def fit_many(
         Folder for the table, as ``fits.h5``, ``fits.csv`` and ``fits.json``, and a file for each
         curve in ``curves``. A fit that it contains already is not repeated.
     progress
-        Show a bar on a terminal; without one, a line for each curve.
+        Show a bar on a terminal or in a notebook; elsewhere, a line for each curve.
     config, **options
         As for `fit`.  A list for a field of the indenter, for spring_constant or for sensitivity
         has a value for each file: ``radius=["5 um", "20 um"]``.
@@ -287,7 +287,7 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker."""
     fit = fit_problem(task.problem)
     likelihood, best = fit.likelihood, fit.parameters
-    residuals = likelihood.residuals(best) * likelihood.noise
+    residuals = likelihood.misfit(best)
     scatter = likelihood.force - np.mean(likelihood.force)
     _, force = likelihood.fitted(best)
     return (

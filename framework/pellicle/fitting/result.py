@@ -169,8 +169,11 @@ class FitResult:
         youngs = self.youngs_modulus
         return estimates if youngs is None else estimates | {"youngs_modulus": youngs}
 
-    def curve_rows(self) -> list[dict[str, str]]:
-        """Return a line of a table for each curve of a pool; none for a single curve."""
+    def curve_rows(self, *, si: bool = False) -> list[dict[str, str]]:
+        """Return a line of a table for each curve of a pool; none for a single curve.
+
+        Units have prefixes unless ``si``.
+        """
         return []
 
     def to_dict(self) -> dict[str, Any]:
@@ -237,11 +240,6 @@ class FitResult:
         return write_json(self.to_dict(), Path(path))
 
 
-def interval_text(low: float | None, high: float | None) -> str:
-    """Return an interval as text, an open end as "open"."""
-    return " to ".join("open" if end is None else f"{end:.4g}" for end in (low, high))
-
-
 def as_json(value: object) -> str:
     """Return indented JSON in ASCII, which every terminal and code page contains."""
     return json.dumps(value, indent=2) + "\n"
@@ -256,10 +254,20 @@ def write_json(value: object, path: Path) -> Path:
 
 @contextmanager
 def status_line(enabled: bool) -> Iterator[Callable[[str], None]]:
-    """Show the stage of a fit on a terminal; yield a function that sets its description."""
+    """Show the stage of a fit while it runs; yield a function that sets its description.
+
+    It is shown on a terminal and in a notebook.
+    """
     from rich.console import Console
 
     console = Console(stderr=True)
+    if enabled and console.is_jupyter:
+        from pellicle.runs.notebook_bar import NotebookBar
+
+        with NotebookBar() as bar:
+            task = bar.add_task("fitting", total=None, message="")
+            yield lambda stage: bar.update(task, message=stage)
+        return
     if not (enabled and console.is_terminal):
         yield lambda stage: None
         return

@@ -19,6 +19,8 @@ for (const head of document.querySelectorAll("th")) {
 
 const NOTHING = 65535;
 const MARGIN = { left: 58, right: 84, top: 26, bottom: 40 };
+// A map on paper: half a page wide, in the colours of a page in the light.
+const PRINTED = { width: 360, ratio: 3, ink: "#000", blank: "#e9ecee" };
 const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 const rounded = (value) => String(Number(value.toPrecision(4))).replace("-", "−");
 
@@ -75,12 +77,17 @@ function makeMaps(figure, data) {
   const canvases = [...figure.querySelectorAll("canvas")];
   const colours = data.fields.map((field) => bytesOf(field.colours));
   const pictures = canvases.map(() => document.createElement("canvas"));
-  let frame, values, view, cursor = null, shown = -1, limits = [];
+  let frame, values, view, cursor = null, shown = -1, limits = [], printing = false;
 
   // The area of the map within the canvas, in CSS pixels.
+  const extent = (canvas) => {
+    const width = printing ? PRINTED.width : canvas.clientWidth;
+    const aspect = Math.min(2, Math.max(0.2, frame.size[1] / frame.size[0]));
+    return [width, (width - MARGIN.left - MARGIN.right) * aspect + MARGIN.top + MARGIN.bottom];
+  };
   const box = (canvas) => {
-    const width = canvas.clientWidth - MARGIN.left - MARGIN.right;
-    const height = canvas.clientHeight - MARGIN.top - MARGIN.bottom;
+    const [across, up] = extent(canvas);
+    const width = across - MARGIN.left - MARGIN.right, height = up - MARGIN.top - MARGIN.bottom;
     return { width, height, x: MARGIN.left, y: MARGIN.top };
   };
   const whole = () => {
@@ -166,14 +173,16 @@ function makeMaps(figure, data) {
   function draw() {
     if (!frame) return;
     const style = getComputedStyle(document.documentElement);
-    const ink = style.getPropertyValue("--ink"), blank = style.getPropertyValue("--blank");
-    const aspect = Math.min(2, Math.max(0.2, frame.size[1] / frame.size[0]));
+    const { ink, blank, ratio } = printing ? PRINTED : {
+      ink: style.getPropertyValue("--ink"),
+      blank: style.getPropertyValue("--blank"),
+      ratio: window.devicePixelRatio || 1,
+    };
     canvases.forEach((canvas, number) => {
-      const across = canvas.clientWidth - MARGIN.left - MARGIN.right;
-      canvas.style.height = `${across * aspect + MARGIN.top + MARGIN.bottom}px`;
-      const ratio = window.devicePixelRatio || 1;
-      canvas.width = Math.round(canvas.clientWidth * ratio);
-      canvas.height = Math.round(canvas.clientHeight * ratio);
+      const [across, up] = extent(canvas);
+      canvas.style.height = `${up}px`;
+      canvas.width = Math.round(across * ratio);
+      canvas.height = Math.round(up * ratio);
       const pen = canvas.getContext("2d");
       pen.scale(ratio, ratio);
       pen.font = `12px ${getComputedStyle(document.body).fontFamily}`;
@@ -361,7 +370,11 @@ function makeMaps(figure, data) {
   line?.addEventListener("input", () => show(Number(line.value)));
   alone.addEventListener("change", paint);
   addEventListener("resize", draw);
-  for (const query of ["print", "(prefers-color-scheme: dark)"]) matchMedia(query).addEventListener("change", draw);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+  // Before the pages are counted: a canvas that changes its height while they are made adds an
+  // empty page, or loses the last one.
+  for (const [name, state] of [["beforeprint", true], ["afterprint", false]])
+    addEventListener(name, () => { printing = state; draw(); });
   show(Number(select.value));
   return show;
 }

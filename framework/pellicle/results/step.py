@@ -10,6 +10,7 @@ import numpy as np
 from pellicle.analysis import ellipse, patches, perimeter
 from pellicle.arrays import Array
 from pellicle.grid import Grid
+from pellicle.numerics.path import PathPoint
 from pellicle.numerics.problem import Equilibrium
 from pellicle.numerics.solution import State
 
@@ -116,13 +117,21 @@ class Steps:
     @property
     def state(self) -> State | None:
         """The state at the end of the last step, or None before the first step."""
-        if not self._scalars:
-            return None
-        pressure = self._fields["pressure"].values[len(self) - 1]
-        wall = pressure
-        if "wall_pressure" in self._fields:
-            wall = self._fields["wall_pressure"].values[len(self) - 1]
-        return State(pressure, wall, self._scalars[-1]["depth"].item())
+        return self._state(len(self) - 1) if self._scalars else None
+
+    @property
+    def path(self) -> tuple[PathPoint, ...]:
+        """The last two steps that converged, without one between; the earlier one first."""
+        points: list[PathPoint] = []
+        for index in range(max(0, len(self) - 2), len(self)):
+            scalars = self._scalars[index]
+            if not scalars["converged"].item():
+                points.clear()
+                continue
+            energy = scalars["energy"].item() if "energy" in scalars else np.nan
+            gap = self._fields["gap"].values[index]
+            points.append(PathPoint(self._state(index), gap, energy))
+        return tuple(points)
 
     @property
     def last(self) -> xr.Dataset | None:
@@ -135,6 +144,13 @@ class Steps:
             return np.empty((0, 0, 0))
         values: Array = self._fields[name].values[: len(self)]
         return values
+
+    def _state(self, index: int) -> State:
+        pressure = self._fields["pressure"].values[index]
+        wall = pressure
+        if "wall_pressure" in self._fields:
+            wall = self._fields["wall_pressure"].values[index]
+        return State(pressure, wall, self._scalars[index]["depth"].item())
 
     def append(self, step: xr.Dataset) -> xr.Dataset:
         """Copy a step of `step_dataset` into the arrays, and return it as views of them."""

@@ -53,9 +53,7 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     grows = ["step"] if fields and path.suffix != ".tail" else []
     with atomic_write(path) as part:
         versioned = dataset.assign_attrs(schema_version=SCHEMA_VERSION)
-        file = netcdf.serialised(versioned, grows=grows, packed=fields)
-        checksum.seal(file)
-        part.write_bytes(file.getbuffer())
+        _save(netcdf.serialised(versioned, grows=grows, packed=fields), part)
         # The segments are removed before the old file is replaced: they must not continue the new.
         _remove_segments(path)
 
@@ -280,10 +278,17 @@ def _join(path: Path, segments: Sequence[Path], *more: xr.Dataset) -> None:
                     _extend(file, {name: source[name] for name in names})
             for steps in more:
                 _extend(file, {name: steps[name].values for name in names})
-        checksum.seal(grown)
-        part.write_bytes(grown.getbuffer())
+        _save(grown, part)
     with storage_errors(path):
         _remove_segments(path)
+
+
+def _save(content: io.BytesIO, path: Path) -> None:
+    """Write an HDF5 file in memory, and its checksum, to disk."""
+    checksum.seal(content)
+    # A view that the traceback of a full disk keeps prevents Python from freeing the content.
+    with path.open("wb") as file, content.getbuffer() as buffer:
+        file.write(buffer)
 
 
 def _with_room(path: Path, room: int) -> io.BytesIO:

@@ -227,7 +227,7 @@ REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "ite
 CONTACT_AREA: Final = "contact area"
 CORRECTED_AREA: Final = "contact_area_"
 """Beginning of the name of an area with a correction, which its type ends."""
-_CORRECTED_FRACTION: Final = "contact_fraction_"
+CORRECTED_FRACTION: Final = "contact_fraction_"
 _SI_DIGITS, _ALL_DIGITS = 6, 15
 
 
@@ -248,7 +248,7 @@ def corrected_area(type_: str, words: str = "") -> Variable:
 def corrected_fraction(area: Variable) -> Variable:
     """Return the variable for a corrected area over the area of the domain."""
     return Variable(
-        area.name.replace(CORRECTED_AREA, _CORRECTED_FRACTION, 1),
+        area.name.replace(CORRECTED_AREA, CORRECTED_FRACTION, 1),
         "1",
         f"{area.meaning}, over the area of the domain",
         "other",
@@ -328,9 +328,9 @@ def _known_words(name: str) -> str:
     """Return words for a variable without them, as in files of earlier versions."""
     if name in VARIABLES:
         return VARIABLES[name].words
-    if not name.startswith((CORRECTED_AREA, _CORRECTED_FRACTION)):
+    if not name.startswith((CORRECTED_AREA, CORRECTED_FRACTION)):
         return words_of_name(name)
-    area = corrected_area(name.removeprefix(CORRECTED_AREA).removeprefix(_CORRECTED_FRACTION))
+    area = corrected_area(name.removeprefix(CORRECTED_AREA).removeprefix(CORRECTED_FRACTION))
     return (area if name.startswith(CORRECTED_AREA) else corrected_fraction(area)).words
 
 

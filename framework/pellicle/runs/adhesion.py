@@ -12,15 +12,16 @@ from pellicle.components.calls import solution_of
 from pellicle.components.checked_law import law_of
 from pellicle.config.run import Run
 from pellicle.numerics.labels import labelled
+from pellicle.numerics.path import PathPoint
 from pellicle.numerics.problem import Depth, Equilibrium, equilibrium_of
 from pellicle.numerics.solution import State, Stop
 
 if TYPE_CHECKING:
     import xarray as xr
 
-# Width of the zone over that of the step, for the limit of no width. The place of the edge on the
-# cells changes forces by 0.003 to 0.006 πwR; a ratio of 1.5 would double that, this one does not.
-_WIDER: Final = 2.0
+# Widths of two zones over that of the step, for the limit of no width. The place of the edge on the
+# cells changes forces by 0.005 to 0.01 πwR at the width of the step, by 0.002 from 1.5 times on.
+_WIDER: Final = (1.5, 3.0)
 # Halvings of the interval of forces in which the contact is lost.
 _HALVINGS: Final = 6
 # Share of |ΔF Δδ|/2 by which the trapezoidal rule may miss the work of a step without a jump. It
@@ -34,22 +35,35 @@ _UNCERTAIN: Final = 0.01
 def force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> tuple[float, float] | None:
     """Return the force [N] for no width of the zone, and the error [N] of that of the step.
 
-    The step is solved again at its depth with a wider zone. The error is proportional to the width
-    of the zone, so the force for none is extrapolated (Richardson 1911). Both are NaN if the
-    contact is lost with the wider zone; the result is None if the interaction has no such limit.
+    The step is solved again at its depth with two wider zones. Their forces differ from that of no
+    zone in proportion to its width, so that one is extrapolated (Richardson 1911). The error is the
+    difference from it, or that from the extrapolation by the narrower zones if larger, because the
+    widest may reach over half of a small contact. Both are NaN if the contact is lost or no
+    solution is found with a wider zone; the result is None if the interaction has no such limit.
     """
-    wider = run.interaction.wider(_WIDER) if run.interaction else None
-    if wider is None:
+    sticky = run.interaction
+    laws = [law for factor in _WIDER if (law := sticky.wider(factor))] if sticky else []
+    if not laws:
         return None
     if not equilibrium.contact.any():
         return equilibrium.force, 0.0
-    law = law_of(wider, run.kernel, run.grid)
-    problem = replace(equilibrium.problem, law=law, control=Depth(equilibrium.depth))
-    other = equilibrium_of(problem, solution_of(run.solver, problem, equilibrium.state, monitor))
-    if not other.contact.any():
-        return float("nan"), float("nan")
-    error = (other.force - equilibrium.force) / (_WIDER - 1)
-    return equilibrium.force - error, abs(error)
+    forces = []
+    wider = equilibrium
+    for law in laws:
+        problem = replace(
+            equilibrium.problem,
+            law=law_of(law, run.kernel, run.grid),
+            control=Depth(equilibrium.depth),
+        )
+        solution = solution_of(run.solver, problem, wider.state, monitor)
+        wider = equilibrium_of(problem, solution)
+        if not (wider.contact.any() and wider.residual <= run.solver.tolerance):
+            return float("nan"), float("nan")
+        forces.append(wider.force)
+    narrow, wide = _WIDER
+    limit = (wide * forces[0] - narrow * forces[1]) / (wide - narrow)
+    error = abs(forces[0] - equilibrium.force) / (narrow - 1)
+    return limit, max(error, abs(limit - equilibrium.force))
 
 
 def greatest_pull(
@@ -103,8 +117,27 @@ def jump_energy(before: xr.Dataset | None, equilibrium: Equilibrium) -> float:
     if before is None or not before["converged"].item():
         return float("nan")
     depth, force, energy = (before[name].item() for name in ("depth", "force", "energy"))
+    lost, uncertain = _lost_energy(depth, force, energy, equilibrium)
+    return 0.0 if lost <= uncertain else lost
+
+
+def leaves_path(before: PathPoint, equilibrium: Equilibrium) -> bool:
+    """Whether an equilibrium is not the continuous continuation of the step ``before``.
+
+    A patch has come or gone, or the energy changed by more or less than the work of the step.
+    """
+    state = before.state
+    force = float(state.pressure.sum()) * equilibrium.problem.grid.cell_area
+    lost, uncertain = _lost_energy(state.depth, force, before.energy, equilibrium)
+    return not abs(lost) <= uncertain or asperity_jumped(state, equilibrium)
+
+
+def _lost_energy(
+    depth: float, force: float, energy: float, equilibrium: Equilibrium
+) -> tuple[float, float]:
+    """Return the energy [J] lost since a state, and by how much it is uncertain."""
     step = equilibrium.depth - depth
     lost = energy - equilibrium.energy + 0.5 * (force + equilibrium.force) * step
     missed = 0.5 * abs((equilibrium.force - force) * step)
     greatest = max(abs(force), abs(equilibrium.force)) * abs(step)
-    return 0.0 if lost <= _MISSED * missed + _UNCERTAIN * greatest else float(lost)
+    return float(lost), _MISSED * missed + _UNCERTAIN * greatest

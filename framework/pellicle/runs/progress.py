@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     import rich.progress
 
 _BETWEEN_UPDATES = 0.1
+_SPEED_PERIOD = 3600
+"""Period over which the speed is measured [s]: runs of a study may take minutes each."""
 
 
 class ProgressMessage(NamedTuple):
@@ -100,7 +102,7 @@ class _Shown(ABC):
 
 
 class Progress(_Shown):
-    """Shows a bar on a terminal; shows nothing without a terminal or if not ``enabled``.
+    """Shows a bar on a terminal or in a notebook; elsewhere, or if not ``enabled``, nothing.
 
     The bar shows the step, the iteration, the residual and the time left. Ctrl-C takes effect at
     the next iteration.
@@ -108,8 +110,7 @@ class Progress(_Shown):
 
     def __init__(self, steps: int, enabled: bool) -> None:
         self._steps = steps
-        console = _terminal() if enabled else None
-        super().__init__(None if console is None else _make_bar(console))
+        super().__init__(_make_bar(_stderr()) if enabled else None)
 
     def _begin(self, bar: rich.progress.Progress) -> None:
         self._task = bar.add_task("", total=float(self._steps), message="")
@@ -138,17 +139,17 @@ class Progress(_Shown):
 
 
 class StudyProgress(_Shown):
-    """Shows a bar for a study and one for each running run; without a terminal, a line per run.
+    """Shows a bar for a study and one for each running run, on a terminal or in a notebook.
 
-    Ctrl-C takes effect at the next report of a run. Nothing is shown if not ``enabled``.
+    Elsewhere there is a line for each finished run. Ctrl-C takes effect at the next report of a
+    run. Nothing is shown if not ``enabled``.
     """
 
     def __init__(self, total: int, done: int, enabled: bool) -> None:
         self._total, self._done, self._failed = total, done, 0
         self._console = _stderr() if enabled else None
-        is_terminal = self._console is not None and self._console.is_terminal
         self._running: dict[str, tuple[rich.progress.TaskID, float]] = {}
-        super().__init__(_make_study_bar(self._console) if self._console and is_terminal else None)
+        super().__init__(_make_study_bar(self._console) if self._console else None)
 
     def _begin(self, bar: rich.progress.Progress) -> None:
         self._all = bar.add_task(
@@ -256,14 +257,13 @@ def _stderr() -> rich.console.Console:
     return rich.console.Console(stderr=True)
 
 
-def _terminal() -> rich.console.Console | None:
-    console = _stderr()
-    return console if console.is_terminal else None
-
-
-def _make_bar(console: rich.console.Console) -> rich.progress.Progress:
+def _make_bar(console: rich.console.Console) -> rich.progress.Progress | None:
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+    if console.is_jupyter:
+        return _notebook_bar()
+    if not console.is_terminal:
+        return None
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -275,10 +275,15 @@ def _make_bar(console: rich.console.Console) -> rich.progress.Progress:
     )
 
 
-def _make_study_bar(console: rich.console.Console) -> rich.progress.Progress:
+def _make_study_bar(console: rich.console.Console) -> rich.progress.Progress | None:
     from rich.progress import BarColumn, Progress, TextColumn
     from rich.table import Column
     from rich.text import Text
+
+    if console.is_jupyter:
+        return _notebook_bar()
+    if not console.is_terminal:
+        return None
 
     class Cut(TextColumn):
         """Column that is shortened first where the terminal is too narrow."""
@@ -293,9 +298,14 @@ def _make_study_bar(console: rich.console.Console) -> rich.progress.Progress:
         *_time_left("time left"),
         console=console,
         transient=True,
-        # Runs of a study may take minutes each: the speed over half a minute says nothing.
-        speed_estimate_period=3600,
+        speed_estimate_period=_SPEED_PERIOD,
     )
+
+
+def _notebook_bar() -> rich.progress.Progress:
+    from .notebook_bar import NotebookBar
+
+    return NotebookBar(speed_estimate_period=_SPEED_PERIOD)
 
 
 def _time_left(label: str) -> tuple[rich.progress.ProgressColumn, rich.progress.ProgressColumn]:

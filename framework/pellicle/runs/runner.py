@@ -59,7 +59,7 @@ def run(
         Folder of the result file and the outputs. Without it nothing is written, unless the
         configuration names outputs: then it is the current folder.
     progress
-        Show a bar, if there is a terminal.
+        Show a bar on a terminal or in a notebook.
     threads
         Threads of the Fourier transforms, a whole number ≥ 1; None for `default_threads`.
     overwrite

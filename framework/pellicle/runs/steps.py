@@ -15,18 +15,18 @@ from pellicle.components.calls import (
     corrected_area,
     report_of,
     response_of,
-    solution_of,
     target_of,
 )
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
-from pellicle.numerics.problem import Equilibrium, Stiffness, equilibrium_of, measure_stiffness
+from pellicle.numerics.problem import Equilibrium, Stiffness, measure_stiffness
 from pellicle.numerics.solution import Stop
 from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable
 from pellicle.results.variables import corrected_fraction
 
 from .adhesion import asperity_jumped, force_limit, greatest_pull, jump_energy
+from .following import followed
 from .progress import Bar
 from .relaxation import Relaxation
 from .target_search import Reached, reach
@@ -43,7 +43,7 @@ def solve_steps(
     origin = provenance(run)
     solid = Relaxation.of(run)
     for index in range(len(steps), len(run.loading.values)):
-        here, others = replace(setting, state=steps.state), 0
+        here, others = replace(setting, state=steps.state, path=steps.path), 0
         if solid:
             here = solid.setting(here, steps.field("pressure"), steps.field("displacement"))
             others = solid.applications
@@ -106,13 +106,8 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Re
     if isinstance(target, Search):
         return reach(setting, target, run.solver, monitor)
     problem = setting.problem(target)
-    solution = solution_of(run.solver, problem, setting.state, monitor)
-    step = Reached(
-        equilibrium_of(problem, solution),
-        solution.iterations,
-        solution.stop,
-        jumped=solution.jumped,
-    )
+    solution, equilibrium = followed(setting, run.solver, problem, monitor)
+    step = Reached(equilibrium, solution.iterations, solution.stop, jumped=solution.jumped)
     if step.stop is Stop.PULLED_OFF:
         pull = greatest_pull(setting, run.solver, problem.control.value, monitor)
         step = step._replace(between=pull)

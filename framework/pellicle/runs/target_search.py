@@ -14,10 +14,11 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 
 from pellicle.components import Monitor, Solver
-from pellicle.components.calls import solution_of
 from pellicle.components.prescription import Search, Setting
-from pellicle.numerics.problem import Depth, Equilibrium, equilibrium_of
+from pellicle.numerics.problem import Depth, Equilibrium
 from pellicle.numerics.solution import Solution, Stop
+
+from .following import followed
 
 # Number of trials to bracket the goal, after which it counts as out of reach.
 _MOST_TRIALS: Final = 40
@@ -134,8 +135,7 @@ class _Trials:
     def _try(self, control: float) -> float:
         goal = self.search.goal
         problem = self.setting.problem(self.search.control(control))
-        solution = solution_of(self.solver, problem, self.setting.state, self.monitor)
-        equilibrium = equilibrium_of(problem, solution)
+        solution, equilibrium = followed(self.setting, self.solver, problem, self.monitor)
         self.iterations += solution.iterations
         value = self.search.measure(equilibrium)
         missed = abs(value - goal) / (abs(goal) or 1.0)

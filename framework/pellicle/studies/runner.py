@@ -96,7 +96,7 @@ def run_study(
         Folder of the study: a file for each run in ``runs``, ``study.h5`` and ``study.csv``. Steps
         of the same runs in these files are not solved again. Without a folder no file is kept.
     progress
-        Show a bar on a terminal; without one, a line for each run.
+        Show a bar on a terminal or in a notebook; elsewhere, a line for each run.
     fields
         Add pressure, displacement, gap and contact to the table; they are read from the files of
         the runs when they are used.

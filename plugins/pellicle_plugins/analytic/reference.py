@@ -14,7 +14,7 @@ from pellicle.errors import ConfigError
 from pellicle.results.derived import derive
 from pellicle.results.result import Result
 from pellicle.results.runs import Runs
-from pellicle.results.variables import names_of
+from pellicle.results.variables import CORRECTED_AREA, CORRECTED_FRACTION, names_of
 from pellicle_plugins.kernels.half_space import HalfSpace
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 
@@ -130,8 +130,8 @@ def _numbers(
     force = solution.force if solution else 0.0
     area = np.pi * radius**2
     corrected, fractions = (
-        [str(name) for name in simulated if str(name).startswith(f"{of}_")]
-        for of in ("contact_area", "contact_fraction")
+        [str(name) for name in simulated if str(name).startswith(prefix)]
+        for prefix in (CORRECTED_AREA, CORRECTED_FRACTION)
     )
     return {
         "depth": solution.depth if solution else 0.0,

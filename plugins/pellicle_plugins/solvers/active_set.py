@@ -14,6 +14,7 @@ from pellicle.components import Monitor, Solver
 from pellicle.numerics.gap_law import attraction_slope
 from pellicle.numerics.grid_transfer import highest
 from pellicle.numerics.initial_guess import first_guess, with_force
+from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Depth, Problem
 from pellicle.numerics.solution import Progress, Solution, State, Stop
 
@@ -135,6 +136,9 @@ class ActiveSet(ScaledSolver):
         if problem.law:
             adhesion = AdhesionSolver(tolerance=self.tolerance, max_iterations=self.max_iterations)
             return adhesion.solve(problem, start, monitor)
+        # Without a law the solution does not depend on the start.
+        if isinstance(start, Start) and start.ahead:
+            start = start.ahead
         return super().solve(problem, start, monitor)
 
     def begin(self, problem: Problem, start: State | None) -> _Iterate:

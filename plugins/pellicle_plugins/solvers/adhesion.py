@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final
+from typing import Final, Self
 
 import numpy as np
 import scipy.fft
@@ -13,6 +13,7 @@ from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
 from pellicle.numerics.gap_law import attracted
 from pellicle.numerics.initial_guess import first_guess
+from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Problem, adhesive_scale
 from pellicle.numerics.solution import Progress, State, Stop
 
@@ -49,8 +50,50 @@ _CHANGES: Final = 3
 _FLOOR: Final = 0.05
 # Rounds without a smaller residual after which the solve is abandoned.
 _STAGNATION: Final = 60
+# Cells by which the contact may differ from the extrapolated one: this multiple of those that were
+# extrapolated, or this share of those along the front. Beyond, the state jumps.
+_MOST_MISSED: Final = 3.0
+_FRONT_SHARE: Final = 1.0
+# Rounds after which the residual must be below this share of that of the extrapolated start.
+_TRIED: Final = 8
+_FALLEN: Final = 0.5
 # Residual of a round that ended before every cell was on its side.
 _UNSETTLED: Final = 1e-3
+
+
+@dataclass(frozen=True)
+class _Extrapolation:
+    """The extrapolated start of the rounds, and the state to which they return if it misses."""
+
+    last: State
+    """The state at the end of the last step."""
+    contact: Mask
+    """The extrapolated contact."""
+    most: float
+    """Number of cells by which the contact may differ from it."""
+    residual: float = np.inf
+    """Residual of the first round."""
+    rounds: int = 0
+
+    @classmethod
+    def of(cls, start: Start, problem: Problem) -> Self:
+        """Return it for a start; see `_MOST_MISSED`."""
+        assert start.ahead
+        contact = start.ahead.contact
+        front = perimeter(contact, problem.grid) / max(problem.grid.spacing)
+        moved = float(np.count_nonzero(contact ^ start.contact))
+        return cls(State(*start), contact, max(_MOST_MISSED * moved, _FRONT_SHARE * front))
+
+    def after(self, contact: Mask, residual: float) -> Self | None:
+        """Return it after one more round; None if the state seems to jump.
+
+        It does if the contact is far from the extrapolated one, or the residual does not fall.
+        """
+        rounds = self.rounds + 1
+        far = np.count_nonzero(contact ^ self.contact) > self.most
+        slow = rounds > _TRIED and residual > _FALLEN * self.residual
+        first = residual if self.rounds == 0 else self.residual
+        return None if far or slow else replace(self, rounds=rounds, residual=first)
 
 
 @dataclass(frozen=True)
@@ -76,6 +119,8 @@ class _Round:
     progress: Progress = field(default_factory=Progress)
     gain: float = 1.0
     """Factor on the estimated shift of the fronts."""
+    extrapolation: _Extrapolation | None = None
+    """The extrapolated start, if there was one."""
 
     @property
     def contact(self) -> Mask:
@@ -142,6 +187,14 @@ class AdhesionSolver(ScaledSolver):
         """Return the round from the last state; without one, from that of a coarser grid."""
         assert problem.law
         preconditioner = Preconditioner(problem.operator)
+        if isinstance(start, Start) and start.ahead:
+            first = self.begin(problem, start.ahead)
+            extrapolation = _Extrapolation.of(start, problem).after(first.contact, first.residual)
+            return (
+                replace(first, extrapolation=extrapolation)
+                if extrapolation
+                else self.begin(problem, State(*start))
+            )
         if start is not None and start.is_loaded:
             traction = start.pressure - start.wall
             return self._closed(problem, preconditioner.on(start.contact), start.wall, traction)
@@ -163,7 +216,12 @@ class AdhesionSolver(ScaledSolver):
         wall = state.on_contact.transferred(wall + traction - following)
         wall[~state.contact] = 0.0
         after = self._closed(problem, state.on_contact, wall, following, state)
-        return replace(after, gain=_gain(state, after))
+        extrapolation = state.extrapolation and state.extrapolation.after(
+            after.contact, after.residual
+        )
+        if state.extrapolation and not extrapolation:
+            return self.begin(problem, state.extrapolation.last)
+        return replace(after, gain=_gain(state, after), extrapolation=extrapolation)
 
     def residual(self, problem: Problem, state: _Round) -> float:
         """Return the largest of gap, penetration and missed traction, each relative."""
@@ -176,6 +234,10 @@ class AdhesionSolver(ScaledSolver):
     def state(self, state: _Round) -> State:
         """Return traction, wall pressure and depth."""
         return State(state.wall + state.traction, np.maximum(state.wall, 0.0), state.depth)
+
+    def extrapolated(self, state: _Round) -> bool:
+        """Return whether the rounds began from the extrapolated start."""
+        return state.extrapolation is not None
 
     def terminate(self, problem: Problem, state: _Round) -> Stop | None:
         """Return why the rounds end above the tolerance."""

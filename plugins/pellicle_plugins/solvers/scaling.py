@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from pellicle.components import IterativeSolver, Monitor
+from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Problem
 from pellicle.numerics.solution import Solution, State
 
@@ -30,7 +31,10 @@ class ScaledSolver(IterativeSolver):
         pressure = height / problem.operator.unit
         # Squares of a pressure far above those of this step would overflow.
         if start is not None and float(start.pressure.max()) / pressure < 2.0**_SINGLE_EXPONENT:
-            start = _scaled(start, 1 / height, 1 / pressure)
+            scaled = _scaled(start, 1 / height, 1 / pressure)
+            if isinstance(start, Start) and start.ahead:
+                scaled = Start.of(scaled, _scaled(start.ahead, 1 / height, 1 / pressure))
+            start = scaled
         else:
             start = None
         solution = super().solve(problem.scaled(height, pressure), start, monitor)
@@ -41,7 +45,9 @@ class ScaledSolver(IterativeSolver):
 
 
 def _scaled(state: State, length: float, pressure: float) -> State:
-    return State(state.pressure * pressure, state.wall * pressure, state.depth * length)
+    scaled = state.pressure * pressure
+    wall = scaled if state.wall is state.pressure else state.wall * pressure
+    return State(scaled, wall, state.depth * length)
 
 
 def height_unit(problem: Problem) -> float:

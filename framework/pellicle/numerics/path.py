@@ -1,0 +1,161 @@
+"""Extrapolate the last two load steps of a path to the control of the next one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple, Self
+
+import numpy as np
+
+from pellicle.arrays import Array, Mask
+from pellicle.grid import Boundary
+
+from .front import Traction, same_patches, shifted
+from .problem import Depth, Problem
+from .solution import State
+
+# Longest step, over the last one, to which is extrapolated.
+_FARTHEST: Final = 2.0
+# Beside a smooth contact the gap grows with this power of the distance.
+_GAP_POWER: Final = 1.5
+# Pressure of cells that join, over the greatest.
+_JOINING: Final = 1e-9
+
+
+class PathPoint(NamedTuple):
+    """A load step as the start of an extrapolation."""
+
+    state: State
+    gap: Array
+    """Gap [m]; +inf where there is no indenter."""
+    energy: float = np.nan
+    """`Equilibrium.energy` [J]; NaN if it is not known."""
+
+
+class Start(State):
+    """The state at the end of the last step, with the one that the path leads to.
+
+    A solver that starts from `ahead` must return the same solution as from the state itself.
+    """
+
+    ahead: State | None = None
+    """The last two steps extrapolated to the control of the problem."""
+
+    @classmethod
+    def of(cls, state: State, ahead: State) -> Self:
+        """Return a state with its extrapolation."""
+        start = cls(*state)
+        start.ahead = ahead
+        return start
+
+
+def start_of(problem: Problem, state: State | None, path: Sequence[PathPoint]) -> State | None:
+    """Return the start of a load step: ``state``, with its extrapolation if there is one.
+
+    Parameters
+    ----------
+    problem
+        The load step.
+    state
+        The state at the end of the last step.
+    path
+        The last two load steps, the earlier one first; fewer if there are no more.
+
+    Nothing is extrapolated across a reversal of the path or a jump, to more than twice the last
+    step, and in a solid that relaxes, whose next state also depends on what earlier steps have left
+    behind. Neither is it with a law that acts before there is contact: its contacts come and go
+    within a step, and at which position of the lattice may depend on the start.
+    """
+    if state is None or len(path) < 2 or problem.left is not None:
+        return state
+    before, last = path
+    reached = [_control(problem, point.state) for point in (before, last)]
+    step = reached[1] - reached[0]
+    ratio = (problem.value - reached[1]) / step if step else 0.0
+    touches = before.state.contact.any() and last.state.contact.any()
+    if not 0 < ratio <= _FARTHEST or not touches:
+        return state
+    depth = last.state.depth + ratio * (last.state.depth - before.state.depth)
+    if problem.law:
+        ahead = _sticking_ahead(problem, before.state, last.state, ratio)
+        return state if ahead is None else Start.of(state, State(*ahead, depth))
+    pressure = _pressure_ahead(problem, before, last, ratio)
+    return Start.of(state, State(pressure, pressure, depth))
+
+
+def _control(problem: Problem, state: State) -> float:
+    """Return the depth of the base [m] or the force [N] of a state, as `Problem.value` is."""
+    total = float(state.pressure.sum())
+    if isinstance(problem.control, Depth):
+        return state.depth + problem.operator.deflection(total)
+    return total * problem.grid.cell_area
+
+
+def _pressure_ahead(problem: Problem, before: PathPoint, last: PathPoint, ratio: float) -> Array:
+    """Return the extrapolated pressure [Pa], > 0 on the extrapolated contact.
+
+    In contact the pressure changes linearly, and cells where it falls to 0 leave. The gap of the
+    cells beside the contact changes linearly too; farther away the edge moves evenly through the
+    gap to the power 2/3, since the gap grows with the distance to the power 3/2. Cells whose gap
+    closes join with a pressure that only marks them.
+    """
+    contact = last.state.contact
+    pressure = last.state.pressure + ratio * (last.state.pressure - before.state.pressure)
+    np.maximum(pressure, 0.0, out=pressure)
+    # Only cells that came closer can join; a gap is infinite in both steps or in none.
+    coming = np.flatnonzero((last.gap < before.gap) & ~contact)
+    gaps = [np.maximum(point.gap.ravel()[coming], 0.0) for point in (before, last)]
+    linear = gaps[1] + ratio * (gaps[1] - gaps[0])
+    one, two = (gap ** (1 / _GAP_POWER) for gap in gaps)
+    joins = (
+        np.where(
+            _beside(contact, problem.grid.boundary).ravel()[coming],
+            linear,
+            two + ratio * (two - one),
+        )
+        < 0
+    )
+    pressure.ravel()[coming[joins]] = _JOINING * float(pressure.max())
+    return pressure
+
+
+def _beside(contact: Mask, boundary: Boundary) -> Mask:
+    """Return the cells that have an edge in common with a cell of the contact."""
+    padded = np.pad(contact, 1, mode="wrap" if boundary == "periodic" else "constant")
+    rows, columns = padded[:, 1:-1], padded[1:-1]
+    neighbours: Mask = rows[:-2] | rows[2:] | columns[:, :-2] | columns[:, 2:]
+    return neighbours & ~contact
+
+
+def _sticking_ahead(
+    problem: Problem, before: State, last: State, ratio: float
+) -> tuple[Array, Array] | None:
+    """Return the extrapolated traction and wall pressure [Pa] of a contact that sticks.
+
+    None if a patch of the contact or its zone comes, goes, splits or merges, which is for the
+    descent from the last state to find.
+    """
+    law, boundary = problem.law, problem.grid.boundary
+    assert law
+    if not law.needs_contact:
+        return None
+    strength = law.strength()
+    one, two = (_traction(state, strength) for state in (before, last))
+    if not same_patches(one.across != 0, two.across != 0, boundary):
+        return None
+    ahead = shifted(problem.grid, one, two, ratio)
+    contact = ahead.contact & np.isfinite(problem.profile)
+    across = np.where(contact, -strength, np.clip(ahead.across, -strength, 0.0))
+    if not same_patches(two.contact, contact, boundary):
+        return None
+    if not same_patches(two.across != 0, across != 0, boundary):
+        return None
+    least = _JOINING * float(last.wall.max())
+    wall = np.where(contact, np.maximum(ahead.wall, least), 0.0)
+    return wall + across, wall
+
+
+def _traction(state: State, strength: float) -> Traction:
+    contact = state.contact
+    across = np.where(contact, -strength, state.pressure - state.wall)
+    return Traction(contact, np.where(contact, state.pressure - across, 0.0), across)
