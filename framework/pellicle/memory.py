@@ -11,8 +11,8 @@ from .components.solver import HasMemory
 from .errors import ConfigError, shown
 from .grid import Grid
 
-# Peak memory in arrays of the grid's shape, eight bytes per cell, measured on Linux with glibc, for
-# arrays above 32 MB, which are given back when they are freed; of smaller ones malloc may keep three.
+# Peak memory in arrays of the grid's shape, eight bytes per cell, measured on Linux with glibc.
+# Arrays above 32 MB are given back when they are freed; of smaller ones malloc may keep three.
 # The indenter, and the operator with its transforms, which are padded on a free boundary.
 _OPERATOR = {"free": 9.0, "periodic": 4.75}
 # The same on a line of cells along x, whose transforms are twice as long and need tables.
