@@ -12,7 +12,7 @@ from pellicle.config.describe import inputs
 from pellicle.config.loading import prescribed_in
 from pellicle.errors import ConfigError
 from pellicle.loading import OPTIONS
-from pellicle.results.path import has_interaction, has_times
+from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
 from pellicle.results.variables import VARIABLES, wording
 from pellicle.units import DIGITS, readable
 from pellicle.version import CITATION
@@ -32,39 +32,27 @@ def prescribed_of(configuration: Mapping[str, Any]) -> str:
         return ""
 
 
-def shown_variable(data: xr.Dataset, prescribed: str) -> str:
-    """Return the variable that names load steps: what is prescribed, else the depth."""
-    return prescribed if prescribed in data else "depth"
-
-
 def has_one_shape(data: xr.Dataset) -> bool:
     """Whether the contact is never in several parts, so that its radius and ellipse describe it."""
     return "patches" in data and not bool((data["patches"] > 1).any())
 
 
-def label_of_step(data: xr.Dataset, index: int, prescribed: str) -> str:
-    """Return what a load step prescribes: "depth 3 µm", "1 s, force 5 nN"."""
-    name = shown_variable(data, prescribed)
-    label = wording(data[name]).text(data[name].values[index].item())
-    if has_times(data):
-        label = f"{readable(data['time'].values[index].item(), 's', DIGITS)}, {label}"
-    return label
-
-
-def answer_of_step(data: xr.Dataset, index: int, boundary: str, prescribed: str) -> str:
+def answer_of_step(
+    data: xr.Dataset, index: int, boundary: str, configuration: Mapping[str, Any]
+) -> str:
     """Return a sentence like "At depth 3 µm: force 904 nN, contact radius 4.5 µm" for a load step.
 
     A contact in several parts has its fraction of a periodic domain, or its area on a free one,
     instead of its radius.
     """
     step = data.isel(step=index)
-    heading = f"At {label_of_step(data, index, prescribed)}"
+    heading = f"At {label_of_step(data, index, configuration)}"
     if not np.isfinite(step["force"].item()):
         return f"{heading}: no result."
     size = "contact_fraction" if boundary == "periodic" else "contact_area"
     if has_one_shape(data) and "contact_radius" in data:
         size = "contact_radius"
-    named = shown_variable(data, prescribed)
+    named = prescribed_variable(data, configuration)
     names = [name for name in ("force", "depth", size) if name != named]
     if named == "depth" or has_times(data):
         names = [name for name in names if name != "depth"]
