@@ -284,11 +284,11 @@ def test_damaged_files(tmp_path: Path, path: Path, damage: Callable[[bytes], byt
     assert "\n" not in str(caught.value)
 
 
-def test_unknown_format_lists_what_can_be_read(tmp_path: Path) -> None:
-    """A file of no known format is answered with the formats that there are."""
+def test_unknown_format_names_some_that_can_be_read(tmp_path: Path) -> None:
+    """A file of no known format is answered with usual formats, and with those of text."""
     file = tmp_path / "a.bin"
     file.write_bytes(b"\x01\x02nothing that anybody reads" * 9)
-    with pytest.raises(pl.ConfigError, match=r"unknown format.*gwy.*x3p"):
+    with pytest.raises(pl.ConfigError, match=r"unknown format.*gwy.*x3p.*commas"):
         pl.indenter("topography", path=file)
 
 
@@ -447,6 +447,27 @@ def test_size_and_slope_of_a_wrong_unit_are_remarked_on(
     np.savetxt(path, np.random.default_rng(0).standard_normal((8, 8)), header=header)
     with pytest.warns(UserWarning, match=message):
         pl.indenter("topography", path=path, **fields)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# h [nm], 4 x 3 points\n1.5,2,3,4\n4,nan,-6e0,1\n0,1,1,0\n",
+        "1.5, 2, 3, 4\n4, nan, -6, 1\n0, 1, 1, 0\n",
+        "1,5;2;3;4;\n4;;-6;1;\n0;1;1;0;\n",
+        "1,5\t2\t3\t4\n4\tnan\t-6,0\t1\n0\t1\t1\t0\n",
+        "1.5,2,3,4\r\n4,,-6,1\r\n0,1,1,0\r\n",
+    ],
+)
+def test_numbers_between_commas_or_semicolons(tmp_path: Path, text: str) -> None:
+    """Tables as spreadsheets of any country write them are the same scan as one with blanks."""
+    heights = []
+    for name, content in (("a.csv", text), ("b.txt", "1.5 2 3 4\n4 nan -6 1\n0 1 1 0\n")):
+        path = tmp_path / name
+        path.write_text(content, encoding="utf-8", newline="")
+        scan = pl.indenter("topography", path=path, unit="1 nm", size=["1 mm", "1 mm"], fill=0.2)
+        heights.append(scan.profile(*pl.Grid(points=[4, 3], size="1 mm").coordinates()))
+    assert heights[0] == pytest.approx(heights[1], abs=0)
 
 
 def test_any_file_of_the_right_length_is_no_terrain(tmp_path: Path) -> None:

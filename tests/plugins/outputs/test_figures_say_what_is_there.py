@@ -123,7 +123,7 @@ def test_the_profile_meets_the_contact_and_shows_the_whole_gap() -> None:
     profile(result, axes)
     assert "at y = 29.7 µm" in axes.get_xlabel()
     (gap,) = figure.axes[1].lines
-    assert np.isfinite(gap.get_ydata()[:-1]).all()
+    assert np.isfinite(np.asarray(gap.get_ydata(), dtype=float)[:-1]).all()
     assert figure.axes[1].get_ylim()[1] > 0.45
     assert axes.get_title() == "depth 200 nm"
 
