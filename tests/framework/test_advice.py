@@ -68,9 +68,34 @@ def test_a_domain_far_wider_than_the_contact_is_told() -> None:
     assert size is not None
     radius = indent(Paraboloid(radius=1e-4), MODULUS, 0.05, depth=DEPTH).contact_radius
     assert 2 * radius < size[0] < 4 * radius
+    advice = advise(wide, 0.01)
+    points, edge = advice.points[0], size[0]
+    close = advise(run(grid={"points": points, "size": edge}), 0.01)
+    assert max(step.error for step in close.steps) <= 0.02
     assert advise(run(), 0.01).size is None
     periodic = run(grid={"points": 64, "size": 3e-4, "boundary": "periodic"})
     assert advise(periodic, 0.01).size is None
+
+
+@pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
+def test_depth_errs_where_the_force_is_prescribed() -> None:
+    """The error of the force is 0 there, and that of the depth decides on the points."""
+    exact = indent(Paraboloid(radius=1e-4), MODULUS, 0.05, depth=DEPTH)
+    given = run(loading={"force": [exact.force]})
+    depth = float(pl.run(given, progress=False).dataset["depth"][0])
+    (step,) = advise(given, 0.01).steps
+    assert step.force_error < 1e-9
+    assert abs(depth / exact.depth - 1) <= step.error == step.depth_error <= 0.1
+    assert advise(given, step.error / 2).points[0] >= 128
+
+
+def test_the_shape_of_the_grid_is_kept_and_coarse_areas_are_not_made_coarser() -> None:
+    """Suggested cells are as square as those of the run; its area stays known to a tenth."""
+    grid = {"points": [96, 64], "size": [6e-5, 4e-5]}
+    nx, ny = advise(run(grid=grid), 0.5).points
+    assert nx / ny == pytest.approx(1.5, rel=0.05)
+    worst = max(step.area_error for step in advise(run(grid=grid), 0.5).steps)
+    assert ny >= 64 * min(1, worst / 0.1)
 
 
 def test_a_step_without_contact_has_no_error() -> None:
@@ -116,7 +141,7 @@ def test_a_study_is_checked_run_by_run(tmp_path: Path) -> None:
     worst = max(step.force_error for advice in alone for step in advice.steps)
     over = sum(max(step.force_error for step in advice.steps) > 0.01 for advice in alone)
     printed = CliRunner().invoke(app, ["check", str(path)]).stdout
-    assert f"2 runs; in {over} the error of the force may exceed 1 %" in printed
+    assert f"2 runs; in {over} the error of force or depth may exceed 1 %" in printed
     number = printed.partition("the worst: ")[2].partition(" %")[0]
     assert float(number) == pytest.approx(100 * worst, rel=0.06)
 

@@ -86,5 +86,5 @@ def test_arguments_that_are_something_else(tmp_path: Path) -> None:
         pl.displacement([[1, 0], [0, 0]], kernel=kernel, grid={"points": 2})  # type: ignore[arg-type]
     with pytest.raises(pl.ConfigError, match="study: makes this a study: use run_study"):
         pl.run(RUN | {"study": {"vary": {"indenter.radius": [1, 2]}}}, progress=False)
-    with pytest.raises(pl.StorageError, match="is a folder; give a result file"):
+    with pytest.raises(pl.StorageError, match="is a folder that holds no result yet; run it first"):
         pl.load(tmp_path)

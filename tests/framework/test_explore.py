@@ -224,14 +224,14 @@ def test_a_plugin_that_fails_leaves_the_page_alive(
 
     with monkeypatch.context() as broken:
         broken.setattr(type(start.kernel), "compliance", fails)
-        page.type("tension", "6 mN/m")
+        page.type("surface tension", "6 mN/m")
         page.rest()
     (message,) = page.errors
     assert "ZeroDivisionError: by &lt;nothing&gt;" in message
     assert "coated" in message
     assert "a component failed" in caplog.text
     assert page.frame is before
-    page.type("tension", "7 mN/m")
+    page.type("surface tension", "7 mN/m")
     page.rest()
     assert not page.errors
     assert page.saved["kernel"]["tension"] == "7 mN/m"
@@ -241,14 +241,14 @@ def test_a_plugin_that_fails_leaves_the_page_alive(
 def test_a_text_that_is_not_a_value_stays_refused(start: pl.Run) -> None:
     """Its message stays while other quantities change, since the file keeps the value before."""
     page = Page(start)
-    page.type("tension", "5 mN")
+    page.type("surface tension", "5 mN")
     page.type("thickness", "25 um")
     page.rest()
     (message,) = page.errors
     assert "N/m" in message
     assert page.saved["kernel"]["tension"] == document(start)["kernel"]["tension"]
     assert page.saved["kernel"]["substrate"]["thickness"] == "25 um"
-    page.type("tension", "8 mN/m")
+    page.type("surface tension", "8 mN/m")
     page.rest()
     assert not page.errors
 
@@ -259,7 +259,7 @@ def test_an_impossible_change_leaves_the_run_before(
     """The picture of a drag that ends at an impossible run is finished: it is what is saved."""
     page = Page(start)
     page.rest()
-    page.type("tension", "6 mN/m")
+    page.type("surface tension", "6 mN/m")
     page.step()
     assert page.frame.is_preview
 
@@ -299,7 +299,7 @@ def test_a_long_solve_is_abandoned(
         page.explorer._solving._thread.shutdown(wait=True)
         assert not page.document.session_callbacks
     else:
-        page.type("tension", "6 mN/m")
+        page.type("surface tension", "6 mN/m")
         page.rest()
         assert not page.errors
         assert page.saved["kernel"]["tension"] == "6 mN/m"
@@ -347,7 +347,7 @@ def test_rows_are_used_again(start: pl.Run) -> None:
     page.rest()
     switch = page.document.select_one({"type": Checkbox})
     assert isinstance(switch, Checkbox)
-    page.type("tension", "6.28318 mN/m")
+    page.type("surface tension", "6.28318 mN/m")
     page.type("thickness", "5 Pa")
     rows = page.explorer._rows
     switch.active = True
@@ -357,7 +357,7 @@ def test_rows_are_used_again(start: pl.Run) -> None:
     assert page.explorer._rows == rows
     assert not page.errors
     assert page.saved["kernel"]["tension"] == "6.28318 mN/m"
-    assert page.field("tension").value == "6.28318 mN/m"
+    assert page.field("surface tension").value == "6.28318 mN/m"
     assert page.field("thickness").value == "30 µm"
 
 
@@ -373,7 +373,7 @@ def test_at_rest_the_picture_is_the_run_of_the_file(start: pl.Run) -> None:
         draw(frame, share)
 
     page.explorer._plots.draw = record  # type: ignore[method-assign]
-    page.type("tension", "6 mN/m")
+    page.type("surface tension", "6 mN/m")
     page.rest()
     assert [frame.is_preview for frame in frames] == [True, False]
     np.testing.assert_array_equal(frames[1].force, solved(page.saved).force)
@@ -551,7 +551,9 @@ def test_sliders_change_the_curves(
             f"{MODELS} const slider = models.find(m => m.type === 'Slider');"
             f"slider.value = Math.log10(5e-3) + {share};"
         )
-    value = wait_for("return fields['tension'].value === '6.295 mN/m' && fields['tension'].value")
+    value = wait_for(
+        "return fields['surface tension'].value === '6.295 mN/m' && fields['surface tension'].value"
+    )
     given, _ = changed(document(start), controls(start)[0], value)
     expected = solved(given).force
     text = 'models.find(m => m.type === "PreText").text'
@@ -565,7 +567,7 @@ def test_sliders_change_the_curves(
         f"return !models.some(m => m.type === 'Div' && m.text.includes('≈')) && Array.from({force})"
     )
     np.testing.assert_allclose(np.array(drawn) / drawn[-1], expected / expected[-1], rtol=1e-12)
-    browser.execute_script(f"{MODELS} {FIELDS} fields['tension'].value = '5 mN'")
+    browser.execute_script(f"{MODELS} {FIELDS} fields['surface tension'].value = '5 mN'")
     message = wait_for(
         "return models.find(m => m.type === 'Div' && m.visible && m.text.includes('5 mN'))?.text"
     )

@@ -75,9 +75,12 @@ def test_a_plot_of_a_missing_step_is_refused(result: pl.Result, step: int) -> No
 def test_a_run_and_a_study_show_their_values() -> None:
     """Values stand with their unit and meaning; a study names what varies and counts its runs."""
     text = words(pl.Run(**RUN)._repr_html_())
-    assert "paraboloid on tensed_membrane" in text
+    assert "paraboloid on tensed membrane" in text
+    assert "surface tension" in text
+    assert "tensed_membrane" not in text
     assert "100 mN/m" in text
     study = pl.Study(run=RUN, vary={"kernel.tension": ["1 mN/m", "2 mN/m", "3 mN/m"]})
     text = words(study._repr_html_())
     assert "3 runs" in text
+    assert "surface tension" in text
     assert "kernel.tension" in text

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import tomllib
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -246,22 +247,65 @@ def test_fit_tells_failed_curves_from_unusable_input(cli: Cli, folder: Path) -> 
     assert "no such" in cli("fit", "missing.csv", *options, code=2).stderr.lower()
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
-def test_a_process_prints_in_the_code_page_of_its_environment(encoding: str, folder: Path) -> None:
-    """`PYTHONIOENCODING` and NO_COLOR are followed by the whole program."""
-    environment = {**os.environ, "PYTHONIOENCODING": encoding, "NO_COLOR": "1"}
+_SESSION = """
+import json, sys
+from pellicle.cli import app
+for words in json.loads(sys.argv[1]):
+    print("$", *words)
+    try:
+        app(words, prog_name="pellicle")
+    except SystemExit as stop:
+        assert stop.code == 0, (words, stop.code)
+"""
+_WORDS = ["check c.toml", "explain tensed_membrane", "show a.h5", "show study"]
+
+
+@pytest.mark.parametrize(
+    ("encoding", "others", "signs"),
+    [
+        (
+            "ascii",
+            ["new --example fit", "fit fit.toml"],
+            ["depth [um]", "[mm^2]", "title:    Delta layer", "tau0", "Cramer-Rao", " pN, from"],
+        ),
+        (
+            "cp1252",
+            ["new d.toml", "run b.toml -o c", "validate"],
+            ["depth [µm]", "[mm²]", "title:    Delta layer", "wrote c", "all 16 cases passed", "²"],
+        ),
+    ],
+)
+def test_a_process_prints_in_the_code_page_of_its_environment(
+    encoding: str, others: list[str], signs: list[str], folder: Path
+) -> None:
+    """`PYTHONIOENCODING`, NO_COLOR and 80 columns are followed by the whole program."""
+    (folder / "b.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
+    (folder / "c.toml").write_text(STUDY, encoding="utf-8")
+    environment = {
+        **os.environ,
+        "PYTHONIOENCODING": encoding,
+        "NO_COLOR": "1",
+        "FORCE_COLOR": "1",
+        "COLUMNS": "80",
+    }
+    commands = [line.split() for line in _WORDS + others]
     done = subprocess.run(
-        [sys.executable, "-m", "pellicle", "show", "a.h5"],
+        [sys.executable, "-c", _SESSION, json.dumps(commands)],
         cwd=folder,
         env=environment,
         capture_output=True,
-        check=True,
+        check=False,
     )
+    said = done.stderr.decode(encoding)
+    assert done.returncode == 0, said
     shown = done.stdout.decode(encoding)
-    assert ("depth [um]" if encoding == "ascii" else "depth [µm]") in shown
-    assert ("[mm^2]" if encoding == "ascii" else "[mm²]") in shown
+    for sign in signs:
+        assert sign in shown
     assert "\x1b" not in shown
-    assert done.stderr == b""
+    assert "Traceback" not in said
+    # A row of a table has two spaces between its cells; sentences are broken by the terminal.
+    wide = [line for line in shown.splitlines() if len(line) > 80]
+    assert not [line for line in wide if "  " in line]
 
 
 def examples() -> Iterator[Any]:
@@ -360,3 +404,22 @@ def test_cells_wider_than_the_indenter_are_said_so(cli: Cli) -> None:
     Path("g.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
     coarse = cli("run", "g.toml", "--set", "grid.size=0.1", "--threads", "1").stderr
     assert "which covers none of them, 6.25 mm wide" in coarse
+
+
+def test_show_leaves_out_what_means_nothing(cli: Cli) -> None:
+    """A round contact has no major axis, one in several parts neither radius nor ellipse."""
+    rough = {"type": "self_affine", "rms_height": "5 um", "hurst": 0.8, "seed": 1}
+    turned = {"type": "quadric", "radius_x": "1 mm", "radius_y": "3 mm"}
+    words = "contact radius", "major semi-axis", "major-axis angle"
+    for name, indenter, shown in (
+        ("round", RUN["indenter"], (True, True, False)),
+        ("long", turned, (True, True, True)),
+        ("rough", rough | {"cutoff_wavelength": "60 um"}, (False, False, False)),
+    ):
+        run = {**RUN, "indenter": indenter, "grid": {**RUN["grid"], "boundary": "periodic"}}
+        run["loading"] = {"mean_pressure": "30 Pa"}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            pl.run(run, progress=False, threads=1).save(f"{name}.h5")
+        table = cli("show", f"{name}.h5").stdout
+        assert tuple(word in table for word in words) == shown, name

@@ -10,6 +10,9 @@ import typer
 
 from .printing import echo, print_json, print_table
 
+_ROUND_OFF = 1e-9
+"""Relative error below which a quantity counts as prescribed."""
+
 if TYPE_CHECKING:
     from pellicle.config.run import Run
     from pellicle.config.study import Study
@@ -24,7 +27,7 @@ def check(
     ] = None,
     error: Annotated[
         float,
-        typer.Option(min=1e-6, max=0.5, help="Allowed relative error of the force."),
+        typer.Option(min=1e-6, max=0.5, help="Allowed relative error of force and depth."),
     ] = 0.01,
     json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI.")] = False,
 ) -> None:
@@ -47,12 +50,13 @@ def _check_run(run: Run, error: float, *, json: bool) -> None:
     if json:
         print_json(_data(advice, needed))
         return
+    quantities = [name for name in ("force", "depth") if _is_unknown(advice, name)]
     rows = [
         {
             "step": str(step.step),
             "force": readable(step.force, "N", 3),
             "cells across": f"{step.cells:.0f}",
-            "error of force": _share(step.force_error),
+            **{f"error of {name}": _share(getattr(step, f"{name}_error")) for name in quantities},
             "error of area": _share(step.area_error),
         }
         for step in advice.steps
@@ -63,9 +67,10 @@ def _check_run(run: Run, error: float, *, json: bool) -> None:
     if advice.size:
         x, y = (readable(edge, "m", 3) for edge in advice.size)
         echo(f'the contact fits into a smaller domain: grid.size = ["{x}", "{y}"]')
-    if advice.points != run.grid.points:
+    if advice.size or advice.points != run.grid.points:
         nx, ny = advice.points
-        echo(f"for {100 * error:.2g} % of the force in every step: grid.points = [{nx}, {ny}]")
+        of, on = " and ".join(quantities), ", on that domain" if advice.size else ""
+        echo(f"for {100 * error:.2g} % of {of} in every step{on}: grid.points = [{nx}, {ny}]")
 
 
 def _check_study(study: Study, error: float, *, json: bool) -> None:
@@ -93,25 +98,25 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
         return
     rows = []
     for name, advice, needed in checked:
-        across = [step.cells for step in advice.steps if not math.isnan(step.force_error)]
+        across = [step.cells for step in advice.steps if not math.isnan(step.error)]
         nx, ny = advice.points
         rows.append(
             {
                 "run": name,
                 "steps": str(len(advice.steps)),
                 "fewest cells across": f"{min(across):.0f}" if across else "0",
-                "error of force": _share(_worst(advice, "force_error")),
+                "error": _share(_worst(advice, "error")),
                 "error of area": _share(_worst(advice, "area_error")),
-                "points for it": f"{nx} × {ny}",
+                f"points for {100 * error:.2g} %": f"{nx} × {ny}",
                 "memory": f"{needed / 1e6:.3g} MB",
             }
         )
     print_table(list(rows[0]), rows)
-    known = [(w, name) for name, advice, _ in checked if (w := _worst(advice, "force_error")) == w]
+    known = [(w, name) for name, advice, _ in checked if (w := _worst(advice, "error")) == w]
     many = sum(w > error for w, _ in known)
     echo(
-        f"{len(checked)} runs; in {many} the error of the force may exceed {100 * error:.2g} % in "
-        "some step; errors are at most about these"
+        f"{len(checked)} runs; in {many} the error of force or depth may exceed "
+        f"{100 * error:.2g} % in some step; errors are at most about these"
     )
     if known:
         worst, name = max(known)
@@ -120,7 +125,10 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
         return
     edges = [max(advice.size[axis] for _, advice, _ in checked if advice.size) for axis in (0, 1)]
     x, y = (readable(edge, "m", 3) for edge in edges)
-    echo(f'every contact fits into a smaller domain: grid.size = ["{x}", "{y}"]')
+    echo(
+        f'every contact fits into a smaller domain: grid.size = ["{x}", "{y}"]; the points of a '
+        "run are for the domain that fits its own"
+    )
 
 
 def _memory(run: Run) -> float:
@@ -143,6 +151,11 @@ def _worst(advice: Advice, of: str) -> float:
     """Return the largest of an error over the steps; NaN without contact."""
     errors = [getattr(step, of) for step in advice.steps]
     return max((e for e in errors if not math.isnan(e)), default=math.nan)
+
+
+def _is_unknown(advice: Advice, name: str) -> bool:
+    """Whether a quantity is not prescribed: its error is more than round-off in some step."""
+    return _worst(advice, f"{name}_error") > _ROUND_OFF
 
 
 def _share(value: float) -> str:

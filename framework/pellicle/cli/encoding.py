@@ -24,6 +24,14 @@ def encode_readably(stream: TextIO) -> None:
         stream.reconfigure(errors=_HANDLER)
 
 
+def as_printed(text: str, stream: TextIO) -> str:
+    """Return a text as a stream prints it, which may make it longer: "µ" or "um", "…" or "..."."""
+    encoding = getattr(stream, "encoding", None)
+    if encoding is None:
+        return text
+    return text.encode(encoding, _HANDLER).decode(encoding).replace("[ deg", "[deg")
+
+
 def _replace(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,19 +28,20 @@ _LINES = 50
 def print_fit(fit: FitResult, *, si: bool = False) -> None:
     """Print the estimates of a fit, a line for each curve of a pool, and the fit in words."""
     from pellicle.fitting.report.answer import answer
+    from pellicle.fitting.wording import column_scale, interval_text
 
     if fit.chosen is not None:
         echo(answer(fit, si=si))
         echo("An elastic solid under tension instead:")
     rows = []
     for name, estimate in fit.estimates().items():
-        scale = _scale([estimate.value], estimate.unit, si)
-        ends = "fixed" if estimate.held else _interval(estimate.low, estimate.high, scale)
+        scale = column_scale([estimate.value], estimate.unit, si=si)
+        ends = "fixed" if estimate.held else interval_text(estimate.low, estimate.high, scale)
         rows.append((_words(name), scale.number(estimate.value), ends, scale.unit))
     heads = ("parameter", "value", "95 % interval", "unit")
     print_columns(list(zip(heads, zip(*rows, strict=True), strict=True)))
-    if curves := fit.curve_rows():
-        print_columns([(_words(name), [row[name] for row in curves]) for name in curves[0]])
+    if curves := fit.curve_rows(si=si):
+        print_columns([(name, [row[name] for row in curves]) for name in curves[0]])
     if fit.rivals is not None and fit.config is not None and fit.config.compare:
         models = fit.rivals.rows(si=si)
         print_columns([(name, [row[name] for row in models]) for name in models[0]])
@@ -77,12 +78,14 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool 
 
 def _curves(rows: list[dict[str, Any]], si: bool) -> list[tuple[str, list[str]]]:
     """Return a row for each curve; the table in the folder has their sentences."""
+    from pellicle.fitting.wording import column_scale
+
     columns = [("curve", [str(row["curve"]) for row in rows])]
     for name, unit in _UNITS.items():
         estimates = [row.get(name) for row in rows]
         if not any(name in row for row in rows):
             continue
-        scale = _scale([e["value"] for e in estimates if e], unit, si)
+        scale = column_scale([e["value"] for e in estimates if e], unit, si=si)
         values = [scale.number(e["value"]) if e else "" for e in estimates]
         columns.append((f"{_words(name)} [{scale.unit}]", values))
         if name != "contact_point":
@@ -103,10 +106,12 @@ def _verdict(row: Mapping[str, Any]) -> str:
 
 def _groups(fits: ManyFits, si: bool) -> list[tuple[str, list[str]]]:
     """Return a row for each parameter of each group of curves; no columns without any."""
+    from pellicle.fitting.wording import column_scale
+
     parts, quartiles = fits.summary(), []
     for part in parts:
         numbers = part.lower_quartile, part.median, part.upper_quartile
-        scale = _scale(numbers, part.unit, si)
+        scale = column_scale(numbers, part.unit, si=si)
         low, middle, high = map(scale.number, numbers)
         quartiles.append((scale.with_unit(middle), scale.with_unit(f"{low} to {high}")))
     columns = [
@@ -137,22 +142,12 @@ def _failed_checks(row: Mapping[str, Any]) -> str:
 def _interval_of(estimate: Mapping[str, Any] | None, scale: Scale) -> str:
     if not estimate or estimate["held"]:
         return ""
-    return _interval(estimate["low"], estimate["high"], scale)
+    from pellicle.fitting.wording import interval_text
 
-
-def _interval(low: float | None, high: float | None, scale: Scale) -> str:
-    """Return an interval in the unit of the scale, an open end as "open"."""
-    return " to ".join("open" if end is None else scale.number(end) for end in (low, high))
+    return interval_text(estimate["low"], estimate["high"], scale)
 
 
 def _words(name: str) -> str:
     from pellicle.fitting.wording import words
 
     return words(name)
-
-
-def _scale(values: Sequence[float], unit: str, si: bool) -> Scale:
-    """Return the unit of a column: that in SI, or one with a prefix."""
-    from pellicle.units import Scale, axis_unit, printed
-
-    return Scale(1.0, printed(unit)) if si else axis_unit(values, unit)

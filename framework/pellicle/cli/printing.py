@@ -14,6 +14,8 @@ from rich.console import Console
 
 from pellicle.files import for_document
 
+from .encoding import as_printed
+
 _GAP = 2
 _NARROWEST_TEXT = 16
 
@@ -52,11 +54,15 @@ def print_columns(columns: Sequence[tuple[str, Sequence[str]]], caption: str = "
         return
     if caption:
         echo(f"{caption}:")
-    # A terminal obeys control characters.
-    safe = [Column(for_document(head), list(map(for_document, cells))) for head, cells in columns]
+    safe = [Column(_safe(head), list(map(_safe, cells))) for head, cells in columns]
     console = Console()
     for line in table_lines(safe, console.width if console.is_terminal else None):
         echo(line)
+
+
+def _safe(text: str) -> str:
+    """Return a text as it is printed, without control characters, which a terminal obeys."""
+    return as_printed(for_document(text), sys.stdout)
 
 
 def table_lines(columns: Sequence[Column], width: int | None = None) -> list[str]:

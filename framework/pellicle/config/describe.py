@@ -70,6 +70,8 @@ def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str)
         elif value not in ([], ""):
             quantity = quantity_of(info) if info else None
             text = readable(value, quantity.unit if quantity else "1")
+            if isinstance(value, bool):
+                text = "yes" if value else "no"
             yield name, text, _worded((info.description if info else None) or "", fields), None
 
 

@@ -154,8 +154,14 @@ class Run(FromFile):
         Raises
         ------
         ConfigError, PluginError
-            As for `from_toml`; a study is refused.
+            As for `from_toml`; a study and the configuration of a fit are refused.
         """
+        if "curves" in data and "loading" not in data:
+            raise ConfigError(
+                "makes this the configuration of a fit: use fit in place of run (`pellicle fit` in "
+                "a shell)",
+                "curves",
+            )
         if "study" in data:
             raise ConfigError(
                 "makes this a study: use run_study, or Study, in place of run (`pellicle run` in a "
@@ -168,9 +174,15 @@ class Run(FromFile):
         """Return HTML for a notebook: every value with its unit and meaning."""
         from .describe import inputs
 
-        rows = [(i.name, i.value, i.meaning) for i in inputs(json.loads(self.to_json()))]
-        sentence = f"{self.indenter.type_name} on {self.kernel.type_name}"
-        return summary(self.title or "Run", sentence, ("field", "value", "meaning"), rows)
+        values = list(inputs(json.loads(self.to_json())))
+        types = {i.name: i.value for i in values}
+        rows = [
+            (i.part, "type" if i.words == i.part else i.words, i.value, i.meaning)
+            for i in values
+            if i.name != "title"
+        ]
+        sentence = f"{types['indenter']} on {types['kernel']}"
+        return summary(self.title or "Run", sentence, ("of", "input", "value", "meaning"), rows)
 
     @property
     def identity(self) -> str:

@@ -36,6 +36,7 @@ from .component_field import FromRegistry
 from .coordinates import Coordinate, as_json, coordinate, tell_apart
 from .points import Point, points_of
 from .run import Run
+from .wording import words_at
 
 DEFAULT_EXECUTOR = "serial"
 _BYTES_PER_RUN = 40_000
@@ -116,9 +117,14 @@ class Study(FromFile):
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: the varied parameters and the number of runs."""
         varied = [*self.vary.items(), *(pair for table in self.zip for pair in table.items())]
-        rows = [(name, ", ".join(map(str, values))) for name, values in varied]
-        title = str(self.run.get("title") or "Study")
-        return summary(title, f"{len(self.points)} runs", ("varied", "values"), rows)
+        run = self.points[0].run
+        configuration = json.loads(run.to_json())
+        rows = [
+            (words_at(configuration, Run, name), ", ".join(map(str, values)), name)
+            for name, values in varied
+        ]
+        heads = ("varied", "values", "field")
+        return summary(run.title or "Study", f"{len(self.points)} runs", heads, rows)
 
     @model_validator(mode="after")
     def _expand(self) -> Self:

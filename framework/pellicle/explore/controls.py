@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from pellicle.config.run import Run
+from pellicle.config.wording import field_words
 from pellicle.model.paths import walk
 from pellicle.units import Quantity, axis_unit, quantity_of
 
@@ -66,7 +67,8 @@ def _fields(run: Run) -> Iterator[Control]:
         if path.partition(".")[0] not in _TABLES or quantity is None:
             continue
         if isinstance(value, float) and value > 0 and _has_range(quantity):
-            yield Control(path, path.rpartition(".")[2].replace("_", " "), quantity, value)
+            name = path.rpartition(".")[2]
+            yield Control(path, field_words(name, field), quantity, value)
 
 
 def _has_range(quantity: Quantity) -> bool:

@@ -10,6 +10,7 @@ from bokeh.models.annotations.legends import Legend, LegendItem
 from bokeh.models.sources import ColumnDataSource
 from bokeh.plotting import figure
 
+from pellicle.report.plotting import edge_cells
 from pellicle.report.style import OKABE_ITO
 from pellicle.units import axis_unit
 
@@ -24,7 +25,9 @@ class Plots:
 
     def __init__(self, measured: Measured | None) -> None:
         self._measured = measured
-        self._cut = ColumnDataSource({"x": [], "surface": [], "indenter": [], "pressure": []})
+        self._cut = ColumnDataSource(
+            {"x": [], "surface": [], "indenter": [], "pressure": [], "edge": []}
+        )
         self._path = ColumnDataSource({"depth": [], "force": []})
         self._curve = ColumnDataSource({"depth": [], "force": []})
         self._profile, self._pressure, self._force = (
@@ -47,6 +50,7 @@ class Plots:
         indenter = self._profile.line("x", "indenter", source=cut, color=_GREY, line_dash="dashed")
         _name_lines(self._profile, {"surface": surface, "indenter": indenter})
         self._pressure.line("x", "pressure", source=cut, color=_BLUE, line_width=2)
+        self._pressure.scatter("x", "edge", source=cut, color=_BLUE, size=4)
         computed = self._force.line("depth", "force", source=path, color=_BLUE, line_width=2)
         self._force.scatter("depth", "force", source=path, color=_BLUE, size=6)
         if self._measured is not None:
@@ -61,18 +65,23 @@ class Plots:
             _name_lines(self._force, {"computed": computed, "measured": measured})
 
     def draw(self, frame: Frame, share: float) -> None:
-        """Draw a frame, and the measured curve with its contact point at a share of its range."""
+        """Draw a frame, and the measured curve with its contact point at a share of its range.
+
+        Cells at the edge of contact are dots: their pressure depends on where it passes them.
+        """
         heights = np.append(frame.surface, frame.indenter)
         x, height, pressure = (
             axis_unit(values, unit)
             for values, unit in ((frame.x, "m"), (heights, "m"), (frame.pressure, "Pa"))
         )
         depth, force = axis_unit(frame.depth, "m"), axis_unit(frame.force, "N")
+        edge = edge_cells(frame.pressure > 0) & bool(frame.pressure.min() >= 0)
         self._cut.data = {
             "x": frame.x * x[0],
             "surface": frame.surface * height[0],
             "indenter": frame.indenter * height[0],
-            "pressure": frame.pressure * pressure[0],
+            "pressure": np.where(edge, np.nan, frame.pressure) * pressure[0],
+            "edge": np.where(edge, frame.pressure, np.nan) * pressure[0],
         }
         self._path.data = {"depth": frame.depth * depth[0], "force": frame.force * force[0]}
         if self._measured is not None:

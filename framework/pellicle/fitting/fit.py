@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError
+from pellicle.units import readable
 
 from .comparison import compare
 from .config import FitConfig
@@ -51,7 +52,9 @@ class Fit(FitResult):
     @property
     def sentences(self) -> list[str]:
         """The noise and the verdicts of the fit in words."""
-        noise = f"noise: {self.noise:.3g} N, from {self.noise_from}; {self.points} points"
+        noise = (
+            f"noise: {readable(self.noise, 'N', 3)}, from {self.noise_from}; {self.points} points"
+        )
         return [noise, *super().sentences]
 
     def model(self) -> dict[str, Any]:

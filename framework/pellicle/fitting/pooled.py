@@ -20,13 +20,14 @@ from .curves.readers import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
-from .result import FitResult, interval_text, status_line, thickness_of
+from .result import FitResult, status_line, thickness_of
 from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
 from .statistics.design import pooled_advice
 from .statistics.likelihood import best_minimum
 from .statistics.noise import FailedCheck, doubt_of_tension
 from .statistics.pooled_likelihood import Pool
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
+from .wording import column_scale, interval_text
 
 _CHANCE = 1e-3
 """Probability below which a disagreement is not attributed to chance."""
@@ -106,26 +107,29 @@ class PooledFit(FitResult):
         ]
         return [*self.messages, *own]
 
-    def curve_rows(self) -> list[dict[str, str]]:
+    def curve_rows(self, *, si: bool = False) -> list[dict[str, str]]:
         """Return a line of a table for each curve."""
-        rows = []
-        for curve in self.curves:
-            point = curve.contact_point
-            row = {"curve": curve.name, "contact_point [m]": f"{point.value:.6g}"}
-            if self.contact_points:
-                ends = "fixed" if point.held else interval_text(point.low, point.high)
-                row["95 % of contact_point"] = ends
-            rows.append(
-                row
-                | {
-                    "noise [N]": f"{curve.noise:.3g}",
-                    "points": str(curve.points),
-                    "chi_squared": f"{curve.chi_squared:.5g}",
-                    "alone: reduced_modulus [Pa]": f"{curve.reduced_modulus_alone:.4g}",
-                    "tension [N/m]": f"{curve.tension_alone:.4g}",
-                }
-            )
-        return rows
+        points = [curve.contact_point for curve in self.curves]
+        columns = {
+            **_column("contact point", [point.value for point in points], "m", si, digits=6),
+            **_column("noise", [curve.noise for curve in self.curves], "N", si),
+            "points": [str(curve.points) for curve in self.curves],
+            "χ²": [f"{curve.chi_squared:.5g}" for curve in self.curves],
+            **_column(
+                "modulus alone", [curve.reduced_modulus_alone for curve in self.curves], "Pa", si
+            ),
+            **_column("tension alone", [curve.tension_alone for curve in self.curves], "N/m", si),
+        }
+        if self.contact_points:
+            scale = column_scale([point.value for point in points], "m", si=si)
+            columns["95 % of contact point"] = [
+                "fixed" if point.held else interval_text(point.low, point.high, scale)
+                for point in points
+            ]
+        return [
+            {"curve": curve.name} | {name: cells[number] for name, cells in columns.items()}
+            for number, curve in enumerate(self.curves)
+        ]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
@@ -135,6 +139,14 @@ class PooledFit(FitResult):
                 curve | {"data": data} for curve, data in zip(curves, self.record.data, strict=True)
             ]
         return super().to_dict() | {"agreement": self.agreement, "curves": curves}
+
+
+def _column(
+    name: str, values: Sequence[float], unit: str, si: bool, digits: int = 4
+) -> dict[str, list[str]]:
+    """Return a column under its name and unit, which has a prefix unless ``si``."""
+    scale = column_scale(values, unit, si=si)
+    return {f"{name} [{scale.unit}]": [scale.number(value, digits) for value in values]}
 
 
 def fit_pooled(

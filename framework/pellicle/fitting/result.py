@@ -169,8 +169,11 @@ class FitResult:
         youngs = self.youngs_modulus
         return estimates if youngs is None else estimates | {"youngs_modulus": youngs}
 
-    def curve_rows(self) -> list[dict[str, str]]:
-        """Return a line of a table for each curve of a pool; none for a single curve."""
+    def curve_rows(self, *, si: bool = False) -> list[dict[str, str]]:
+        """Return a line of a table for each curve of a pool; none for a single curve.
+
+        Units have prefixes unless ``si``.
+        """
         return []
 
     def to_dict(self) -> dict[str, Any]:
@@ -235,11 +238,6 @@ class FitResult:
             The file cannot be written.
         """
         return write_json(self.to_dict(), Path(path))
-
-
-def interval_text(low: float | None, high: float | None) -> str:
-    """Return an interval as text, an open end as "open"."""
-    return " to ".join("open" if end is None else f"{end:.4g}" for end in (low, high))
 
 
 def as_json(value: object) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from pellicle.units import Scale, axis_unit, printed
 
 from .statistics.profile import Estimate
@@ -26,9 +28,17 @@ def scale(estimate: Estimate, *, si: bool = False) -> Scale:
     ends = [end for end in (estimate.low, estimate.high) if end is not None]
     # The value of an interval that is open to one side is not shown.
     values = ends if len(ends) == 1 or not estimate.value else [estimate.value]
-    if si:
-        return Scale(1.0, printed(estimate.unit))
-    return axis_unit(values, estimate.unit)
+    return column_scale(values, estimate.unit, si=si)
+
+
+def column_scale(values: Sequence[float], unit: str, *, si: bool = False) -> Scale:
+    """Return the unit of a column of values in SI, with one prefix unless ``si``."""
+    return Scale(1.0, printed(unit)) if si else axis_unit(values, unit)
+
+
+def interval_text(low: float | None, high: float | None, scale: Scale) -> str:
+    """Return an interval in the unit of a column, an open end as "open"."""
+    return " to ".join("open" if end is None else scale.number(end) for end in (low, high))
 
 
 def interval(estimate: Estimate, *, si: bool = False) -> str:

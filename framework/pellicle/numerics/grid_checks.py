@@ -20,6 +20,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.grid import Grid
+from pellicle.units import readable
 
 _WAVE = 16  # cells
 _ALIASES = 200  # on either side; the sum is accurate to about 1e-5
@@ -57,10 +58,10 @@ def warn_of_cells(compliance: Callable[[Array], Array], grid: Grid) -> None:
     if not abs(error) > _ALLOWED:
         return
     warnings.warn(
-        f"grid.points: cells of {grid.spacing[0]:.3g} × {grid.spacing[1]:.3g} m yield to long "
-        f"waves by {abs(error):.0%} {'more' if error > 0 else 'less'} than the kernel does, and "
-        "forces are likely to be as wrong; an incompressible layer needs cells no wider than it is "
-        f"thick: use {_enough(compliance, grid)}",
+        f"grid.points: cells of {' × '.join(readable(d, 'm', 3) for d in grid.spacing)} yield to "
+        f"long waves by {abs(error):.0%} {'more' if error > 0 else 'less'} than the kernel does, "
+        "and forces are likely to be as wrong; an incompressible layer needs cells no wider than "
+        f"it is thick: use {_enough(compliance, grid)}",
         stacklevel=3,
     )
 
@@ -100,8 +101,9 @@ def warn_of_period(heights: Array, grid: Grid) -> None:
         step = float(np.sqrt(((lines[0] - lines[-1]) ** 2).mean()))
         if step > _STEEPER * inside:
             warnings.warn(
-                f"the surface is not periodic along {name}: its edges meet in a step of {step:.2g} "
-                f"m (rms), where neighbouring cells differ by {inside:.2g} m at most; press it on "
+                f"the surface is not periodic along {name}: its edges meet in a step of "
+                f"{readable(step, 'm', 2)} (rms), where neighbouring cells differ by "
+                f"{readable(inside, 'm', 2)} at most; press it on "
                 'grid.boundary = "free", or make it periodic',
                 stacklevel=3,
             )

@@ -29,6 +29,8 @@ LINES = ("-", "--", "-.", ":")
 INCH = 0.0254
 """An inch [m]."""
 _SMALL = 8.0
+_MARKER_DISTANCE = 0.12
+"""Distance of the markers on a smooth curve over the diagonal of the axes."""
 _LIGHTEST = 0.8
 _LABELLED_DECADES = 2.2
 
@@ -112,6 +114,14 @@ def colour(number: int, count: int, *, ordered: bool = False) -> Any:
     if count > len(mpl.rcParams["axes.prop_cycle"]) or (ordered and count > 2):
         return mpl.colormaps["viridis"](_LIGHTEST * number / max(count - 1, 1))
     return f"C{number}"
+
+
+def sparse_marker(number: int) -> dict[str, Any]:
+    """Return keywords of ``Axes.plot`` for a smooth curve: its marker, far apart and filled."""
+    marker = MARKERS[number % len(MARKERS)]
+    # Curves that coincide show their markers beside each other.
+    first = _MARKER_DISTANCE * (0.2 + 0.25 * (number % 4))
+    return {"marker": marker, "markersize": 3.5, "markevery": (first, _MARKER_DISTANCE)}
 
 
 def is_ordered(table: xr.Dataset, dim: str | None) -> bool:

@@ -33,8 +33,10 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
         The file does not exist, is damaged, has another schema version, or is of another kind.
     """
     if not path.is_file():
-        reason = "is a folder" if path.is_dir() else "no such file"
-        raise StorageError(f"{path}: {reason}; give a result file (.h5) that pellicle wrote")
+        reason = "no such file; give a result file (.h5) that pellicle wrote"
+        if path.is_dir():
+            reason = "is a folder that holds no result yet; run it first, or give a result (.h5)"
+        raise StorageError(f"{path}: {reason}")
     with _readable(path), _parsed(path) as file:
         attributes = netcdf.attributes(file)
         version = version_of(file)
@@ -107,6 +109,10 @@ def _readable(path: Path) -> Iterator[None]:
         MemoryError,
     ) as error:
         reason = str(error).partition("\n")[0] or "it does not fit in memory"
+        if "file signature not found" in reason:
+            reason = "it is not an HDF5 file"
+        beside = path.with_suffix(".h5")
+        remedy = str(beside) if beside.is_file() and beside != path else "an .h5 file"
         raise StorageError(
-            f"{path}: not a readable result file ({reason}); give an .h5 file that pellicle wrote"
+            f"{path}: not a readable result file ({reason}); give {remedy} that pellicle wrote"
         ) from None

@@ -24,6 +24,8 @@ _LEAST = 32
 """Least number of cells along an edge that is suggested."""
 _MARGIN = 1.25
 """Edge of the suggested domain over the extent of the contact."""
+_AREA_ERROR = 0.1
+"""Relative error of the counted area up to which fewer cells are advised."""
 _WIDE = 0.5
 """Share of the domain below which the contact leaves cells unused."""
 
@@ -36,11 +38,18 @@ class Expected(NamedTuple):
     force: float
     """Force on the finest of the coarser grids [N]."""
     cells: float
-    """Cells across the contact on the grid of the run."""
+    """Cells across the contact, or all of its patches, on the grid of the run."""
     force_error: float
-    """Expected relative error of the force; NaN without contact."""
+    """Expected relative error of the force, 0 where it is prescribed; NaN without contact."""
+    depth_error: float
+    """Expected error of the depth over the largest depth; NaN without contact."""
     area_error: float
     """Expected relative error of the counted contact area; NaN without contact."""
+
+    @property
+    def error(self) -> float:
+        """The larger of the errors of force and depth; NaN without contact."""
+        return float(np.fmax(self.force_error, self.depth_error))
 
 
 class Advice(NamedTuple):
@@ -48,13 +57,14 @@ class Advice(NamedTuple):
 
     steps: tuple[Expected, ...]
     points: tuple[int, int]
-    """Cells that bring the error of the force to the allowed one in every step with contact."""
+    """Cells, on a domain of `size` if there is one, that bring the error of force and depth to the
+    allowed one in every step with contact."""
     size: tuple[float, float] | None
     """Edges of a domain that fits the contact closely [m]; None where it does, or has to repeat."""
 
 
 def advise(run: Run, allowed: float) -> Advice:
-    """Return the expected errors of a run and a grid for an allowed relative error of the force.
+    """Return the expected errors of a run and a grid for an allowed error of force and depth.
 
     The run is solved on three coarser grids of at most 128 cells along an edge. An error is taken
     as proportional to the cell size, with the largest slope between these grids: at least first
@@ -71,27 +81,40 @@ def advise(run: Run, allowed: float) -> Advice:
         warnings.simplefilter("ignore")
         results = [solve(_on(run, grid)).dataset for grid in grids]
     sizes = np.array([grid.cell_size for grid in grids])
+    finest = results[-1]
+    deepest = float(np.abs(finest["depth"]).max())
     steps = []
-    for index in range(results[-1].sizes["step"]):
-        force, area = (
+    for index in range(finest.sizes["step"]):
+        force, depth, area = (
             np.array([float(data[name][index]) for data in results])
-            for name in ("force", "contact_area")
+            for name in ("force", "depth", "contact_area")
         )
-        extent = _extent(results[-1]["contact"].values[index], grids[-1])
+        extent = _extent(finest["contact"].values[index], grids[-1])
+        errors = (
+            _error(values, sizes, run.grid.cell_size) / scale if area[-1] and scale else math.nan
+            for values, scale in ((force, abs(force[-1])), (depth, deepest), (area, area[-1]))
+        )
         steps.append(
-            Expected(
-                index + 1,
-                float(force[-1]),
-                max(extent) / run.grid.cell_size,
-                _error(force, sizes, run.grid.cell_size),
-                _error(area, sizes, run.grid.cell_size),
-            )
+            Expected(index + 1, float(force[-1]), max(extent) / run.grid.cell_size, *errors)
         )
-    known = [step.force_error for step in steps if not math.isnan(step.force_error)]
-    factor = max(known) / allowed if known else 1.0
-    nx, ny = (max(_LEAST, 2 * math.ceil(n * factor / 2)) if n > 1 else 1 for n in run.grid.points)
-    widest = np.max([_extent(c, grids[-1]) for c in results[-1]["contact"].values], axis=0)
-    return Advice(tuple(steps), (nx, ny), _fitting_size(run, widest))
+    widest = np.max([_extent(c, grids[-1]) for c in finest["contact"].values], axis=0)
+    size = _fitting_size(run, widest)
+    known = [step for step in steps if not math.isnan(step.error)]
+    factor = max((step.error / allowed for step in known), default=1.0)
+    # Fewer cells are advised only while the area, which errs most, stays known to a tenth.
+    factor = max(factor, *(min(1.0, step.area_error / _AREA_ERROR) for step in known), 0.0)
+    return Advice(tuple(steps), _points(run.grid, size or run.grid.size, factor), size)
+
+
+def _points(grid: Grid, size: tuple[float, float], factor: float) -> tuple[int, int]:
+    """Return the cells on a domain of a size if cells become smaller by a factor."""
+    cells = [
+        n * factor * edge / old if n > 1 else 1.0
+        for n, edge, old in zip(grid.points, size, grid.size, strict=True)
+    ]
+    more = max(1.0, _LEAST / min(n for n in cells if n > 1))
+    nx, ny = (2 * math.ceil(n * more / 2) if n > 1 else 1 for n in cells)
+    return nx, ny
 
 
 def _coarser(grid: Grid) -> list[Grid]:
@@ -121,11 +144,9 @@ def _extent(contact: Mask, grid: Grid) -> tuple[float, float]:
 
 
 def _error(values: Array, sizes: Array, size: float) -> float:
-    """Return the expected relative error on cells of a size, from values on coarser ones."""
-    if not values[-1]:
-        return math.nan
+    """Return the expected error on cells of a size, from values on coarser ones."""
     slopes = np.abs(values[:-1] - values[-1]) / (sizes[:-1] - sizes[-1])
-    return float(slopes.max() * size / abs(values[-1]))
+    return float(slopes.max() * size)
 
 
 def _fitting_size(run: Run, extent: Array) -> tuple[float, float] | None:

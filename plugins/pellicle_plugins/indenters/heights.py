@@ -21,6 +21,7 @@ from pellicle.model.matlab import read_mat
 
 from .from_heights import FromHeights
 from .height_unit import HeightUnit
+from .text_numbers import separated_by_blanks
 from .topography_reader import require_content, require_memory
 
 _BYTES = 10
@@ -40,7 +41,8 @@ class Heights(FromHeights):
         Field(
             title="file",
             examples=["heights.txt"],
-            description="file with a 2-D array: .npy, text (.txt, .csv, .dat), .h5 or .mat",
+            description="file with a 2-D array [along x, along y]: .npy, text (.txt, .csv, .dat) "
+            "with blanks, commas or semicolons, .h5 or .mat",
         ),
     ] = None
     unit: Annotated[
@@ -131,11 +133,10 @@ def _load_npy(path: Path, dataset: str | None) -> Any:
 
 
 def _load_text(path: Path, dataset: str | None) -> Any:
-    lines = read_text(path).splitlines()
-    if not any(line.partition("#")[0].strip() for line in lines):
+    lines = [line.partition("#")[0] for line in read_text(path).splitlines()]
+    if not any(map(str.strip, lines)):
         raise ValueError("it holds no numbers")
-    delimiter = "," if any("," in line.partition("#")[0] for line in lines) else None
-    return np.loadtxt(lines, delimiter=delimiter, ndmin=2)
+    return np.loadtxt(separated_by_blanks(lines), ndmin=2)
 
 
 def _load_hdf5(path: Path, dataset: str | None) -> Any:
@@ -188,9 +189,15 @@ def _require_shape(
     shape: tuple[int, ...], expected: tuple[int, ...], name: str, field: str
 ) -> None:
     if shape != expected:
+        remedy = f"set grid.points = {list(shape)} and grid.size to match, or resample it"
+        if shape == expected[::-1]:
+            remedy = (
+                "if its rows are lines along x, as those of most scans, transpose it or use type = "
+                f"'topography'; otherwise {remedy}"
+            )
         raise ConfigError(
-            f"{name} is of shape {shape}, and the grid of shape {expected}; set grid.points = "
-            f"{list(shape)}, or resample it",
+            f"{name} is of shape {shape}, [along x, along y], and the grid of shape {expected}; "
+            f"{remedy}",
             field,
         )
 

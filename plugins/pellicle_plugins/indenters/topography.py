@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import ceil, floor
 from typing import Annotated, ClassVar, Literal, Self, get_args
 
@@ -17,7 +17,7 @@ from pellicle.components import Indenter
 from pellicle.errors import ConfigError
 from pellicle.grid import pair
 from pellicle.model.input_path import InputPath
-from pellicle.units import Length, Quantity
+from pellicle.units import Length, Quantity, readable
 
 from .from_heights import FromHeights
 from .height_unit import HeightUnit
@@ -148,9 +148,9 @@ class Topography(FromHeights):
         pitch = [edge / n for edge, n in zip(self._size, self._heights.shape, strict=True)]
         if any(axis.spacing < 0.99 * step for axis, step in zip(axes, pitch, strict=True)):
             warnings.warn(
-                f"cells of {axes[0].spacing:.3g} × {axes[1].spacing:.3g} m are finer than the "
-                f"points of {self.path}, {pitch[0]:.3g} × {pitch[1]:.3g} m: between them the "
-                "surface is interpolated, not measured",
+                f"cells of {_lengths([axis.spacing for axis in axes])} are finer than the points "
+                f"of {self.path}, {_lengths(pitch)}: between them the surface is interpolated, "
+                "not measured",
                 stacklevel=2,
             )
         # Cells, and points of the scan under the domain, as distances from its corner.
@@ -180,9 +180,9 @@ class Topography(FromHeights):
             name, centre = "xy"[which], self._middle[which]
             room = 2 * min(centre, self._size[which] - centre)
             raise ConfigError(
-                f"the domain reaches along {name} from {low:.6g} m to {high:.6g} m of a scan of "
-                f"{self._size[0]:.9g} × {self._size[1]:.9g} m; make grid.size at most {room:.9g} m "
-                f"along {name}, or move centre",
+                f"the domain reaches along {name} from {readable(low, 'm')} to "
+                f"{readable(high, 'm')} of a scan of {_lengths(self._size, 9)}; make grid.size at "
+                f"most {readable(room, 'm', 9)} along {name}, or move centre",
                 "centre" if self.centre else "path",
             )
         first = max(0, floor(low / pitch + 0.01))
@@ -190,7 +190,7 @@ class Topography(FromHeights):
         if last - first < 2:
             raise ConfigError(
                 f"the domain covers {last - first} points of the scan along {'xy'[which]}; enlarge "
-                f"grid.size, whose points are {pitch:.3g} m apart in {self.path}",
+                f"grid.size, whose points are {readable(pitch, 'm', 3)} apart in {self.path}",
                 "path",
             )
         return slice(first, last)
@@ -249,6 +249,11 @@ def _levelled(heights: Array, degree: int) -> Array:
     # On two points a square and a constant are linearly dependent.
     factors[i, j] = np.linalg.lstsq(products, (along_x.T @ heights @ along_y)[i, j])[0]
     return np.asarray(heights - along_x @ factors @ along_y.T)
+
+
+def _lengths(values: Sequence[float], digits: int = 3) -> str:
+    """Return two lengths [m] as text, such as ``2 µm × 3 µm``."""
+    return " × ".join(readable(value, "m", digits) for value in values)
 
 
 @hookimpl

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+import io as streams
 import warnings
 from functools import lru_cache
 from math import inf
 from pathlib import Path
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from pellicle import memory
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 from pellicle.units import Quantity
+
+from .text_numbers import separated_by_blanks
 
 _ARRAYS = 9
 """Peak memory while a scan is read, in arrays of its points; 8 were measured at 2000² points."""
@@ -103,7 +106,7 @@ def _read(
         digest = hashlib.file_digest(file, "sha256").hexdigest()
         file.seek(0)
         try:
-            reader = io.open_topography(file)
+            reader = io.open_topography(_with_blanks(file) if text else file)
             if reader.format() == "hgt" and path.suffix.lower() != ".hgt":
                 # Any file of 2n² bytes passes as this format of n² integers without a header.
                 raise io.CannotDetectFileFormat
@@ -128,9 +131,9 @@ def _read(
             raise
         except io.CannotDetectFileFormat:
             raise ConfigError(
-                f"{path} is damaged or in an unknown format; give one of "
-                f"{', '.join(sorted(reader.format() for reader in io.readers))}, or plain "
-                "numbers as type = 'heights'",
+                f"{path} is damaged or in an unknown format; give a file that SurfaceTopography "
+                "reads (gwy, opd, sdf, sur, x3p, …), text with a row of numbers, separated by "
+                "blanks, commas or semicolons, on each line, or an array as type = 'heights'",
                 "path",
             ) from None
         except np.exceptions.ComplexWarning:
@@ -143,6 +146,21 @@ def _read(
     values[~np.isfinite(values)] = np.nan
     values.setflags(write=False)
     return Scan(values, edges, digest)
+
+
+def _with_blanks(file: BinaryIO) -> BinaryIO:
+    """Return a text file with blanks between its numbers, as SurfaceTopography needs them.
+
+    It takes lines with other separators for lines of a header, and skips them.
+    """
+    content = file.read()
+    file.seek(0)
+    # A header in text may precede binary data.
+    if b"\0" in content or not (b"," in content or b";" in content):
+        return file
+    # Headers may hold any byte; numbers are ASCII.
+    lines = separated_by_blanks(content.decode("latin-1").split("\n"))
+    return streams.BytesIO("\n".join(lines).encode("latin-1"))
 
 
 def library() -> ModuleType:

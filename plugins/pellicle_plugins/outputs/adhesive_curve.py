@@ -16,7 +16,7 @@ from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError, StorageError
 from pellicle.report.plotting import save_figure
-from pellicle.report.style import colour
+from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
 from pellicle.units import Quantity, axis_unit
 from pellicle_plugins.analytic.adhesive_path import curve_of, steepest_slopes
@@ -162,7 +162,7 @@ class AdhesiveCurve(TableFigure):
         for one in drawn:
             path = one.path["depth"].values * length, one.path["force"].values * newton
             axes.plot(*path, "--", color=one.colour, linewidth=0.8)
-        for one, curve in curves:
+        for number, (one, curve) in enumerate(curves):
             points = one.points()
             end = points["last at fixed depth"].contact_radius
             # Without that point on the curve all of it is stable at a fixed depth.
@@ -170,7 +170,10 @@ class AdhesiveCurve(TableFigure):
             for part, style in ((stable, "-"), (~stable, ":")):
                 x, y = curve.depth[part] * length, curve.force[part] * newton
                 name = one.name.words if style == "-" else ""
-                axes.plot(x, y, style, color=one.colour, linewidth=1.4, label=name or None)
+                marked = sparse_marker(number) if len(drawn) > 1 and style == "-" else {}
+                axes.plot(
+                    x, y, style, color=one.colour, linewidth=1.4, label=name or None, **marked
+                )
             for what, contact in points.items():
                 x, y = contact.depth * length, contact.force * newton
                 axes.plot(x, y, _MARKERS[what], color=one.colour, markersize=5, mfc="white")

@@ -13,6 +13,7 @@ from pellicle.config.loading import prescribed_in
 from pellicle.errors import ConfigError
 from pellicle.loading import OPTIONS
 from pellicle.results.path import has_interaction, has_times
+from pellicle.results.shape import has_one_shape
 from pellicle.results.variables import VARIABLES, wording
 from pellicle.units import DIGITS, readable
 from pellicle.version import CITATION
@@ -35,11 +36,6 @@ def prescribed_of(configuration: Mapping[str, Any]) -> str:
 def shown_variable(data: xr.Dataset, prescribed: str) -> str:
     """Return the variable that names load steps: what is prescribed, else the depth."""
     return prescribed if prescribed in data else "depth"
-
-
-def has_one_shape(data: xr.Dataset) -> bool:
-    """Whether the contact is never in several parts, so that its radius and ellipse describe it."""
-    return "patches" in data and not bool((data["patches"] > 1).any())
 
 
 def label_of_step(data: xr.Dataset, index: int, prescribed: str) -> str:

@@ -214,11 +214,12 @@ class Curves(XYFigure):
             for index, point in enumerate(along(runs.table, self.by)):
                 part = runs.table.isel(point)
                 name = label(self.label, part, self.by, runs.table)
-                # Colours distinguish the values of `by`, markers those of `y`.
+                # Colours and markers distinguish the values of `by`, line styles those of `y`.
+                # Beside a reference there are no lines.
                 hue = colour(index, many, ordered=ordered) if self.by else colour(number, len(ys))
-                style = _Style(
-                    hue, number, reference is not None, marker=index if len(ys) == 1 else number
-                )
+                by_y = not self.by or (reference is not None and len(ys) > 1)
+                marker = MARKERS[(number if by_y else index) % len(MARKERS)]
+                style = _Style(hue, number, marker, scattered=reference is not None)
                 legend = "" if number else name.words
                 if not self.by and (self.series or len(ys) > 1):
                     legend = named
@@ -232,15 +233,17 @@ class Curves(XYFigure):
                         yield _Limit(points, style, name.key, f"{series}, extrapolated")
                 if reference:
                     points, _ = self._points(part, _at(exact_x, point), _at(exact_y, point))
-                    thin = _Style("black", None)
+                    thin = _Style("black", None, "")
                     yield _Line(points.ordered(), thin, "", name.key, f"{series}, semi-analytic")
             if self.by and len(ys) > 1:
-                yield _Line(_NO_POINTS, _Style("0.4", number, reference is not None), named)
+                marker = MARKERS[number % len(MARKERS)] if reference else ""
+                style = _Style("0.4", number, marker, scattered=reference is not None)
+                yield _Line(_NO_POINTS, style, named)
         if reference:
-            yield _Line(_NO_POINTS, _Style("black", None), "semi-analytic")
+            yield _Line(_NO_POINTS, _Style("black", None, ""), "semi-analytic")
         if len(directions) > 1:
-            yield _Line(_NO_POINTS, _Style(shared, 0), "approach")
-            yield _Line(_NO_POINTS, _Style(shared, 0, retracts=True), "retraction")
+            yield _Line(_NO_POINTS, _Style(shared, 0, MARKERS[0]), "approach")
+            yield _Line(_NO_POINTS, _Style(shared, 0, MARKERS[0], retracts=True), "retraction")
 
     def _draw_published(self, axes: Axes) -> Iterator[dict[str, object]]:
         for number, other in enumerate(self.published):
@@ -303,13 +306,12 @@ class Curves(XYFigure):
 class _Style:
     colour: Any
     number: int | None
-    """Index of the marker and line style; None for a plain thin line."""
+    """Index of the line style; None for a plain thin line."""
+    marker: str
     scattered: bool = False
     """Whether only markers are drawn, beside the line of a reference."""
     retracts: bool = False
     """Whether it is the retraction of a path, with short dashes and filled markers."""
-    marker: int | None = None
-    """Index of the marker; that of the line style if absent."""
 
     def keywords(self) -> dict[str, Any]:
         """Return keywords of ``Axes.plot``."""
@@ -317,7 +319,7 @@ class _Style:
             return {"color": self.colour, "linewidth": 1.0, "zorder": 1}
         return {
             "color": self.colour,
-            "marker": MARKERS[(self.number if self.marker is None else self.marker) % len(MARKERS)],
+            "marker": self.marker,
             "linestyle": "none"
             if self.scattered
             else RETRACTION

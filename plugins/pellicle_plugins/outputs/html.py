@@ -52,6 +52,7 @@ from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction
 from pellicle.results.result import Result, first_message
+from pellicle.results.shape import describes_shape
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import (
@@ -77,7 +78,6 @@ from .answer import (
     answer_of_path,
     answer_of_step,
     answer_of_study,
-    has_one_shape,
     label_of_step,
     methods,
     prescribed_of,
@@ -393,15 +393,12 @@ def _numbers(data: xr.Dataset) -> list[str]:
     ]
 
 
-_OF_ONE_SHAPE = {"contact_radius", "semi_major_axis", "semi_minor_axis", "major_axis_angle"}
-
-
 def _means_something(data: xr.Dataset, name: str) -> bool:
-    """Whether a variable has a meaning here: a contact in several parts has no radius or ellipse.
+    """Whether a variable has a meaning here: it describes the contact, and has finite values.
 
-    Nor has a variable without any finite value, unless no step has a force.
+    Without a finite force the variables of a step stay in the table.
     """
-    if name in _OF_ONE_SHAPE and not has_one_shape(data):
+    if not describes_shape(data, name):
         return False
     missing = not np.isfinite(data[name].values.astype(float)).any()
     return not missing or not np.isfinite(data["force"].values).any()

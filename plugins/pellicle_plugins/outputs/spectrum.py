@@ -11,7 +11,7 @@ import numpy as np
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.report.plotting import save_figure
-from pellicle.report.style import colour
+from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
 
 from .base import Label, TableFigure, write_csv
@@ -64,6 +64,9 @@ class Spectrum(TableFigure):
                     color=colour(number, len(curves), ordered=ordered),
                     linewidth=1.2,
                     label=name.words or None if surface == "displacement" else None,
+                    **sparse_marker(number)
+                    if len(curves) > 1 and surface == "displacement"
+                    else {},
                 )
         for surface, style in _STYLES.items():
             axes.plot(

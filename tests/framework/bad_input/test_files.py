@@ -21,7 +21,28 @@ TOML_FILES = {
         b"title = 'a'\n[grid]\npoints = \n",
         ["not valid TOML", "at line 3, column 10", "correct it there"],
     ),
-    "key twice": (b"a = 1\na = 2\n", ["not valid TOML", "at line 2"]),
+    "key twice": (b"a = 1\na = 2\n", ["not valid TOML", "A key is given twice", "at line 2"]),
+    "table twice": (
+        b"[grid]\na = 1\n[b]\n[grid]\nb = 2\n",
+        ["[grid] is there already", "line 4", "leave one [grid], with the keys of both"],
+    ),
+    "dotted table twice": (b"[a]\nb.c = 1\n[a.b]\n", ["leave one [a.b]"]),
+    "unit without quotes": (
+        b"[grid]\npoints = 3\nsize = 1 mm  # of the gel\n",
+        ['values with a unit, stand in quotes: "1 mm"', "line 3, column 10"],
+    ),
+    "word without quotes": (b"type = sphere\n", ['stand in quotes: "sphere"', "line 1"]),
+    "unit without quotes in a list": (b'a = ["1 mm", 2 mm]\n', ['stand in quotes: "2 mm"']),
+    "unit without quotes in a ramp": (
+        b"depth = {start = 1 um, stop = 2 um, num = 3}\n",
+        ['stand in quotes: "1 um"'],
+    ),
+    "Python's true": (b"a = True\n", ["True is true in TOML"]),
+    "number with a comma": (b"a = 1,5\n", ["line 1, column 6", "correct it there"]),
+    "configuration of a fit": (
+        b"curves = ['a.csv']\nindenter.type = 'sphere'\n",
+        ["curves: makes this the configuration of a fit", "`pellicle fit`"],
+    ),
     "end of file": (b"a = 1\nb = [", ["not valid TOML", "at line 2, the end of the file"]),
     "encoding": (b"title = '\xff\xfe'", ["not a text file", "give a TOML file in UTF-8"]),
     "binary": (b"\x00\x01", ["not valid TOML", "at line 1"]),
@@ -37,6 +58,14 @@ def test_toml_file(cli: Cli, content: bytes, words: list[str]) -> None:
     outcome = cli("run", "bad.toml")
     assert outcome.exit_code == 2
     says(outcome.message, *words)
+
+
+def test_fit_of_a_run(cli: Cli) -> None:
+    """A run file given to `pellicle fit` is refused in one line that names the right command."""
+    outcome = cli("fit", "start.toml")
+    assert outcome.exit_code == 2
+    assert outcome.message.count("\n") == 1
+    says(outcome.message, "loading: makes this a run", "`pellicle run`")
 
 
 @pytest.mark.parametrize("name", ["missing.toml", "."])
@@ -106,7 +135,7 @@ HEIGHTS: dict[str, tuple[str, Callable[[Path], object], list[str]]] = {
     "wrong shape": (
         "h.npy",
         lambda path: np.save(path, GOOD[:8]),
-        ["indenter.path", "(8, 16)", "(16, 16)", "grid.points = [8, 16]"],
+        ["indenter.path", "(8, 16)", "(16, 16)", "grid.points = [8, 16] and grid.size to match"],
     ),
     "junk text": (
         "h.txt",
@@ -147,6 +176,14 @@ def test_height_dataset_that_is_not_there(refuse: Callable[..., str]) -> None:
     _write_hdf5(Path("h.h5"), top=GOOD)
     message = refuse("indenter={type='heights', path='h.h5', unit=1, dataset='bottom'}")
     says(message, "indenter.dataset", "no array 'bottom'", "give one of: top")
+
+
+def test_rows_and_columns_exchanged(refuse: Callable[..., str]) -> None:
+    """A scan in rows along x is not transposed in silence by another number of cells."""
+    np.savetxt("h.csv", np.zeros((2, 3)), delimiter=";")
+    message = refuse("grid.points=[3, 2]", "indenter={type='heights', path='h.csv', unit=1}")
+    says(message, "is of shape (2, 3), [along x, along y]", "the grid of shape (3, 2)")
+    says(message, "if its rows are lines along x", "transpose it or use type = 'topography'")
 
 
 def test_height_hash_of_other_heights(refuse: Callable[..., str]) -> None:
@@ -222,9 +259,12 @@ def _damaged(path: Path) -> None:
 
 RESULTS: dict[str, tuple[Callable[[Path], object], list[str]]] = {
     "missing": (lambda path: None, ["r.h5: no such file"]),
-    "folder": (lambda path: path.mkdir(), ["r.h5: is a folder"]),
+    "folder": (lambda path: path.mkdir(), ["r.h5: is a folder that holds no result yet"]),
     "empty": (lambda path: path.touch(), ["r.h5: not a readable result file"]),
-    "junk": (lambda path: path.write_text("junk"), ["r.h5: not a readable result file"]),
+    "junk": (
+        lambda path: path.write_text("junk"),
+        ["r.h5: not a readable result file (it is not an HDF5 file); give an .h5 file"],
+    ),
     "damaged": (_damaged, ["r.h5: not a readable result file"]),
     "other HDF5": (lambda path: _write_hdf5(path, a=GOOD), ["r.h5: not a"]),
     "other NetCDF": (
@@ -256,6 +296,13 @@ def test_result_files(
     outcome = cli(command, "r.h5")
     assert outcome.exit_code == 2
     says(outcome.message, *words)
+
+
+def test_table_beside_the_result(cli: Cli) -> None:
+    """The text of a result, given in its place, is answered with the name of the result."""
+    for name in ("r.csv", "r.h5"):
+        Path(name).write_text("force [N]\n1\n", encoding="utf-8")
+    says(cli("show", "r.csv").message, "it is not an HDF5 file", "give r.h5 that pellicle wrote")
 
 
 def test_figures_that_cannot_be_written(cli: Cli) -> None:

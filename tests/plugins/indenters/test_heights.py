@@ -136,7 +136,7 @@ def test_file_or_array_but_not_both(tmp_path: Path) -> None:
 
 def test_other_shape() -> None:
     """Heights that do not fit the grid are refused with both shapes."""
-    with pytest.raises(pl.ConfigError, match=r"\(8, 6\).*\(6, 8\); set grid\.points = \[8, 6\]"):
+    with pytest.raises(pl.ConfigError, match=r"\(8, 6\).*\(6, 8\);.*set grid\.points = \[8, 6\]"):
         _profile(pl.indenter("heights", values=ROUGH, unit=1), (6, 8))
 
 
@@ -162,9 +162,9 @@ def _wide_npy(path: Path) -> None:
 @pytest.mark.parametrize(
     ("write", "name", "message"),
     [
-        (_huge_hdf5, "a.h5", r"shape \(25000, 25000\), and the grid of shape \(8, 6\)"),
+        (_huge_hdf5, "a.h5", r"shape \(25000, 25000\), .*and the grid of shape \(8, 6\)"),
         (_huge_npy, "a.npy", r"mmap length is greater than file size"),
-        (_wide_npy, "a.npy", r"shape \(2000, 2000\), and the grid of shape \(8, 6\)"),
+        (_wide_npy, "a.npy", r"shape \(2000, 2000\), .*and the grid of shape \(8, 6\)"),
     ],
 )
 def test_shapes_are_compared_before_memory_is_taken(

@@ -133,7 +133,7 @@ def test_coarser_grid_samples_the_surface() -> None:
 def test_finer_grid_is_warned_about_and_goes_through_the_points() -> None:
     """Three cells to a point keep the heights of the points; a warning says what that means."""
     grid = pl.Grid(points=[117, 99], size=["1.3 mm", "1.1 mm"])
-    with pytest.warns(UserWarning, match=r"cells of 1\.11e-05 .* are finer than the points"):
+    with pytest.warns(UserWarning, match=r"cells of 11\.1 µm × .* are finer than the points"):
         fine = _profile(grid, level="none")
     assert (fine <= 0).all()
     shift = fine[1::3, 1::3] - _profile(level="none")
@@ -284,11 +284,11 @@ def test_damaged_files(tmp_path: Path, path: Path, damage: Callable[[bytes], byt
     assert "\n" not in str(caught.value)
 
 
-def test_unknown_format_lists_what_can_be_read(tmp_path: Path) -> None:
-    """A file of no known format is answered with the formats that there are."""
+def test_unknown_format_names_some_that_can_be_read(tmp_path: Path) -> None:
+    """A file of no known format is answered with usual formats, and with those of text."""
     file = tmp_path / "a.bin"
     file.write_bytes(b"\x01\x02nothing that anybody reads" * 9)
-    with pytest.raises(pl.ConfigError, match=r"unknown format.*gwy.*x3p"):
+    with pytest.raises(pl.ConfigError, match=r"unknown format.*gwy.*x3p.*commas"):
         pl.indenter("topography", path=file)
 
 
@@ -351,10 +351,10 @@ def test_missing_points_are_refused_or_filled() -> None:
         (
             "1.2 mm",
             None,
-            r"^path: the domain reaches along y .* grid\.size at most 0.0011 m",
+            r"^path: the domain reaches along y .* grid\.size at most 1\.1 mm",
         ),
-        (["1.4 mm", "0.6 mm"], None, r"along x .* at most 0.0013 m along x"),
-        ("0.3 mm", ["0.1 mm", "0.3 mm"], r"^centre: .* at most 0.0002 m along x, or move centre"),
+        (["1.4 mm", "0.6 mm"], None, r"along x .* at most 1.3 mm along x"),
+        ("0.3 mm", ["0.1 mm", "0.3 mm"], r"^centre: .* at most 200 µm along x, or move centre"),
     ],
 )
 def test_domain_that_does_not_fit_the_scan(size: object, centre: object, message: str) -> None:
@@ -447,6 +447,27 @@ def test_size_and_slope_of_a_wrong_unit_are_remarked_on(
     np.savetxt(path, np.random.default_rng(0).standard_normal((8, 8)), header=header)
     with pytest.warns(UserWarning, match=message):
         pl.indenter("topography", path=path, **fields)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# h [nm], 4 x 3 points\n1.5,2,3,4\n4,nan,-6e0,1\n0,1,1,0\n",
+        "1.5, 2, 3, 4\n4, nan, -6, 1\n0, 1, 1, 0\n",
+        "1,5;2;3;4;\n4;;-6;1;\n0;1;1;0;\n",
+        "1,5\t2\t3\t4\n4\tnan\t-6,0\t1\n0\t1\t1\t0\n",
+        "1.5,2,3,4\r\n4,,-6,1\r\n0,1,1,0\r\n",
+    ],
+)
+def test_numbers_between_commas_or_semicolons(tmp_path: Path, text: str) -> None:
+    """Tables as spreadsheets of any country write them are the same scan as one with blanks."""
+    heights = []
+    for name, content in (("a.csv", text), ("b.txt", "1.5 2 3 4\n4 nan -6 1\n0 1 1 0\n")):
+        path = tmp_path / name
+        path.write_text(content, encoding="utf-8", newline="")
+        scan = pl.indenter("topography", path=path, unit="1 nm", size=["1 mm", "1 mm"], fill=0.2)
+        heights.append(scan.profile(*pl.Grid(points=[4, 3], size="1 mm").coordinates()))
+    assert heights[0] == pytest.approx(heights[1], abs=0)
 
 
 def test_any_file_of_the_right_length_is_no_terrain(tmp_path: Path) -> None:

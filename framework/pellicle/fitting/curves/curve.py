@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, shown
-from pellicle.units import axis_unit
+from pellicle.units import axis_unit, readable
 
 from .origin import Origin
 
@@ -185,7 +185,8 @@ def _base(z: Array, f: Array, stiffness: float) -> Array:
     slope = float(np.ptp(f)) / float(np.ptp(z))
     if not 1 / _LARGEST_RATIO <= slope / stiffness <= _LARGEST_RATIO:
         raise ConfigError(
-            f"of {stiffness:.3g} N/m is far from the {slope:.3g} N/m of this curve itself, so "
+            f"of {readable(stiffness, 'N/m', 3)} is far from the {readable(slope, 'N/m', 3)} of "
+            "this curve itself, so "
             "that deflection and position differ by orders of magnitude; give that of the "
             "cantilever with its unit",
             "spring_constant",
@@ -220,13 +221,15 @@ def _check_rise(z: Array, f: Array) -> None:
     least = _SIGNIFICANT * noise * np.sqrt(2 / tenth)
     if rise < -least:
         raise ConfigError(
-            f"falls by {-rise:.3g} N as the position grows: a negative stiffness; position must "
-            "grow into the solid and force must push back, so change the sign of one of them",
+            f"falls by {readable(-rise, 'N', 3)} as the position grows: a negative stiffness; "
+            "position must grow into the solid and force must push back, so change the sign of "
+            "one of them",
             "force",
         )
     if rise <= least or not rise:
         raise ConfigError(
-            f"does not rise with the position (by {rise:.2g} N at a noise of {noise:.2g} N): there "
+            f"does not rise with the position (by {readable(rise, 'N', 2)} at a noise of "
+            f"{readable(noise, 'N', 2)}): there "
             "is no contact in the curve; give one that goes deeper",
             "force",
         )

@@ -14,6 +14,7 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import HasContactRadius
 from pellicle.errors import ConfigError
 from pellicle.fitting.parameters import MODULUS, TENSION, Parameter, Values
+from pellicle.units import readable
 
 from .force_model import ClosedFormModel, ModelForce
 
@@ -115,6 +116,10 @@ class AdhesiveModel:
         }
         return ModelForce(np.where(contact, force, 0.0), np.where(contact, rate, 0.0), by_parameter)
 
+    def end(self, values: Values, deepest: float) -> float:
+        """Return the base position over the contact point [m] at which the contact breaks."""
+        return float(self._stable(values, deepest).position[0])
+
     def pull_off(self, values: Values) -> float:
         """Return the least force [N] of the branch that a dead load can follow."""
         free = AdhesiveModel(self.elastic, self.moves_out, self.attached, None)
@@ -174,7 +179,8 @@ class AdhesiveModel:
                 return grid[: last + 1], position[: last + 1]
             grid = grid + step * (_BEYOND - 1)
         raise ConfigError(
-            f"of {values[WORK_OF_ADHESION]:.3g} J/m² pulls a solid of {values[MODULUS]:.3g} Pa out "
+            f"of {readable(values[WORK_OF_ADHESION], 'J/m**2', 3)} pulls a solid of "
+            f"{readable(values[MODULUS], 'Pa', 3)} out "
             "without end",
             "work_of_adhesion",
         )

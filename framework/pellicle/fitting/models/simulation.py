@@ -21,6 +21,7 @@ from pellicle.grid import Grid
 from pellicle.plugins import registry
 from pellicle.studies.runner import execute, is_table, read
 from pellicle.studies.summary import failures
+from pellicle.units import readable
 
 from .interpolated import SCALE, SimulatedCurve, stretched
 from .solid import Solid, lengths, scaled, scales
@@ -205,7 +206,8 @@ def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
             half = np.where(outside, 2 * half, half)
             if half.max() > _WIDEST * depth:
                 raise ConfigError(
-                    f"is less than {depth:g} m high out to {half.max():.2g} m; give one whose "
+                    f"is less than {readable(depth, 'm')} high out to "
+                    f"{readable(half.max(), 'm', 2)}; give one whose "
                     "contact ends",
                     "indenter",
                 )

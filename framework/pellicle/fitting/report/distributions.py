@@ -64,6 +64,8 @@ def _values(rows: Sequence[Row], parameter: Parameter) -> tuple[Array, str]:
 def _histogram(
     axes: Axes, rows: Sequence[Row], parameter: Parameter, kinds: Array, labels: Sequence[str]
 ) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     values, name = _values(rows, parameter)
     low, high = float(values.min()), float(values.max())
     number = int(np.clip(np.sqrt(values.size) * 2, *_BINS))
@@ -76,6 +78,7 @@ def _histogram(
     axes.hist(parts, bins.tolist(), stacked=True, label=labels, edgecolor="white", linewidth=0.3)
     axes.axvline(float(np.median(values)), color="0.2", linewidth=1, linestyle="--")
     axes.set(xlabel=name, ylabel="curves")
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
 
 
 def _scatter(axes: Axes, rows: Sequence[Row], kinds: Array) -> None:

@@ -9,6 +9,7 @@ from pellicle.fitting.many import ManyFits
 from pellicle.fitting.result import FitResult
 from pellicle.fitting.wording import interval, scale
 from pellicle.model.html import summary
+from pellicle.report.style import FigureStyle
 from pellicle.units import readable
 
 from .answer import answer, answer_of_population
@@ -66,8 +67,8 @@ def _picture(shown: list[Panel]) -> bytes:
 
     if not shown:
         return b""
-    figure = Figure(figsize=shown[0].size or SIZE, layout="constrained")
-    shown[0].draw(figure)
-    with BytesIO() as file:
+    with FigureStyle().applied(), BytesIO() as file:
+        figure = Figure(figsize=shown[0].size or SIZE, layout="constrained")
+        shown[0].draw(figure)
         figure.savefig(file, format="png", dpi=_DOTS_PER_INCH)
         return file.getvalue()

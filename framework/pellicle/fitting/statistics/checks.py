@@ -14,9 +14,11 @@ from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
 from pellicle.fitting.models.layer import LayerModel, with_thickness
 from pellicle.fitting.models.solid import lengths
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
+from pellicle.units import readable
 
 from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
+from .memory import exponent_of
 from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
 from .pooled_likelihood import Pool
 from .profile import CONFIDENCE
@@ -74,6 +76,16 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
         )
     minimum = best_minimum(likelihood, guesses)
     estimate, source = judged(likelihood, minimum.parameters)
+    if memory := _memory(likelihood, minimum.parameters, estimate):
+        likelihood = replace(likelihood, memory=memory)
+        minimum = best_minimum(likelihood, [minimum.parameters, *guesses])
+        estimate, source = judged(likelihood, minimum.parameters)
+        source += f", whose power falls as f^{-2 * memory:.2g}"
+        message = (
+            f"the noise before contact is correlated: its power falls as f^{-2 * memory:.2g}, and "
+            "fit and intervals take it so"
+        )
+        estimate = estimate._replace(failed=(FailedCheck("slow_noise", message), *estimate.failed))
     noise, failed = estimate.noise, estimate.failed
     scaled = minimum.chi_squared * (likelihood.noise / noise.deviation) ** 2
     likelihood = replace(likelihood, noise=noise.deviation)
@@ -86,6 +98,14 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
         (*failed, *shape),
         (*estimate.messages, *notes, *(check.message for check in (*failed, *shape))),
     )
+
+
+def _memory(likelihood: Likelihood, parameters: Coordinates, estimate: NoiseEstimate) -> float:
+    """Return the exponent of correlated noise before contact; 0 if it is not of that kind."""
+    if "slow_noise" not in {check.code for check in estimate.failed}:
+        return 0.0
+    before = Residuals.of(likelihood, parameters).before
+    return exponent_of(likelihood.misfit(parameters)[before])
 
 
 def judged(likelihood: Likelihood, parameters: Coordinates) -> tuple[NoiseEstimate, str]:
@@ -125,15 +145,15 @@ def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str
     radius = next(iter(lengths(shape)), None) if isinstance(shape, Component) else None
     if radius is not None and not _PLAUSIBLE_DEPTH[0] <= depth / radius <= _PLAUSIBLE_DEPTH[1]:
         messages.append(
-            f"the depth of {depth:.3g} m is {depth / radius:.3g} times the radius of {radius:.3g} "
-            "m: are radius and units right?"
+            f"the depth of {readable(depth, 'm', 3)} is {depth / radius:.3g} times the radius of "
+            f"{readable(radius, 'm', 3)}: are radius and units right?"
         )
     for parameter in model.parameters:
         value, (low, high) = parameter.value(parameters[parameter]), parameter.plausible
         if not low <= value <= high:
             messages.append(
-                f"a {parameter.word} of {value:.3g} {parameter.unit} is not plausible: are the "
-                "units right?"
+                f"a {parameter.word} of {readable(value, parameter.unit, 3)} is not plausible: "
+                "are the units right?"
             )
     return messages
 
@@ -145,15 +165,17 @@ def check_depth(model: ForceModel, depth: float, parameters: Coordinates) -> Non
         return
     if isinstance(model, LayerModel):
         raise ConfigError(
-            f"the depth reaches {depth:.3g} m, and the curve of this indenter on a layer "
-            f"{model.thickness:.3g} m thick ends at {model.depth_limit:.3g} m: there it reaches "
+            f"the depth reaches {readable(depth, 'm', 3)}, and the curve of this indenter on a "
+            f"layer {readable(model.thickness, 'm', 3)} thick ends at "
+            f"{readable(model.depth_limit, 'm', 3)}: there it reaches "
             "the base, its contact is ten times as wide as the layer is thick, or the shape ends. "
             "Are thickness and radius right? If so, leave out the deepest part",
             "thickness",
         )
     raise ConfigError(
-        f"the depth reaches {depth:.3g} m, and the curve of this indenter ends at "
-        f"{model.depth_limit:.3g} m; are radius and units right? If so, leave out the deepest part",
+        f"the depth reaches {readable(depth, 'm', 3)}, and the curve of this indenter ends at "
+        f"{readable(model.depth_limit, 'm', 3)}; are radius and units right? If so, leave out the "
+        "deepest part",
         "indenter",
     )
 
@@ -173,8 +195,8 @@ def _spikes(residuals: Residuals) -> list[FailedCheck]:
     first = residuals.likelihood.position[int(np.argmax(wild)) + 1]
     message = (
         f"{'1 point lies' if count == 1 else f'{count} points lie'} more than {_WILD:g} standard "
-        f"deviations from the neighbours, first the one at {first:.6g} m: such spikes are not "
-        "normal noise, and shift the fit; leave them out"
+        f"deviations from the neighbours, first the one at {readable(first, 'm', 6)}: such spikes "
+        "are not normal noise, and shift the fit; leave them out"
     )
     return [FailedCheck("spikes", message)]
 
@@ -277,8 +299,8 @@ def check_shape(
     words = (
         f"the depth is {share:.2g} of the radius, and beyond {SHALLOW:g} of it a {name} differs "
         f"from the {whole} that it approximates: with indenter {whole!r} the reduced modulus is "
-        f"{np.exp(minimum.parameters[MODULUS]):.4g} Pa and the tension "
-        f"{minimum.parameters[TENSION]:.3g} N/m"
+        f"{readable(np.exp(minimum.parameters[MODULUS]), 'Pa', 4)} and the tension "
+        f"{readable(minimum.parameters[TENSION], 'N/m', 3)}"
     )
     if not fails:
         return [words], []

@@ -13,6 +13,7 @@ from pellicle.arrays import Array
 from pellicle.errors import PellicleError
 from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.parameters import CONTACT_POINT, Coordinates
+from pellicle.units import readable
 
 from .likelihood import ChiSquared, Likelihood
 from .pooled_likelihood import Pool
@@ -50,7 +51,6 @@ def advised(
     chi_squared: ChiSquared,
     tensed: Explanation,
     others: Sequence[Explanation],
-    noises: Sequence[float],
 ) -> str:
     """Return which measurement would separate a model with tension from others, and how many.
 
@@ -59,10 +59,9 @@ def advised(
     among those that have to be told apart is what a measurement is worth.
     """
     members = chi_squared.members if isinstance(chi_squared, Pool) else (chi_squared,)
-    first = members[0]
-    assert isinstance(first, Likelihood)
+    likelihood = members[0]
+    assert isinstance(likelihood, Likelihood)
     part = _part(chi_squared, tensed[1])
-    likelihood = replace(first, noise=noises[0])
     best: tuple[float, str] | None = None
     for measurement in _measurements(likelihood, part[CONTACT_POINT]):
         worth = np.inf
@@ -127,7 +126,7 @@ def _measurements(likelihood: Likelihood, point: float) -> Iterator[Measurement]
         if deepest > 0 and (radius is None or factor * deepest <= _DEEPEST * radius):
             words = "shallower" if factor < 1 else "deeper"
             yield Measurement(
-                f"a {words} curve, to {factor * deepest * 1e6:.2g} µm",
+                f"a {words} curve, to {readable(factor * deepest, 'm', 2)}",
                 factor * down,
                 factor * forth,
                 "approach",
@@ -135,16 +134,20 @@ def _measurements(likelihood: Likelihood, point: float) -> Iterator[Measurement]
     for factor in (1 / 3, 3.0):
         if radius is not None and deepest <= _DEEPEST * factor * radius:
             yield Measurement(
-                f"a second radius, {factor * radius * 1e6:.2g} µm", down, forth, "approach", factor
+                f"a second radius, {readable(factor * radius, 'm', 2)}",
+                down,
+                forth,
+                "approach",
+                factor,
             )
 
 
 def _speed(value: float) -> str:
-    return f"{value * 1e6:.2g} µm/s"
+    return readable(value, "m/s", 2)
 
 
 def _duration(value: float, known: bool) -> str:
-    return f"{value:.2g} s" if known else "the duration of the approach"
+    return readable(value, "s", 2) if known else "the duration of the approach"
 
 
 def _separation(
@@ -185,7 +188,7 @@ def _planned(likelihood: Likelihood, measurement: Measurement) -> Likelihood:
         likelihood,
         position=measurement.base,
         force=np.zeros_like(measurement.base),
-        noise=likelihood.noise * np.sqrt(_ROWS / likelihood.force.size),
+        noise=likelihood.noise_of(likelihood.force.size / _ROWS),
         force_model=model,
         time=measurement.time,
         segment=measurement.segment,

@@ -14,8 +14,10 @@ from scipy.special import fdtrc, ndtr, ndtri
 from pellicle.arrays import Array, Mask
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION
 from pellicle.fitting.parameters import OFFSET, SLOPE, Coordinates, Parameter
+from pellicle.units import readable
 
 from .likelihood import Likelihood
+from .memory import differenced
 
 CHANCE = 3e-3
 """Probability that a check flags a curve without fault."""
@@ -103,7 +105,9 @@ class Residuals(NamedTuple):
     likelihood: Likelihood
     parameters: Coordinates
     force: Array
-    """Measured minus model [N]."""
+    """Measured minus model [N]; of noise with a memory, its fractional differences."""
+    measured: Array
+    """Measured force [N], likewise."""
     jacobian: Array
     """Derivatives of the model by the coordinates that the fit varies."""
     before: Mask
@@ -128,6 +132,9 @@ class Residuals(NamedTuple):
             likelihood,
             parameters,
             -scaled * likelihood.noise,
+            differenced(likelihood.force, likelihood.memory)
+            if likelihood.memory
+            else likelihood.force,
             jacobian[:, likelihood.columns(varied)] * likelihood.noise,
             (depth < -_NEAR * float(np.ptp(likelihood.position))) & likelihood.first_pass,
             depth,
@@ -163,14 +170,14 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     # The force as measured, since a fitted slope of the baseline absorbs part of a dip.
     # A model of adhesion has a dip of its own.
     adheres = WORK_OF_ADHESION in residuals.likelihood.force_model.parameters
-    measured = force if adheres else residuals.likelihood.force[before]
+    measured = force if adheres else residuals.measured[before]
     slope, change = _slope(measured, line)
     messages: tuple[str, ...] = ()
     if SLOPE in residuals.baseline and ndtr(slope / independent.deviation) < CHANCE:
         messages = (
-            f"the baseline falls by {-change:.3g} N towards contact: drift does that, but so does "
-            "attraction of long range, which bends a curve as tension does; check whether it falls "
-            "as steeply further out",
+            f"the baseline falls by {readable(-change, 'N', 3)} towards contact: drift does that, "
+            "but so does attraction of long range, which bends a curve as tension does; check "
+            "whether it falls as steeply further out",
         )
     depth, window, drop = _deepest_dip(measured, line[:, :1], independent.deviation)
     if abs(slope) > abs(depth) * independent.deviation:
@@ -185,7 +192,8 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     if depth * independent.deviation < _DEEPEST * noise_of_sums.deviation:
         trend = np.column_stack([line, _last(window, points)])
         message = (
-            f"the force dips by {drop:.3g} N below its baseline over the last {window} points "
+            f"the force dips by {readable(drop, 'N', 3)} below its baseline over the last "
+            f"{window} points "
             "before contact: that is adhesion, which the model does not have, and which bends a "
             "curve as tension does; measure without attraction, or fit the tension with a "
             "model of adhesion"
@@ -203,7 +211,8 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
         failed.append(FailedCheck("slow_noise", message))
     if residuals.step > _COARSE * neighbour_noise(force):
         message = (
-            f"the force comes in steps of {residuals.step:.3g} N, larger than its noise, and "
+            f"the force comes in steps of {readable(residuals.step, 'N', 3)}, larger than its "
+            "noise, and "
             "values between them are not known; measure with a finer range of the detector"
         )
         failed.append(FailedCheck("steps", message))
@@ -283,8 +292,9 @@ def _drift_or_offset(
     slope, change = _slope(force, line)
     if SLOPE not in residuals.baseline and 2 * ndtr(-abs(slope) / noise) < CHANCE:
         message = (
-            f"the force drifts by {change:.3g} N before contact, and modulus and tension are "
-            "biased by its drift in contact; fit the baseline too, with baseline 'slope'"
+            f"the force drifts by {readable(change, 'N', 3)} before contact, and modulus and "
+            "tension are biased by its drift in contact; fit the baseline too, with baseline "
+            "'slope'"
         )
         return [FailedCheck("drift", message)]
     mean = float(np.mean(force))
@@ -292,8 +302,8 @@ def _drift_or_offset(
     if residuals.baseline or abs(mean) <= max(_OFFSET_LIMIT * noise / np.sqrt(force.size), least):
         return []
     message = (
-        f"the force before contact is {mean:.3g} N, not 0, and modulus and tension are biased by "
-        "it; fit the baseline too, with baseline 'offset'"
+        f"the force before contact is {readable(mean, 'N', 3)}, not 0, and modulus and tension "
+        "are biased by it; fit the baseline too, with baseline 'offset'"
     )
     return [FailedCheck("offset", message)]
 
