@@ -194,7 +194,7 @@ def test_deep_paraboloid_says_what_a_sphere_changes(depth: float, ratio: float) 
     assert not shallow.tension_needed
     assert "shape" in codes(shallow)
     (message,) = [text for text in shallow.messages if "with indenter 'sphere'" in text]
-    modulus = float(message.partition("reduced modulus is ")[2].partition(" Pa")[0])
+    modulus = 1e3 * float(message.partition("reduced modulus is ")[2].partition(" kPa")[0])
     assert modulus == pytest.approx(MODULUS, rel=0.01)
     assert not any("sphere" in text for text in fit(*white(1)).messages)
 
