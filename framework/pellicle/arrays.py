@@ -9,3 +9,5 @@ Array = NDArray[np.float64]
 """Real numbers."""
 Mask = NDArray[np.bool_]
 """True or false for each cell."""
+Cells = NDArray[np.int64]
+"""Flat indices of cells."""

@@ -12,15 +12,16 @@ from .errors import ConfigError, shown
 from .grid import Grid
 
 # Peak memory in arrays of the grid's shape, eight bytes per cell, measured on Linux with glibc.
+# Arrays above 32 MB are given back when they are freed; of smaller ones malloc may keep three.
 # The indenter, and the operator with its transforms, which are padded on a free boundary.
 _OPERATOR = {"free": 9.0, "periodic": 4.75}
 # The same on a line of cells along x, whose transforms are twice as long and need tables.
 _LINE = 14.0
 # The solver active_set in full contact, and any solver without `HasMemory`.
-_SOLVER = {"free": 17.4, "periodic": 12.5}
+_SOLVER = {"free": 11.5, "periodic": 8.5}
 # What a solve takes more where an interaction acts: eight rounds of three fields, from which the
 # next is extrapolated, and the fields of two rounds.
-_STICKS = 41.0
+_STICKS = 39.0
 # A load step in the result: pressure, displacement and gap, and a byte per cell for the contact.
 _STEP = 3 + 1 / 8
 # The same step in the compressed file that is assembled in memory. Blocks that the solver has freed
@@ -40,8 +41,8 @@ def estimate(
     """Return the peak memory [bytes] of a run on ``grid``, without that of the libraries.
 
     The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
-    of the contact is unknown, so full contact is assumed, which takes up to a quarter more memory
-    than a small contact. A ``solver`` that is not a `HasMemory` counts as active_set.
+    of the contact is unknown, so full contact is assumed, which takes up to 28 % more memory than a
+    small contact. A ``solver`` that is not a `HasMemory` counts as active_set.
     ``history`` is what a solid that relaxes needs for its memory, in arrays of the grid's shape;
     ``sticks`` says whether an interaction acts.
     """

@@ -13,6 +13,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from fit_rivals import pink_noise
 from numpy.typing import NDArray
 
 import pellicle as pl
@@ -121,20 +122,11 @@ def _tensed(depth: Array, random: np.random.Generator) -> Array:
     return force
 
 
-def _pink(random: np.random.Generator) -> Array:
-    """Return noise whose power falls as 1/f."""
-    frequencies = np.fft.rfftfreq(4 * POINTS)
-    frequencies[0] = np.inf
-    parts = random.standard_normal((2, frequencies.size)) / np.sqrt(frequencies)
-    noise: Array = np.fft.irfft(parts[0] + 1j * parts[1])[:POINTS]
-    return np.asarray((noise - noise.mean()) / noise.std())
-
-
 RIVALS = {
     "softening by 15 %": Kind(_softening),
     "dip of 1 % before contact": Kind(_dip),
     "drift, baseline offset": Kind(_drift, baseline="offset"),
-    "1/f noise": Kind(_clean, colour=_pink),
+    "1/f noise": Kind(_clean, colour=lambda random: pink_noise(random, POINTS)),
     "sphere fitted as a paraboloid, to 0.3 R": Kind(_ball, depth=_DEEP),
     "F ~ δ^1.3": Kind(_power, leaves_mark=False),
     "relaxing by 15 %": Kind(_relaxing, leaves_mark=False),

@@ -9,18 +9,15 @@ each score is appended to a file, and those that it has are not repeated.
 
 from __future__ import annotations
 
-import argparse
-import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
-from pathlib import Path as File
 from typing import Any
 
 import fit_rivals
 import numpy as np
 from fit_rivals import DEPTH, MODULUS_, NOISE, RADIUS, Sample, Truth, path
+from kept_outcomes import outcomes_of
 
-from pellicle.errors import PellicleError
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.models.relaxing import EXPONENT, PowerLawModel
@@ -31,16 +28,11 @@ from pellicle.fitting.parameters import (
     SLOPE,
     TENSION,
     Coordinates,
-    Parameter,
 )
 from pellicle.fitting.statistics.checks import fit_single, judged
-from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood, Minimum, least
+from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood, Minimum
 from pellicle.fitting.statistics.pooled_likelihood import Pool
-from pellicle.fitting.statistics.profile import (
-    ImprovedMinimum,
-    chi_squared_threshold,
-    confidence_interval,
-)
+from pellicle.fitting.statistics.profile import chi_squared_threshold, profiled
 from pellicle.fitting.statistics.rivals import rivals
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
@@ -130,9 +122,10 @@ def minimum_of(curve: ChiSquared, code: str) -> tuple[ChiSquared, Minimum, float
     starts = [start]
     if without is not None:
         scale = chi.ranges[TENSION].scale
-        starts += [without.parameters | {TENSION: part * scale} for part in (0.03, 0.3)]
-    best = rival.minimum(chi, starts)
-    assert best is not None
+        starts += [without[1].parameters | {TENSION: part * scale} for part in (0.03, 0.3)]
+    pair = rival.minimum(chi, starts)
+    assert pair is not None
+    rival, best = pair
     mine = rival.of(chi)
     judgements = [judged(member, part)[0] for member, part in mine.curves(best.parameters)]
     own = [
@@ -160,32 +153,14 @@ def score_of(name: str, number: int, seed: int) -> dict[str, Any]:
     chi, best, threshold = minimum_of(measured, code)
     bounds = right.bounds(truth, right.free)
     parameters = MODULUS, TENSION, own
+    best, ends = profiled(chi, best, threshold, parameters)
     points = chi.force.size if isinstance(chi, Likelihood) else 0
-    return {"points": points} | {
-        p.name: scored(chi, best, p, threshold, truth, bounds) for p in parameters
-    }
-
-
-def scored(
-    chi: ChiSquared,
-    best: Minimum,
-    p: Parameter,
-    threshold: float,
-    truth: Mapping[Parameter, float],
-    bounds: Mapping[Parameter, float],
-) -> tuple[float, bool]:
-    """Return the error of a coordinate over its bound, and whether its interval holds the truth."""
-    for _ in range(5):
-        try:
-            low, high = confidence_interval(chi, best, p, threshold)
-            break
-        except ImprovedMinimum as improved:
-            best = least([best, improved.minimum])
-        except PellicleError:
-            low = high = None
-            break
-    held = (low is None or low <= truth[p]) and (high is None or truth[p] <= high)
-    return (best.parameters[p] - truth[p]) / bounds[p], bool(held)
+    scores: dict[str, Any] = {"points": points}
+    for p in parameters:
+        low, high = ends.get(p, (None, None))
+        held = (low is None or low <= truth[p]) and (high is None or truth[p] <= high)
+        scores[p.name] = ((best.parameters[p] - truth[p]) / bounds[p], bool(held))
+    return scores
 
 
 def one_speed(random: np.random.Generator) -> str:
@@ -200,37 +175,12 @@ def one_speed(random: np.random.Generator) -> str:
     return fit_rivals.verdict_of(fit)
 
 
-def kept(file: File | None, names: Iterable[str], curves: int, seed: int) -> dict[str, Any]:
-    """Return the scores by kind and number, from a file or computed and appended to it."""
-    results: dict[str, Any] = {name: {} for name in names}
-    if file is not None and file.exists():
-        for line in file.read_text().splitlines():
-            name, number, of, values = json.loads(line)
-            if of == seed and name in results and number < curves:
-                results[name][number] = values
-    for number in range(curves):
-        for name in names:
-            if number not in results[name]:
-                results[name][number] = score = score_of(name, number, seed)
-                if file is not None:
-                    with file.open("a") as lines:
-                        print(json.dumps([name, number, seed, score]), file=lines)
-    return results
-
-
 def main() -> None:
     """Print a row of a table for each kind and parameter."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("curves", type=int, nargs="?", default=200)
-    parser.add_argument("seed", type=int, nargs="?", default=7)
-    parser.add_argument("names", nargs="*", metavar="kind")
-    parser.add_argument("--keep", type=File, help="file that keeps the scores")
-    options = parser.parse_args()
-    results = kept(options.keep, options.names or KINDS, options.curves, options.seed)
+    _, results = outcomes_of(__doc__, KINDS, 200, score_of)
     print("kind | parameter | curves | rms error over the bound | interval holds")
     print("--- | --- | --- | --- | ---")
-    for name, scores in results.items():
-        values = list(scores.values())
+    for name, values in results.items():
         if name == "one speed":
             for verdict in sorted({value["verdict"] for value in values}):
                 count = sum(value["verdict"] == verdict for value in values)

@@ -9,18 +9,16 @@ With ``--keep FILE`` each outcome is appended to a file, and those that it has a
 
 from __future__ import annotations
 
-import argparse
-import json
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path as File
 from time import process_time
 from typing import Any, NamedTuple
 
 import numpy as np
+from kept_outcomes import outcomes_of
 from numpy.typing import NDArray
 from scipy.special import beta, betainc
 
@@ -298,7 +296,7 @@ def _shape(type_: str, radius: float = 1.0) -> HasForceCurve:
     return indenter
 
 
-def _pink(random: np.random.Generator, points: int) -> Array:
+def pink_noise(random: np.random.Generator, points: int) -> Array:
     """Return noise of variance 1 whose power falls as 1/f."""
     frequencies = np.fft.rfftfreq(4 * points)
     frequencies[0] = np.inf
@@ -358,7 +356,9 @@ class Sample:
         top = float(np.abs(self.truth.force(path())).max())
         size = force.size
         noise = (
-            _pink(self.random, size) if self.truth.coloured else self.random.standard_normal(size)
+            pink_noise(self.random, size)
+            if self.truth.coloured
+            else self.random.standard_normal(size)
         )
         deepest = self.truth.depth * RADIUS
         scale = MODULUS_ * _scale(self.truth.depth)
@@ -511,25 +511,6 @@ def pooled(sample: Sample, curves: Sequence[Curve], **options: Any) -> pl.Pooled
     return pool_sources(config, sources, progress=False)
 
 
-def kept(file: File | None, names: Sequence[str], curves: int, seed: int) -> dict[str, Any]:
-    """Return the outcomes by kind and number, from a file or computed and appended to it."""
-    results: dict[str, Any] = {name: {} for name in names}
-    if file is not None and file.exists():
-        for line in file.read_text().splitlines():
-            name, number, of, values = json.loads(line)
-            if of == seed and name in results and number < curves:
-                results[name][number] = Outcome(**values)
-    for number in range(curves):
-        for name in names:
-            if number in results[name]:
-                continue
-            results[name][number] = result = outcome_of(name, number, seed)
-            if file is not None:
-                with file.open("a") as lines:
-                    print(json.dumps([name, number, seed, result._asdict()]), file=lines)
-    return results
-
-
 def row(name: str, results: Sequence[Outcome]) -> str:
     """Return the row of a kind."""
     needed = "tension" in KINDS[name](np.random.default_rng(0)).codes[0]
@@ -556,20 +537,15 @@ def row(name: str, results: Sequence[Outcome]) -> str:
 
 def main() -> None:
     """Print a row of a table for each kind."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("curves", type=int, nargs="?", default=20)
-    parser.add_argument("seed", type=int, nargs="?", default=7)
-    parser.add_argument("names", nargs="*", metavar="kind")
-    parser.add_argument("--keep", type=File, help="file that keeps the outcomes")
-    options = parser.parse_args()
-    names = options.names or list(KINDS)
-    results = kept(options.keep, names, options.curves, options.seed)
+    curves, results = outcomes_of(
+        __doc__, list(KINDS), 20, lambda *curve: outcome_of(*curve)._asdict()
+    )
     heads = ["first answer", "with the measurement named", "named", "false", "settled", "right"]
     heads += ["E* holds", "E* of one of the tied holds", "CPU s"]
-    print(f"{options.curves} curves each | {' | '.join(heads)}")
+    print(f"{curves} curves each | {' | '.join(heads)}")
     print("--- | " * len(heads) + "---")
-    for name in names:
-        print(row(name, [results[name][n] for n in sorted(results[name])]), flush=True)
+    for name, values in results.items():
+        print(row(name, [Outcome(**value) for value in values]), flush=True)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import subprocess
 import sys
 from collections.abc import Iterable
@@ -114,11 +115,16 @@ KINDS = {
 
 
 def _growths(threads: int, names: Iterable[str]) -> dict[str, int]:
-    """Return the growth of the peak of a process [bytes] in each kind of run."""
+    """Return the growth of the peak of a process [bytes] in each kind of run.
+
+    Arrays are mapped one by one, as glibc maps those above 32 MB, which matter. Of the smaller ones
+    of these grids the heap would keep 0 to 3 after they are freed, at random.
+    """
     script = Path(__file__).with_name("memory_growth.py")
     given = json.dumps({name: KINDS[name] for name in names})
     done = subprocess.run(
         [sys.executable, str(script), str(threads)],
+        env=os.environ | {"MALLOC_MMAP_THRESHOLD_": str(2**17)},
         input=given,
         stdout=subprocess.PIPE,
         text=True,

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import tomllib
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -403,3 +404,22 @@ def test_cells_wider_than_the_indenter_are_said_so(cli: Cli) -> None:
     Path("g.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
     coarse = cli("run", "g.toml", "--set", "grid.size=0.1", "--threads", "1").stderr
     assert "which covers none of them, 6.25 mm wide" in coarse
+
+
+def test_show_leaves_out_what_means_nothing(cli: Cli) -> None:
+    """A round contact has no major axis, one in several parts neither radius nor ellipse."""
+    rough = {"type": "self_affine", "rms_height": "5 um", "hurst": 0.8, "seed": 1}
+    turned = {"type": "quadric", "radius_x": "1 mm", "radius_y": "3 mm"}
+    words = "contact radius", "major semi-axis", "major-axis angle"
+    for name, indenter, shown in (
+        ("round", RUN["indenter"], (True, True, False)),
+        ("long", turned, (True, True, True)),
+        ("rough", rough | {"cutoff_wavelength": "60 um"}, (False, False, False)),
+    ):
+        run = {**RUN, "indenter": indenter, "grid": {**RUN["grid"], "boundary": "periodic"}}
+        run["loading"] = {"mean_pressure": "30 Pa"}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            pl.run(run, progress=False, threads=1).save(f"{name}.h5")
+        table = cli("show", f"{name}.h5").stdout
+        assert tuple(word in table for word in words) == shown, name

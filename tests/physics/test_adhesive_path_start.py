@@ -18,6 +18,7 @@ from pellicle.components import Setting
 from pellicle.numerics.front import Traction, same_patches, shifted
 from pellicle.numerics.path import PathPoint, Start, start_of
 from pellicle.numerics.problem import Depth
+from pellicle.results.step import Steps
 from pellicle.runs import steps
 from pellicle.runs.compose import compose
 from pellicle.runs.following import followed
@@ -79,6 +80,29 @@ def test_jumps_where_the_last_state_does() -> None:
 def case() -> Case:
     """Return two steps of a retraction, and the next."""
     return Case(-0.9, -1.0, -1.1)
+
+
+@pytest.mark.parametrize(("name", "at", "number"), [("jumped", 2, 1), ("jumped", 1, 2)])
+def test_steps_before_a_jump_are_left_out(name: str, at: int, number: int) -> None:
+    """The state after a jump is the first of a new path."""
+    assert _points(name, at, True) == number
+    assert _points(name, at, False) == 2
+
+
+@pytest.mark.parametrize(("at", "number"), [(2, 0), (1, 1), (0, 2)])
+def test_steps_that_did_not_converge_are_left_out(at: int, number: int) -> None:
+    """A state that is not an equilibrium says nothing of the path."""
+    assert _points("converged", at, False) == number
+
+
+def _points(name: str, at: int, value: bool) -> int:
+    """Return how many of three steps remain, of which one has another value of a flag."""
+    run = path(True, tuple(DOWN + BACK))
+    done = Steps(3)
+    for index in range(3):
+        step = run.isel(step=[index])
+        done.append(step.assign({name: ("step", [value])}) if index == at else step)
+    return len(done.path)
 
 
 class Case:

@@ -74,12 +74,15 @@ def print_steps(result: Result, *, si: bool = False) -> None:
 
 def print_contact(result: Result, *, si: bool = False) -> None:
     """Print the shape of the contact at each step, and of the zone around it."""
+    from pellicle.results.shape import describes_shape
     from pellicle.results.variables import names_of
 
-    # Files of earlier versions lack them.
-    names = [name for name in names_of("contact", "interaction") if name in result.dataset]
+    data = result.dataset
+    # Files of earlier versions lack some.
+    names = [name for name in names_of("contact", "interaction") if name in data]
+    names = [name for name in names if describes_shape(data, name)]
     if names := [name for name in names if not name.startswith("residual_")]:
-        print_columns(_columns(result.dataset, names, si), "contact")
+        print_columns(_columns(data, names, si), "contact")
 
 
 def print_path(result: Result, *, si: bool = False) -> None:

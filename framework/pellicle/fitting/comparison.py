@@ -5,20 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 
-from pellicle.errors import ConvergenceError
 from pellicle.units import readable
 
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
 from .parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from .statistics.checks import judged
 from .statistics.experiments import advised
-from .statistics.likelihood import ChiSquared, Likelihood, Minimum, least
+from .statistics.likelihood import ChiSquared, Likelihood, Minimum
 from .statistics.noise import FailedCheck, doubt_of_tension
-from .statistics.profile import Ends, Estimate, ImprovedMinimum, confidence_interval, estimate_of
+from .statistics.pooled_likelihood import Pool
+from .statistics.profile import (
+    Ends,
+    Estimate,
+    curvature_interval,
+    estimate_of,
+    profiled,
+)
 from .statistics.rivals import NONE, TENSED, Rival, rivals
 from .wording import in_words, words
 
@@ -28,8 +34,10 @@ _OF_MANY = 12.0
 """Difference of AIC by which the best of many rivals must beat no effect at all."""
 _FIRST_TENSIONS = (0.03, 0.3)
 """Tensions from which a search for one starts, over modulus and depth."""
-_FINE = 0.1
-"""Error of the condensed χ² of which intervals are sought, in its unit."""
+_FAR = 100.0
+"""Difference of AIC beyond which intervals come from the curvature of χ²: their models describe the
+curves so badly that profiles, a third of the time of a comparison, would say nothing more."""
+Intervals = Literal["none", "profile", "curvature"]
 Verdict = Literal["needed", "not shown", "undecided", "other"]
 
 
@@ -47,6 +55,8 @@ class RivalFit:
     estimates: dict[str, Estimate]
     """The parameters by name; their intervals only if the model is chosen, or if the comparison was
     requested."""
+    intervals: Intervals = "none"
+    """How the intervals were found."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the explanation as JSON data."""
@@ -56,6 +66,7 @@ class RivalFit:
             "chi_squared": self.chi_squared,
             "delta_aic": self.aic,
             "delta_bic": self.bic,
+            "intervals": self.intervals,
             "parameters": {name: value.to_dict() for name, value in self.estimates.items()},
         }
 
@@ -97,7 +108,8 @@ class Comparison:
                 "parameters": ", ".join(
                     f"{words(name)} {in_words(estimate, si=si, sought=False)}"
                     for name, estimate in fit.estimates.items()
-                ),
+                )
+                + ("; intervals by curvature" if fit.intervals == "curvature" else ""),
             }
             for fit in self.fits
         ]
@@ -139,8 +151,8 @@ def compare(
     full
         Whether all explanations get intervals; otherwise only the one that is chosen.
     pairs
-        Whether a tension beside another effect is always compared; otherwise only if no single
-        effect passes its checks.
+        Whether a tension is compared beside each other effect; otherwise only if no single effect
+        passes its checks, or beside one that leads, and adhesion.
     report
         Called with the name of each explanation.
     """
@@ -149,56 +161,55 @@ def compare(
         NONE.code: (NONE, without),
         TENSED.code: (TENSED, best),
     }
+
+    def add(rival: Rival, starts: Sequence[Coordinates]) -> None:
+        report(rival.words)
+        pair = rival.minimum(chi_squared, starts)
+        if pair is not None:
+            minima[rival.code] = pair
+
     for rival in every:
         if rival.code not in minima and not rival.has_tension:
-            report(rival.words)
-            starts = [without.parameters, best.parameters]
-            minimum = rival.minimum(chi_squared, starts)
-            if minimum is not None:
-                minima[rival.code] = (rival, minimum)
-    noises, failed = _noises(chi_squared, minima)
-    if pairs or any(check.of_model for check in failed):
-        for rival in every:
-            if rival.code in minima or not rival.has_tension:
-                continue
-            report(rival.words)
-            _, single = minima.get(rival.code.partition("+")[2], (NONE, without))
-            starts = [best.parameters, *_tensed(chi_squared, single)]
-            minimum = rival.minimum(chi_squared, starts)
-            if minimum is not None:
-                minima[rival.code] = (rival, minimum)
-        noises, failed = _noises(chi_squared, minima)
-    fits = _ranked(chi_squared, minima, noises, threshold if full else None)
-    comparison = _judge(chi_squared, fits, failed, noises)
-    if comparison.chosen is None:
-        return comparison
+            add(rival, [without.parameters, best.parameters])
+    quiet, failed = _at_its_noise(chi_squared, minima)
+    alone = {code: _criterion(chi_squared, pair) for code, pair in minima.items()}
+    every_pair = pairs or any(check.of_model for check in failed)
+    for rival in every:
+        single = rival.code.partition("+")[2]
+        # What leads alone may hide a tension beside it, as a tension may hide adhesion.
+        leads = single == min(alone, key=alone.__getitem__) or (
+            single == "adhesion" and alone.get(single, np.inf) + _OF_MANY <= alone[NONE.code]
+        )
+        if single and (every_pair or leads):
+            start = minima.get(single, (NONE, without))[1]
+            add(rival, [best.parameters, *_tensed(chi_squared, start)])
+    quiet, failed = _at_its_noise(chi_squared, minima)
     report("intervals")
-    return _with_intervals(chi_squared, comparison, noises, None if full else threshold)
+    fits = _ranked(quiet, minima, threshold if full else None)
+    comparison = _judge(quiet, fits, failed)
+    chosen = comparison.chosen
+    return comparison if chosen is None else _with_intervals(quiet, comparison, chosen, threshold)
 
 
 def _with_intervals(
-    chi_squared: ChiSquared,
-    comparison: Comparison,
-    noises: Sequence[float],
-    threshold: float | None,
+    chi_squared: ChiSquared, comparison: Comparison, chosen: RivalFit, threshold: float
 ) -> Comparison:
-    """Return the comparison with intervals of the chosen explanation, and its pull-off force.
-
-    The intervals are kept as they are if there is no threshold.
-    """
-    chosen = comparison.chosen
-    assert chosen is not None
+    """Return the comparison with intervals of the chosen explanation, and its pull-off force."""
     mine = chosen.rival.of(chi_squared)
-    fits = comparison.fits
-    if threshold is not None:
-        at = mine.chi_squared(chosen.parameters)
-        limit = threshold * at / chosen.chi_squared if chosen.chi_squared else threshold
-        known = _estimates(mine, Minimum(chosen.parameters, at), limit)
-        better = replace(chosen, estimates=known)
+    fits, better = comparison.fits, chosen
+    if chosen.intervals != "profile":
+        minimum = Minimum(chosen.parameters, chosen.chi_squared)
+        minimum, ends = profiled(mine, minimum, threshold, _reported(mine))
+        better = replace(
+            chosen,
+            chi_squared=minimum.chi_squared,
+            parameters=minimum.parameters,
+            estimates=_estimates(mine, minimum, ends),
+            intervals="profile",
+        )
         fits = tuple(better if fit is chosen else fit for fit in fits)
-        chosen = better
-    member, part = mine.curves(chosen.parameters)[0]
-    return replace(comparison, fits=fits, chosen=chosen, pull_off=_pull_off(member, part))
+    member, part = mine.curves(better.parameters)[0]
+    return replace(comparison, fits=fits, chosen=better, pull_off=_pull_off(member, part))
 
 
 def _pull_off(member: Likelihood, part: Coordinates) -> str:
@@ -238,105 +249,100 @@ def _criterion(chi_squared: ChiSquared, pair: tuple[Rival, Minimum]) -> float:
     return misfit + 2 * len(mine.free)
 
 
-def _noises(
+def _at_its_noise(
     chi_squared: ChiSquared, minima: dict[str, tuple[Rival, Minimum]]
-) -> tuple[list[float], list[FailedCheck]]:
-    """Return the noise [N] of each curve as the best explanation shows it, and failed checks."""
+) -> tuple[ChiSquared, list[FailedCheck]]:
+    """Return χ² with the noise of each curve as the best explanation shows it, and failed checks.
+
+    Tolerances of searches are absolute in χ²: at the noise of a model that fails, a hundred times
+    as large, they would hide the minimum.
+    """
     rival, minimum = min(minima.values(), key=partial(_criterion, chi_squared))
-    noises: list[float] = []
+    members: list[Likelihood] = []
     failed: list[FailedCheck] = []
-    for member, part in rival.of(chi_squared).curves(minimum.parameters):
-        estimate, _ = judged(member, part)
-        noises.append(estimate.noise.deviation)
+    explained = rival.of(chi_squared).curves(minimum.parameters)
+    for (member, _), (own, part) in zip(
+        chi_squared.curves(dict.fromkeys(chi_squared.parameters, 0.0)), explained, strict=True
+    ):
+        estimate, _ = judged(own, part)
+        members.append(replace(member, noise=estimate.noise.deviation))
         failed += estimate.failed
-    return noises, failed
-
-
-class _Row(NamedTuple):
-    rival: Rival
-    chi_squared: ChiSquared
-    minimum: Minimum
-    value: float
-    aic: float
-    bic: float
+    if isinstance(chi_squared, Pool):
+        return replace(chi_squared, members=tuple(members)), failed
+    return members[0], failed
 
 
 def _ranked(
-    chi_squared: ChiSquared,
-    minima: dict[str, tuple[Rival, Minimum]],
-    noises: Sequence[float],
-    threshold: float | None,
+    chi_squared: ChiSquared, minima: dict[str, tuple[Rival, Minimum]], threshold: float | None
 ) -> list[RivalFit]:
-    """Return the explanations, best first, with χ² at the noise of the best."""
+    """Return the explanations, best first; with intervals if there is a threshold of them."""
+    points = sum(
+        member.force.size
+        for member, _ in chi_squared.curves(dict.fromkeys(chi_squared.parameters, 0.0))
+    )
     rows = []
     for rival, minimum in minima.values():
         mine = rival.of(chi_squared)
-        value = sum(
-            member.chi_squared(part) * (member.noise / noise) ** 2
-            for (member, part), noise in zip(mine.curves(minimum.parameters), noises, strict=True)
-        )
-        points = sum(member.force.size for member, _ in mine.curves(minimum.parameters))
-        free = len(mine.free)
-        rows.append(
-            _Row(rival, mine, minimum, value, value + 2 * free, value + np.log(points) * free)
-        )
-    aic, bic = min(row.aic for row in rows), min(row.bic for row in rows)
+        here = minimum._replace(chi_squared=mine.chi_squared(minimum.parameters))
+        rows.append((rival, mine, here))
+    first = min(_aic(mine, minimum) for _, mine, minimum in rows)
     fits = []
-    for row in sorted(rows, key=lambda row: row.aic):
-        scale = row.value / row.minimum.chi_squared if row.minimum.chi_squared else 1.0
-        limit = None if threshold is None else threshold / scale
+    for rival, mine, start in rows:
+        minimum = start
+        ends: dict[Parameter, Ends] = {}
+        intervals: Intervals = "none"
+        if threshold is not None and _aic(mine, start) - first <= _FAR:
+            minimum, ends = profiled(mine, start, threshold, _reported(mine))
+            intervals = "profile"
+        elif threshold is not None:
+            bounds = mine.deviations(start.parameters)
+            ends = {p: curvature_interval(p, start, bounds, threshold) for p in _reported(mine)}
+            intervals = "curvature"
+        bic = minimum.chi_squared + float(np.log(points)) * len(mine.free)
         fits.append(
             RivalFit(
-                row.rival,
-                row.value,
-                row.aic - aic,
-                row.bic - bic,
-                row.minimum.parameters,
-                _estimates(row.chi_squared, row.minimum, limit),
+                rival,
+                minimum.chi_squared,
+                _aic(mine, minimum),
+                bic,
+                minimum.parameters,
+                _estimates(mine, minimum, ends),
+                intervals,
             )
         )
-    return fits
+    aic, bic = min(fit.aic for fit in fits), min(fit.bic for fit in fits)
+    fits = [replace(fit, aic=fit.aic - aic, bic=fit.bic - bic) for fit in fits]
+    return sorted(fits, key=lambda fit: fit.aic)
+
+
+def _aic(chi_squared: ChiSquared, minimum: Minimum) -> float:
+    return minimum.chi_squared + 2 * len(chi_squared.free)
+
+
+def _reported(chi_squared: ChiSquared) -> list[Parameter]:
+    """Return the fitted parameters of which a comparison tells the values."""
+    beside = (CONTACT_POINT.name, OFFSET.name, SLOPE.name)
+    return [p for p in chi_squared.parameters if p in chi_squared.free and p.name not in beside]
 
 
 def _estimates(
-    chi_squared: ChiSquared, minimum: Minimum, threshold: float | None
+    chi_squared: ChiSquared, minimum: Minimum, ends: dict[Parameter, Ends]
 ) -> dict[str, Estimate]:
-    """Return what is fitted beside contact point and baseline, with intervals if requested."""
-    estimates = {}
+    """Return estimates by name of what is not fixed, with intervals that are known."""
     bounds = chi_squared.deviations(minimum.parameters)
-    thin, near = chi_squared, minimum
-    if threshold is not None:
-        thin = chi_squared.condensed(minimum.parameters, _FINE)
-        near = minimum if thin is chi_squared else thin.minimise(minimum.parameters, rough=True)
-    for p in chi_squared.parameters:
-        if p.name in (CONTACT_POINT.name, OFFSET.name, SLOPE.name):
-            continue
-        if p == TENSION and p not in chi_squared.free:
-            continue
-        ends: Ends = None, None
-        if threshold is not None and p in chi_squared.free:
-            ends = _interval(thin, near, p, threshold)
-        estimates[p.name] = estimate_of(p, chi_squared, minimum, ends, bounds)
-    return estimates
-
-
-def _interval(chi_squared: ChiSquared, best: Minimum, p: Parameter, threshold: float) -> Ends:
-    """Return the interval of a parameter, open if the search fails or finds a better minimum."""
-    for _ in range(3):
-        try:
-            return confidence_interval(chi_squared, best, p, threshold)
-        except ImprovedMinimum as improved:
-            best = least([best, improved.minimum])
-        except ConvergenceError:
-            break
-    return None, None
+    fixed = [p for p in chi_squared.parameters if p not in chi_squared.free and p != TENSION]
+    beside = (CONTACT_POINT.name, OFFSET.name, SLOPE.name)
+    return {
+        p.name: estimate_of(p, chi_squared, minimum, ends.get(p, (None, None)), bounds)
+        for p in chi_squared.parameters
+        if p in _reported(chi_squared) or (p in fixed and p.name not in beside)
+    }
 
 
 def _judge(
     chi_squared: ChiSquared,
     fits: Sequence[RivalFit],
     failed: Sequence[FailedCheck],
-    noises: Sequence[float],
 ) -> Comparison:
     """Return the verdict on ranked explanations."""
     alone = {fit.rival.code: fit.aic for fit in fits if not fit.rival.has_tension}
@@ -405,7 +411,6 @@ def _judge(
             chi_squared,
             (with_tension.rival, with_tension.parameters),
             [(fit.rival, fit.parameters) for fit in tied],
-            noises,
         )
     if chosen is not None and chosen.rival == TENSED:
         chosen = None

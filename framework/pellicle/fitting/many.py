@@ -287,7 +287,7 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker."""
     fit = fit_problem(task.problem)
     likelihood, best = fit.likelihood, fit.parameters
-    residuals = likelihood.residuals(best) * likelihood.noise
+    residuals = likelihood.misfit(best)
     scatter = likelihood.force - np.mean(likelihood.force)
     _, force = likelihood.fitted(best)
     return (

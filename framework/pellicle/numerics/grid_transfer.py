@@ -14,6 +14,8 @@ def restrict(profile: Array, shape: tuple[int, int]) -> Array:
     A coarse cell has no indenter (−inf) if half of its fine cells or more have none.
     """
     finite = np.isfinite(profile)
+    if finite.all():
+        return _sum(profile, shape) / _sum(np.ones_like(profile), shape)
     total = _sum(np.where(finite, profile, 0.0), shape)
     share = _sum(finite.astype(np.float64), shape)
     cells = _sum(np.ones_like(profile), shape)
@@ -33,10 +35,14 @@ def prolong(pressure: Array, shape: tuple[int, int]) -> Array:
     rows, columns = (
         _parents(fine, coarse) for fine, coarse in zip(shape, pressure.shape, strict=True)
     )
-    return pressure[rows[:, None], columns]
+    return pressure.take(rows, axis=0).take(columns, axis=1)
 
 
 def _sum(field: Array, shape: tuple[int, int]) -> Array:
+    if field.shape == (2 * shape[0], 2 * shape[1]):
+        # The same sums; reduceat takes four times as long.
+        rows = field[0::2] + field[1::2]
+        return rows[:, 0::2] + rows[:, 1::2]
     for axis, coarse in enumerate(shape):
         field = np.add.reduceat(field, _starts(field.shape[axis], coarse), axis=axis)
     return field

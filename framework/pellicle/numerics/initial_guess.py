@@ -32,11 +32,15 @@ def overlap_pressure(operator: Operator, overlap: Array) -> Array:
     return overlap * (dot(overlap, overlap) / dot(overlap, operator(overlap)))
 
 
-def with_force(problem: Problem, pressure: Array) -> Array:
-    """Return a pressure scaled to the prescribed force; unchanged under depth control."""
+def with_force(problem: Problem, pressure: Array, out: Array | None = None) -> Array:
+    """Return a pressure scaled to the prescribed force; unchanged under depth control.
+
+    The scaled pressure is in ``out``, which may be ``pressure``, or in a new array.
+    """
     if problem.prescribed == "depth":
         return pressure
-    return pressure * (problem.value / (float(pressure.sum()) * problem.grid.cell_area))
+    factor = problem.value / (float(pressure.sum()) * problem.grid.cell_area)
+    return np.multiply(pressure, factor, out=out)
 
 
 def dot(one: NDArray[Any], other: NDArray[Any]) -> float:

@@ -9,7 +9,7 @@ from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array, Cells, Mask
 from pellicle.grid import Grid
 
 from .gap_law import Law, attracted, attraction_slope
@@ -166,17 +166,19 @@ class Problem:
         """
         return bool(contact.all()) and not self.operator.has_mean_compliance
 
-    def height_scale(self, contact: Mask, depth: float, total: float) -> float:
+    def height_scale(self, contact: Mask | Cells, depth: float, total: float) -> float:
         """Return the length [m] to which gaps are compared.
 
         This is the height range of the indenter in contact or, if it is flat there, its depth. If a
         flat indenter fills a periodic domain whose mean displacement is 0, both are mere rounding;
         the length is then the displacement of the most compliant wave under the mean pressure.
-        ``depth`` [m] is that of the base, ``total`` the sum of all pressures [Pa].
+        ``contact`` is a mask or has flat indices, ``depth`` [m] is that of the base and ``total``
+        the sum of all pressures [Pa].
         """
-        wave = 0.0
-        if self.has_infinite_stiffness(contact):
-            wave = self.operator.greatest * total / contact.size
+        wave, cells = 0.0, self.profile.size
+        number = np.count_nonzero(contact) if contact.dtype == bool else contact.size
+        if number == cells and not self.operator.has_mean_compliance:
+            wave = self.operator.greatest * total / cells
         return height_scale(self.heights, contact, depth - self.operator.deflection(total), wave)
 
     def coarsened(self) -> Problem:
@@ -423,16 +425,17 @@ def measure(problem: Problem, pressure: Array) -> Equilibrium:
 
 def height_scale(
     profile: Array,
-    contact: Mask,
+    contact: Mask | Cells,
     depth: float,
     wave: float = 0.0,
 ) -> float:
     """Return the length [m] to which gaps are compared: the indenter's height range in contact.
 
     If the indenter is flat over the contact (a punch, a single cell), the length is the depth or,
-    if greater, ``wave`` [m], of which both range and depth may be rounding errors.
+    if greater, ``wave`` [m], of which both range and depth may be rounding errors. ``contact`` is a
+    mask or has flat indices.
     """
-    heights = profile[contact]
+    heights = profile.ravel()[contact.ravel()]
     in_contact = float(np.ptp(heights)) if heights.size else 0.0
     if in_contact > max(_FLAT * abs(depth), _ROUNDING * wave):
         return in_contact

@@ -18,10 +18,10 @@ from pellicle.components import Solver
 from pellicle.files import atomic_write, for_document, storage_errors
 from pellicle.numerics.problem import height_scale
 from pellicle.results.derived import FIRST_RUN
-from pellicle.results.path import has_interaction, has_times
+from pellicle.results.path import has_interaction, has_times, label_of_step
 from pellicle.results.result import Result
 from pellicle.results.variables import CONTACT_AREA, CORRECTED_AREA, wording
-from pellicle.units import DIGITS, axis_unit, readable
+from pellicle.units import axis_unit
 
 from .style import (
     MARKERS,
@@ -141,14 +141,17 @@ def outline_contact(step: xr.Dataset, axes: Axes, length: float) -> None:
 
 
 def profile(result: Result, axes: Axes, step: int | None = None) -> None:
-    """Draw pressure and gap along x through the centre of the domain, by default of `default_step`.
+    """Draw pressure and gap along a line of cells in x, by default of `default_step`.
 
-    With an interaction the contact is shaded.
+    The line goes through the centre of the domain, or, where it meets no contact there, through the
+    greatest pressure. With an interaction the contact is shaded.
     """
     step = default_step(result.dataset) if step is None else step
     data = without_round_off(result.dataset.isel(step=step))
-    centre = data.sizes["y"] // 2
-    line = data.isel(y=centre)
+    row = data.sizes["y"] // 2
+    if not data["contact"].isel(y=row).any():
+        row = int(np.abs(data["pressure"].values).max(axis=0).argmax())
+    line = data.isel(y=row)
     gap = line["gap"].values
     pulls = has_interaction(data)
     height = max(float(data["depth"]), 0.0)
@@ -156,7 +159,7 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
         # The surface rises above the undeformed plane, and the indenter hangs over it.
         height = max(abs(float(data["depth"])), float(np.abs(line["displacement"].values).max()))
     near = gap <= height * 2
-    if pulls and not near.any():
+    if gap.max() <= height * _OPEN or not near.any():
         near = np.isfinite(gap)
     length, length_name = axis_unit(line["x"].values, "m")
     scale, name = axis_unit(line["pressure"].values, "Pa")
@@ -168,12 +171,15 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     edge = np.zeros_like(contact) if pulls else edge_cells(contact)
     axes.plot(*smooth(x, np.where(edge, np.nan, pressure)), color="C0")
     if edge.any():
-        axes.plot(x[edge], pressure[edge], ".", color="C0", markersize=3, label=EDGE_CELLS)
-    axes.set(xlabel=f"x [{length_name}] at y = {line['y'].item() * length:.3g} {length_name}")
+        axes.plot(x[edge], pressure[edge], ".", color="C0", markersize=3)
+    about = f"\ndots: {EDGE_CELLS}" if edge.any() else ""
+    axes.set(
+        xlabel=f"x [{length_name}] at y = {line['y'].item() * length:.3g} {length_name}{about}"
+    )
     axes.set_ylabel(f"{'' if pulls else 'contact '}pressure [{name}]", color="C0")
     axes.set_title(_caption(result, step))
     gap_axes = axes.twinx()
-    gap_axes.plot(*smooth(x, np.where(near, gap * gap_scale, np.nan)), color="C1", linestyle="--")
+    gap_axes.plot(*smooth(x, gap * gap_scale), color="C1", linestyle="--")
     gap_axes.set_ylabel(f"gap [{gap_name}]", color="C1")
     if pulls:
         axes.axhline(0.0, color="C0", linewidth=0.6)
@@ -182,12 +188,14 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
         side.set_ylim(bottom=0.0)
     if not opens and float(data["depth"]) > 0:
         gap_axes.set_ylim(top=float(data["depth"]) * gap_scale)
-    if edge.any():
-        axes.legend(fontsize="small")
+    elif opens and not near.all():
+        gap_axes.set_ylim(top=float(gap[near].max()) * gap_scale)
 
 
 EDGE_CELLS = "cells at the edge of contact"
 """Name of the cells whose pressure is that of the grid."""
+_OPEN = 4.0
+"""Largest gap along a line, over the depth, up to which the whole line is drawn."""
 _EDGE = 3
 _RESOLVED = 16
 _SMOOTH = 300
@@ -645,12 +653,9 @@ def _point_along(axes: Axes, x: Array, y: Array, colour: Any) -> None:
 
 
 def _caption(result: Result, step: int) -> str:
-    data = result.dataset.isel(step=step)
-    caption = wording(data["depth"]).text(data["depth"].item())
-    if has_times(data):
-        caption = f"{readable(data['time'].item(), 's', DIGITS)}, {caption}"
+    caption = label_of_step(result.dataset, step, result.configuration)
     title = result.dataset.attrs.get("title", "")
-    if not bool(data["converged"]):
+    if not bool(result.dataset["converged"][step]):
         caption += ", NOT CONVERGED"
     return f"{title}\n{caption}" if title else caption
 

@@ -1,15 +1,18 @@
-"""The variables of a run's whole path: where it sticks, and where it oscillates."""
+"""The path of a run: the names of its steps, and its variables where it sticks or oscillates."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pellicle.analysis import Oscillation, oscillations, path_summary
+from pellicle.loading import OPTIONS
+from pellicle.units import DIGITS, readable
 
-from .variables import VARIABLES
+from .variables import VARIABLES, wording
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,6 +26,21 @@ def has_interaction(data: xr.Dataset) -> bool:
 def has_times(data: xr.Dataset) -> bool:
     """Whether the steps of a result, or of any run in the table of a study, have times."""
     return "time" in data
+
+
+def prescribed_variable(data: xr.Dataset, configuration: Mapping[str, Any]) -> str:
+    """Return the variable that names load steps: what is prescribed, else the depth."""
+    names = (name for name in configuration["loading"] if name in data and name not in OPTIONS)
+    return next(names, "depth")
+
+
+def label_of_step(data: xr.Dataset, index: int, configuration: Mapping[str, Any]) -> str:
+    """Return what a load step prescribes: "depth 3 µm", "1 s, force 5 nN"."""
+    name = prescribed_variable(data, configuration)
+    label = wording(data[name]).text(data[name].values[index].item())
+    if has_times(data):
+        label = f"{readable(data['time'].values[index].item(), 's', DIGITS)}, {label}"
+    return label
 
 
 def has_path(data: xr.Dataset) -> bool:

@@ -121,13 +121,19 @@ class Steps:
 
     @property
     def path(self) -> tuple[PathPoint, ...]:
-        """The last two steps that converged, without one between; the earlier one first."""
+        """The last two steps, the earlier one first.
+
+        Only the last one if the path jumped there, and none that did not converge or lies before
+        such a step.
+        """
         points: list[PathPoint] = []
         for index in range(max(0, len(self) - 2), len(self)):
             scalars = self._scalars[index]
             if not scalars["converged"].item():
                 points.clear()
                 continue
+            if "jumped" in scalars and scalars["jumped"].item():
+                points.clear()
             energy = scalars["energy"].item() if "energy" in scalars else np.nan
             gap = self._fields["gap"].values[index]
             points.append(PathPoint(self._state(index), gap, energy))

@@ -69,7 +69,7 @@ def _sphere_coefficients() -> tuple[float, Any, Any]:
 def paraboloid(radius: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a paraboloid of R = ``radius`` [m] at s = ``length`` [m]."""
     touching, d = _touching(depth)
-    x = length / np.sqrt(d * radius)
+    x = _ratio(length, np.sqrt(d * radius))
     log, rate = _one_variable("paraboloid")(x)
     force = 4 / 3 * np.sqrt(radius) * d**1.5 * np.exp(log)
     by_depth = force / d * (1.5 - rate * x / 2)
@@ -80,7 +80,7 @@ def cone(half_angle: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a cone of α = ``half_angle`` [rad] at s = ``length`` [m]."""
     touching, d = _touching(depth)
     tangent = np.tan(half_angle)
-    x = length / (tangent * d)
+    x = _ratio(length, tangent * d)
     log, rate = _one_variable("cone")(x)
     force = 2 / np.pi * tangent * d**2 * np.exp(log)
     by_depth = force / d * (2 - rate * x)
@@ -130,7 +130,7 @@ def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
     flat = paraboloid(radius, d, length)
     last, spline, slope = _sphere_coefficients()
     root = np.sqrt(d * radius)
-    x = length / root
+    x = _ratio(length, root)
     at = np.log1p(x / SCALE)
     inside = np.minimum(at, last)
     ratio = np.minimum(d / radius, 1.0)
@@ -146,6 +146,15 @@ def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
     by_depth = flat.by_depth * factor + force * (grows - ratio * by_x * x / (2 * d))
     by_length = flat.by_length * factor + force * ratio * by_x / root
     return _spread(touching, force, by_depth, by_length)
+
+
+def _ratio(length: float, sizes: Array) -> Array:
+    """Return s over other lengths; a single 0 without tension, where one spline value serves all.
+
+    Splines are most of the cost of a force curve.
+    """
+    ratio: Array = length / sizes if length else np.zeros(1)
+    return ratio
 
 
 def _touching(depth: Array) -> tuple[Mask, Array]:

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle.arrays import Array
 from pellicle.config.describe import inputs
 from pellicle.config.loading import prescribed_in
 from pellicle.errors import ConfigError
 from pellicle.loading import OPTIONS
-from pellicle.results.path import has_interaction, has_times
+from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
+from pellicle.results.shape import has_one_shape
 from pellicle.results.variables import VARIABLES, wording
 from pellicle.units import DIGITS, readable
 from pellicle.version import CITATION
@@ -21,6 +23,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _ANSWER_DIGITS = 3
+_FEW = 5
+"""Number of runs up to which the sentence of a study lists their numbers."""
+_SAME = 1e-9
+"""Relative difference up to which numbers count as equal."""
 
 
 def prescribed_of(configuration: Mapping[str, Any]) -> str:
@@ -32,39 +38,22 @@ def prescribed_of(configuration: Mapping[str, Any]) -> str:
         return ""
 
 
-def shown_variable(data: xr.Dataset, prescribed: str) -> str:
-    """Return the variable that names load steps: what is prescribed, else the depth."""
-    return prescribed if prescribed in data else "depth"
-
-
-def has_one_shape(data: xr.Dataset) -> bool:
-    """Whether the contact is never in several parts, so that its radius and ellipse describe it."""
-    return "patches" in data and not bool((data["patches"] > 1).any())
-
-
-def label_of_step(data: xr.Dataset, index: int, prescribed: str) -> str:
-    """Return what a load step prescribes: "depth 3 µm", "1 s, force 5 nN"."""
-    name = shown_variable(data, prescribed)
-    label = wording(data[name]).text(data[name].values[index].item())
-    if has_times(data):
-        label = f"{readable(data['time'].values[index].item(), 's', DIGITS)}, {label}"
-    return label
-
-
-def answer_of_step(data: xr.Dataset, index: int, boundary: str, prescribed: str) -> str:
+def answer_of_step(
+    data: xr.Dataset, index: int, boundary: str, configuration: Mapping[str, Any]
+) -> str:
     """Return a sentence like "At depth 3 µm: force 904 nN, contact radius 4.5 µm" for a load step.
 
     A contact in several parts has its fraction of a periodic domain, or its area on a free one,
     instead of its radius.
     """
     step = data.isel(step=index)
-    heading = f"At {label_of_step(data, index, prescribed)}"
+    heading = f"At {label_of_step(data, index, configuration)}"
     if not np.isfinite(step["force"].item()):
         return f"{heading}: no result."
     size = "contact_fraction" if boundary == "periodic" else "contact_area"
     if has_one_shape(data) and "contact_radius" in data:
         size = "contact_radius"
-    named = shown_variable(data, prescribed)
+    named = prescribed_variable(data, configuration)
     names = [name for name in ("force", "depth", size) if name != named]
     if named == "depth" or has_times(data):
         names = [name for name in names if name != "depth"]
@@ -93,9 +82,10 @@ def answer_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
 
 
 def answer_of_study(table: xr.Dataset, count: int) -> str:
-    """Return the range of the force over all steps of a study; empty if there is none."""
-    if "force" not in table or not np.isfinite(table["force"].values).any():
-        return ""
+    """Return what the runs of a study answer in their last step; empty if there is none.
+
+    Of force, depth and contact radius, the one that all runs share there, if any, comes first.
+    """
     axes = [
         shown.words + " " + shown.listing(axis.values.tolist())
         for name, axis in table.coords.items()
@@ -103,7 +93,29 @@ def answer_of_study(table: xr.Dataset, count: int) -> str:
         for shown in (wording(axis),)
     ]
     over = f" with {'; '.join(axes)}" if axes else ""
-    return f"{count} runs{over}: {_range(table['force'])}."
+    end = table.isel(step=-1)
+    names = ["depth", "force", *["contact_radius"] * has_one_shape(table)]
+    known = [name for name in names if name in end and np.isfinite(end[name].values).any()]
+    shared = [name for name in known if _is_one_value(end[name].values)][:1]
+    answers = [_values(end[name], count) for name in known if name not in shared][:2]
+    if not answers:
+        return ""
+    at = f"at {_values(end[shared[0]], count)}" if shared else "in the last step"
+    return f"{count} runs{over}; {at}: {', '.join(answers)}."
+
+
+def _is_one_value(values: Array) -> bool:
+    finite = values[np.isfinite(values)]
+    return bool(np.ptp(finite) <= _SAME * np.abs(finite).max())
+
+
+def _values(variable: xr.DataArray, count: int) -> str:
+    """Return the values of a few runs in their order, the range of many."""
+    values = variable.values.ravel()
+    if count > _FEW or variable.ndim > 1 or not np.isfinite(values).all() or _is_one_value(values):
+        return _range(variable)
+    shown = replace(wording(variable), digits=_ANSWER_DIGITS)
+    return f"{shown.words} {shown.listing(values.tolist())}"
 
 
 def _range(variable: xr.DataArray) -> str:

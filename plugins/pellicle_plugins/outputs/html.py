@@ -50,8 +50,9 @@ from pellicle.report.plotting import (
 )
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
-from pellicle.results.path import has_interaction
+from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
 from pellicle.results.result import Result, first_message
+from pellicle.results.shape import describes_shape
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
 from pellicle.results.variables import (
@@ -77,11 +78,7 @@ from .answer import (
     answer_of_path,
     answer_of_step,
     answer_of_study,
-    has_one_shape,
-    label_of_step,
     methods,
-    prescribed_of,
-    shown_variable,
 )
 from .setup_drawing import description, setup_drawing
 
@@ -192,21 +189,20 @@ class Html(Output):
         data = result.dataset
         steps = data.sizes["step"]
         chosen = self._chosen(steps)
-        prescribed = prescribed_of(result.configuration)
         mapped = _mapped(data)
         points = side(self.points, len(chosen) * len(mapped))
         frames = []
         for index in chosen:
             step = without_round_off(data.isel(step=index))
-            label = f"{index + 1}: {label_of_step(data, index, prescribed)}"
+            label = f"{index + 1}: {label_of_step(data, index, result.configuration)}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
-            note = answer_of_step(data, index, grid.boundary, prescribed)
+            note = answer_of_step(data, index, grid.boundary, result.configuration)
             frames.append(replace(_frame(label, grid, step, mapped, points), note=note))
         shown = default_step(data) % steps
         begin = int(np.searchsorted(chosen, shown, side="right")) - 1
         *first, last = [f"{field.name}" for field in mapped.values()]
         names = f"{', '.join(first)} and {last}".capitalize()
-        words = wording(data[shown_variable(data, prescribed)]).words
+        words = wording(data[prescribed_variable(data, result.configuration)]).words
         # Over the range of the last step the first ones would have one colour.
         colours = ", each in colours over its own range" if len(chosen) > 1 else ""
         shown_steps = _some(len(chosen), steps, "load step")
@@ -287,8 +283,7 @@ def _answer(result: Result, grid: Grid) -> list[Text]:
     """Return the answer of a run in a sentence or two."""
     data = result.dataset
     shown = default_step(data) % data.sizes["step"]
-    prescribed = prescribed_of(result.configuration)
-    first = answer_of_step(data, shown, grid.boundary, prescribed)
+    first = answer_of_step(data, shown, grid.boundary, result.configuration)
     rest = answer_of_path(data, result.path_summary)
     return [Text(first, lead=True), *([Text(rest)] if rest else [])]
 
@@ -396,15 +391,12 @@ def _numbers(data: xr.Dataset) -> list[str]:
     ]
 
 
-_OF_ONE_SHAPE = {"contact_radius", "semi_major_axis", "semi_minor_axis", "major_axis_angle"}
-
-
 def _means_something(data: xr.Dataset, name: str) -> bool:
-    """Whether a variable has a meaning here: a contact in several parts has no radius or ellipse.
+    """Whether a variable has a meaning here: it describes the contact, and has finite values.
 
-    Nor has a variable without any finite value, unless no step has a force.
+    Without a finite force the variables of a step stay in the table.
     """
-    if name in _OF_ONE_SHAPE and not has_one_shape(data):
+    if not describes_shape(data, name):
         return False
     missing = not np.isfinite(data[name].values.astype(float)).any()
     return not missing or not np.isfinite(data["force"].values).any()
@@ -499,11 +491,11 @@ def _profiles(result: Result, chosen: list[int]) -> Picture:
 
     Where many steps are mapped, some have the profile of the nearest one, as the caption says.
     """
-    prescribed = prescribed_of(result.configuration)
     count = -(-len(chosen) // _PROFILES)
 
     def picture(index: int) -> Picture:
-        caption = _CURVES["profile"].format(step=label_of_step(result.dataset, index, prescribed))
+        label = label_of_step(result.dataset, index, result.configuration)
+        caption = _CURVES["profile"].format(step=label)
         return _picture(lambda figure: profile(result, figure.add_subplot(), index), caption)
 
     # The last step is drawn, and every `count`-th before it.

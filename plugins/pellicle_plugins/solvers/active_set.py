@@ -20,6 +20,7 @@ from pellicle.numerics.solution import Progress, Solution, State, Stop
 
 from .adhesion import AdhesionSolver
 from .adhesive_response import with_zone
+from .blocks import blocks
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
 from .nested_grids import coarse_solution, coarser, prolonged
 from .preconditioner import OnContact, Preconditioner
@@ -144,7 +145,7 @@ class ActiveSet(ScaledSolver):
         """Return the iterate of the last step if it is close, else that of a coarser grid."""
         preconditioner = Preconditioner(problem.operator)
         if start is not None and start.contact.any():
-            state = _iterate(problem, preconditioner.on(start.contact), start.pressure)
+            state = _iterate(problem, preconditioner.on(start.contact), start.wall)
             if state.error <= _CLOSE * state.scale:
                 return state
         prolonged = self._prolonged(problem)
@@ -295,13 +296,21 @@ def _iterate(
     history: History | None = None,
     before: _Iterate | None = None,
 ) -> _Iterate:
-    """Return the iterate of a pressure [Pa], scaled to the prescribed force if any."""
+    """Return the iterate of a pressure [Pa], scaled to the prescribed force if any.
+
+    The pressure is 0 off the contact. It is overwritten, and so is the displacement of the iterate
+    ``before``, which is not used any more.
+    """
     history = history or History()
-    trial = with_force(problem, trial)
-    displacement = problem.operator(trial)
-    pressed = trial != 0
-    gap, depth = problem.gap(displacement, pressed)
-    error = max(float(np.abs(gap[pressed]).max(initial=0.0)), -float(gap.min(initial=0.0)))
+    trial = with_force(problem, trial, out=trial)
+    displacement = problem.operator(trial, out=before.displacement if before else None)
+    cells = on_contact.cells
+    pressed = cells[trial.ravel()[cells] != 0]
+    inside = displacement.ravel()[pressed] - problem.profile.ravel()[pressed]
+    depth = problem.depth(inside)
+    u, f = displacement.ravel(), problem.profile.ravel()
+    lowest = min(float((u[block] - f[block]).min()) for block in blocks(u.size))
+    error = max(float(np.abs(inside - depth).max(initial=0.0)), depth - lowest)
     scale = problem.height_scale(pressed, depth, float(trial.sum()))
     progress = before.progress if before else Progress()
     return _Iterate(

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Cells
 from pellicle.numerics.initial_guess import dot
 from pellicle.numerics.problem import Problem
 
-from .preconditioner import Cells, OnContact
+from .blocks import blocks
+from .preconditioner import OnContact
 
 # Sign-certainty factors: the sign of a cell counts as final if its value exceeds this multiple of
 # its last change. The strict one applies after an outer iteration without progress.
@@ -63,20 +65,25 @@ def inner_solve(
     the remaining gap recovers all digits (iterative refinement; Wilkinson 1963). Under a skin with
     bending stiffness it is applied in double precision, because a gap that single precision does
     not resolve corresponds to pressures larger than those whose signs are to be determined.
+
+    ``pressure``, which is 0 off the contact, and ``displacement`` are overwritten by the solution.
     """
     cells = preconditioner.cells
     if not cells.size:
         nothing = np.zeros(problem.grid.shape)
-        penetrating, _ = _misclassified(problem, preconditioner, nothing, np.zeros(0), goal)
+        none = np.zeros(0)
+        penetrating, _ = _misclassified(
+            problem, preconditioner, nothing, none, problem.depth(none), goal
+        )
         return InnerSolution(nothing, nothing, 0.0, penetrating)
     uniform = _Uniform.of(problem, cells)
     directions = _Directions(problem, preconditioner, uniform)
     bends = preconditioner.preconditioner.bends
     field = np.zeros(problem.grid.shape, dtype=np.float64 if bends else np.float32)
-    displacement = displacement.copy()
     on_contact = pressure.ravel()[cells]
     u_minus_f = displacement.ravel()[cells] - problem.profile.ravel()[cells]
-    residual = problem.depth(u_minus_f) - u_minus_f
+    depth = problem.depth(u_minus_f)
+    residual = np.subtract(depth, u_minus_f, out=u_minus_f)
     del u_minus_f
     if uniform:
         level = uniform.level(residual)
@@ -92,12 +99,15 @@ def inner_solve(
     while descent > 0 and stagnant < _STAGNATION:
         mean = float(direction.mean()) if uniform else 0.0
         varying = direction - mean if uniform else direction
-        size = float(np.abs(varying).max()) or 1.0
-        field.ravel()[cells] = varying / size
-        change = problem.operator(field)
+        size = max(float(varying.max()), -float(varying.min())) or 1.0
+        field.fill(0)
+        for block in blocks(cells.size):
+            field.ravel()[cells[block]] = varying[block] / size
+        change = problem.operator(field, out=field)
         if uniform:
             change += (mean / size) * uniform.displacement
-        inside = change.ravel()[cells] * size
+        inside = change.ravel()[cells]
+        inside *= size
         curvature = dot(direction, inside)
         if curvature <= 0:
             break
@@ -114,29 +124,30 @@ def inner_solve(
         if error <= goal:
             break
         if np.isfinite(certainty) and iteration >= _MIN_ITERATIONS:
-            change -= directions.mean(inside)
-            last = certainty, direction, change
+            last = certainty, direction, change, directions.mean(inside)
+            current = depth - directions.mean(residual)
             certain, others = _misclassified(
-                problem, preconditioner, displacement, on_contact, goal, last
+                problem, preconditioner, displacement, on_contact, current, goal, last
             )
             if certain.size and others <= _UNCERTAIN * certain.size:
                 misclassified = certain
                 break
             del last
         # On a large contact each of these arrays is as large as the grid.
-        del change, inside
+        del inside
         ascent = directions(residual)
         before, descent = descent, dot(residual, ascent)
         # The direction was multiplied by its step length.
         direction *= curvature / before * (descent / before)
         direction += ascent
         del ascent
-    # This frees memory for the gap, which is computed next, and for the result.
+    depth -= directions.mean(residual)
+    # This frees memory for the gap, which is computed next.
     del residual, direction, field
     if misclassified is None:
-        margin = max(error, goal)
-        misclassified, _ = _misclassified(problem, preconditioner, displacement, on_contact, margin)
-    pressure = np.zeros(problem.grid.shape)
+        misclassified, _ = _misclassified(
+            problem, preconditioner, displacement, on_contact, depth, max(error, goal)
+        )
     pressure.ravel()[cells] = on_contact
     return InnerSolution(pressure, displacement, error, np.sort(misclassified))
 
@@ -190,25 +201,30 @@ def _misclassified(
     preconditioner: OnContact,
     displacement: Array,
     on_contact: Array,
+    depth: float,
     margin: float,
-    last: tuple[float, Array, Array] | None = None,
+    last: tuple[float, Array, NDArray[Any], float] | None = None,
 ) -> tuple[Cells, int]:
     """Return flat indices of misclassified cells of certain sign, and the number of uncertain ones.
 
     A cell in contact is misclassified if its pressure in ``on_contact`` [Pa] is tensile, any other
-    cell if its gap is below −``margin`` [m]. ``last`` is the sign-certainty factor and the last
-    changes of pressure in contact [Pa] and gap [m]; without it all signs are certain.
+    cell if its gap at ``depth`` [m] is below −``margin`` [m]. ``last`` is the sign-certainty factor
+    and the last changes of pressure in contact [Pa], displacement [m] and depth [m]; without it all
+    signs are certain.
     """
-    contact = preconditioner.contact
-    gap = problem.gap(displacement, contact)[0].ravel()
-    tensile = np.flatnonzero(on_contact < 0)
-    penetrating = np.flatnonzero((gap < -margin) & ~contact.ravel())
+    u, f, contact = displacement.ravel(), problem.profile.ravel(), preconditioner.contact.ravel()
+    below = np.empty(u.size, dtype=bool)
+    for block in blocks(u.size):
+        np.less(u[block] - f[block], depth - margin, out=below[block])
+    np.greater(below, contact, out=below)
+    tensile, penetrating = np.flatnonzero(on_contact < 0), np.flatnonzero(below)
     number = tensile.size + penetrating.size
     if last:
-        certainty, step, change = last
+        certainty, step, change, depth_change = last
         tensile = tensile[on_contact[tensile] < -certainty * np.abs(step[tensile])]
-        change = certainty * np.abs(change.ravel()[penetrating])
-        penetrating = penetrating[gap[penetrating] < -change]
+        gap_change = np.abs(change.ravel()[penetrating] - depth_change)
+        gap = u[penetrating] - f[penetrating] - depth
+        penetrating = penetrating[gap < -certainty * gap_change]
     certain = np.concatenate([preconditioner.cells[tensile], penetrating])
     return certain, number - certain.size
 
@@ -229,21 +245,18 @@ class _Directions:
         spring = problem.operator.deflection(1.0) * preconditioner.preconditioner.stiffest
         self._lift: Array | None = None
         if self._keeps_force or spring:
-            self._lift = preconditioner(np.ones(preconditioner.cells.size))
+            self._lift = preconditioner(np.ones(preconditioner.cells.size)).astype(np.float64)
             total = float(self._lift.sum())
             self._lift /= total if self._keeps_force else total + 1 / spring
 
     def __call__(self, residual: Array) -> Array:
         """Return the preconditioned residual, made free of net force or conjugate to `_Uniform`."""
-        if self._keeps_force:
-            # The mean would use up digits of single precision. In the precision of the
-            # preconditioner the difference takes half of the memory.
-            closing = (residual - self.mean(residual)).astype(np.float32)
-            direction = self._preconditioner(closing)
-        else:
-            direction = self._preconditioner(residual)
+        # The mean would use up digits of single precision.
+        direction = self._preconditioner(residual, self.mean(residual)).astype(np.float64)
         if self._lift is not None:
-            direction -= self._lift * float(direction.sum())
+            total = float(direction.sum())
+            for block in blocks(direction.size):
+                direction[block] -= self._lift[block] * total
         if self._uniform:
             direction -= self._uniform.share(direction)
         return direction

@@ -96,7 +96,10 @@ class Extension:
             weight = coarse
 
     def apply(self, values: Field) -> Field:
-        """Return E applied to ``values``, which are 0 where not known; shape (mx, my)."""
+        """Return E applied to ``values``, which are 0 where not known and are overwritten.
+
+        Both arrays have the shape (mx, my).
+        """
         means = [np.squeeze(values)]
         for level in self._levels:
             means.append(_sum_of_block(means[-1]))
@@ -112,7 +115,10 @@ class Extension:
         return filled.reshape(self.shape)
 
     def apply_transpose(self, values: Field) -> Field:
-        """Return Eᵀ applied to ``values``, meaningful where ``known``; shape (mx, my)."""
+        """Return Eᵀ applied to ``values``, which are overwritten; meaningful where ``known``.
+
+        Both arrays have the shape (mx, my).
+        """
         means = [np.squeeze(values)]
         for level in self._levels:
             for damping in reversed(_DAMPINGS) if level.relaxes else ():
@@ -123,8 +129,9 @@ class Extension:
         result = means.pop()
         for level, own in zip(reversed(self._levels), reversed(means), strict=True):
             result *= level.share
-            result = _repeat(result)
-            result += own
+            for rows, own_rows in _blocks(result.shape):
+                own[own_rows] += _repeat(result[rows])
+            result = own
         return result.reshape(self.shape)
 
 
@@ -139,7 +146,10 @@ class _Level:
     relaxes: bool
 
     def fill(self, coarse: Field, own: Field) -> Field:
-        """Return this level from the coarser one and its own means times their weights."""
+        """Return this level from the coarser one and its own means times their weights.
+
+        The own means are overwritten.
+        """
         if self.moments is None:
             return _interpolate(coarse, self.free, own)
         smooth = _interpolate(coarse, np.ones_like(own), np.zeros_like(own))
@@ -201,16 +211,18 @@ def _repeat(coarse: Field) -> Field:
 
 
 def _interpolate(coarse: Field, free: Field, own: Field) -> Field:
-    """Return ``own`` + ``free`` × the (bi)linear interpolation from cells of twice the size."""
-    fine = np.empty_like(own)
+    """Return ``own`` + ``free`` × the (bi)linear interpolation from cells of twice the size.
+
+    The sum is in ``own``.
+    """
     wide = _wrapped(coarse)
     for rows, fine_rows in _blocks(coarse.shape):
         block = wide[rows.start : rows.stop + 2]
         for axis in range(coarse.ndim):
             block = _refined(block, axis)
         block *= free[fine_rows]
-        np.add(block, own[fine_rows], out=fine[fine_rows])
-    return fine
+        own[fine_rows] += block
+    return own
 
 
 def _transposed_interpolate(fine: Field, free: Field) -> Field:

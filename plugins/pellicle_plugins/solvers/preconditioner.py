@@ -8,16 +8,13 @@ from typing import Final
 
 import numpy as np
 import scipy.fft
-from numpy.typing import NDArray
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array, Cells, Mask
 from pellicle.grid import Grid
 from pellicle.numerics.operators import Operator
 
 from .circulant_stiffness import Field, Stiffness
 from .multilevel_extension import Extension, bends, stretch_of
-
-Cells = NDArray[np.int64]
 
 # Without a margin, contact at the edge of a free domain couples to the opposite edge.
 _FREE_MARGIN: Final = 1.25
@@ -97,14 +94,15 @@ class Preconditioner:
         return np.concatenate(copies), np.concatenate(sources)
 
     def _stiffen(self, field: Field) -> Field:
-        """Return K applied to a field on the extension's plane; beyond the period it is 0."""
+        """Return K applied to a field on the extension's plane, in its place.
+
+        Beyond the period it is 0.
+        """
         mx, my = self._plane
-        force = self._stiffness(field[:mx, :my])
-        if self._padded == self._plane:
-            return force
-        padded = np.zeros(self._padded, dtype=np.float32)
-        padded[:mx, :my] = force
-        return padded
+        self._stiffness(field[:mx, :my], out=field[:mx, :my])
+        field[mx:] = 0
+        field[:, my:] = 0
+        return field
 
 
 class OnContact:
@@ -118,14 +116,19 @@ class OnContact:
         """Flat indices of the cells of the contact on the grid."""
         self._indices, self._sources = preconditioner._on_the_plane(self.cells)
         self._extension = preconditioner._extension(self._indices)
-        self._values = np.zeros(self._extension.shape, dtype=np.float32)
 
-    def __call__(self, residual: Array | Field) -> Array:
-        """Return the preconditioned residual; both arrays have one value per cell of `cells`."""
+    def __call__(self, residual: Array, mean: float = 0.0) -> Field:
+        """Return the residual minus ``mean``, preconditioned.
+
+        Both arrays have one value per cell of `cells`.
+        """
+        greatest = max(float(residual.max()) - mean, mean - float(residual.min()))
         # A power of two changes no digit, and keeps small residuals in single precision.
-        size = 2.0 ** math.frexp(float(np.abs(residual).max()))[1]
-        force = self.preconditioner._stiffen(self._apply(residual / size))
-        return self._apply_transpose(force) * size
+        size = 2.0 ** math.frexp(greatest)[1]
+        extended = self._apply((residual - mean) / size)
+        direction = self._apply_transpose(self.preconditioner._stiffen(extended))
+        direction *= np.float32(size)
+        return direction
 
     def extended(self, values: Array | Field) -> Field:
         """Return E applied to one value per cell of `cells`, on the grid."""
@@ -139,28 +142,34 @@ class OnContact:
         forces that displace the surface onto the indenter on the contact become nearly the
         pressure that closes the gap there.
         """
-        off = (forces != 0) & ~self.contact
+        off = np.flatnonzero((forces != 0) & ~self.contact)
         transferred = forces.copy()
-        transferred[off] = 0
-        if off.any() and self.cells.size:
-            nx, ny = forces.shape
-            size = max(forces.max(where=off, initial=0.0), -forces.min(where=off, initial=0.0))
+        if not off.size:
+            return transferred
+        values = forces.ravel()[off]
+        transferred.ravel()[off] = 0
+        if self.cells.size:
+            size = float(np.abs(values).max())
             field = np.zeros(self._extension.shape, dtype=np.float32)
-            np.divide(forces, size, out=field[:nx, :ny], where=off, casting="same_kind")
-            transferred.ravel()[self.cells] += self._apply_transpose(field) * size
+            field[np.divmod(off, forces.shape[1])] = values / size
+            transferred.ravel()[self.cells] += np.multiply(
+                self._apply_transpose(field), size, dtype=np.float64
+            )
         return transferred
 
     def _apply(self, values: Array | Field) -> Field:
         """Return E applied to one value for each cell of `cells`, on the extension's plane."""
-        number, field = self.cells.size, self._values.ravel()
-        field[self._indices[:number]] = values
-        field[self._indices[number:]] = values[self._sources]
-        return self._extension.apply(self._values)
+        field = np.zeros(self._extension.shape, dtype=np.float32)
+        number, flat = self.cells.size, field.ravel()
+        flat[self._indices[:number]] = values
+        flat[self._indices[number:]] = values[self._sources]
+        del values
+        return self._extension.apply(field)
 
-    def _apply_transpose(self, force: Field) -> Array:
+    def _apply_transpose(self, force: Field) -> Field:
         """Return Eᵀ applied to a field, one value for each cell of `cells`."""
         number = self.cells.size
-        values = self._extension.apply_transpose(force).ravel()[self._indices].astype(np.float64)
+        values = self._extension.apply_transpose(force).ravel()[self._indices]
         np.add.at(values[:number], self._sources, values[number:])
         return values[:number]
 

@@ -8,6 +8,7 @@ from typing import Any
 import fit_rivals
 import numpy as np
 import pytest
+from fit_pairs import score_of
 from fit_rivals import KINDS, MODULUS_, RADIUS, Sample, fitted, path
 from numpy.typing import NDArray
 from scipy.special import beta
@@ -16,6 +17,7 @@ import pellicle as pl
 from pellicle.fitting.comparison import RivalFit, _judge
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.drag import DRAG, DragModel
+from pellicle.fitting.models.drift import DRIFT, DriftModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
 from pellicle.fitting.models.history import History, constant_speed
 from pellicle.fitting.models.relaxing import (
@@ -70,6 +72,7 @@ def test_power_law_pressed_at_constant_speed(alpha: float) -> None:
         (PowerLawModel(ELASTIC, HISTORY), {TENSION: 1e-3, EXPONENT: 0.2}),
         (StandardLinearModel(ELASTIC, HISTORY), {TENSION: 1e-3, SHARE: 0.3, RELAXATION_TIME: 0.3}),
         (DragModel(ELASTIC, HISTORY), {TENSION: 1e-3, DRAG: 50.0}),
+        (DriftModel(ELASTIC, HISTORY), {TENSION: 1e-3, DRIFT: 1e-10}),
         (
             AdhesiveModel(ELASTIC, ROWS.sense < 0, np.zeros(ROWS.sense.size), 0.05),
             {TENSION: 1e-3, WORK_OF_ADHESION: 1e-6},
@@ -159,6 +162,21 @@ def test_both_passes_show_a_tension() -> None:
     assert fit.comparison.startswith("tension is needed")
 
 
+def test_both_passes_show_drift() -> None:
+    """A force that grows with time over both passes is drift, with its rate, and no tension."""
+    solid = sample("no tension", 5)
+    curve = solid.measured(path("both"))
+    top = float(curve.force.max())
+    force = curve.force + 0.03 * top * (curve.time - curve.time[0])
+    chosen = fitted(solid, curve._replace(force=force), "both").chosen
+    assert chosen is not None
+    assert chosen.rival.code == "drift"
+    rate = chosen.estimates["drift"]
+    assert rate.low is not None
+    assert rate.high is not None
+    assert rate.low < 0.03 * top < rate.high
+
+
 def test_two_speeds_show_relaxation() -> None:
     """Two approaches of a solid that relaxes, at two speeds, need no tension."""
     solid = sample("power law", 2)
@@ -182,6 +200,72 @@ def test_comparison_in_full() -> None:
     assert [m["delta_aic"] for m in models] == sorted(m["delta_aic"] for m in models)
     assert models[0]["parameters"]["reduced_modulus"]["high"] is not None
     assert len(fit.rivals.rows()) == len(models)
+    for model in models:
+        far = model["delta_aic"] > 100
+        assert model["intervals"] == ("curvature" if far else "profile")
+        for estimate in model["parameters"].values():
+            low, high = estimate["low"], estimate["high"]
+            assert low is None or low <= estimate["value"]
+            assert high is None or high >= estimate["value"]
+
+
+def test_intervals_hold_the_value_where_the_elastic_model_fails() -> None:
+    """The noise of an elastic model that fails is not that of the model which is chosen."""
+    solid = sample("power law", 1)
+    curve = solid.measured(path("both"))
+    thin = fit_rivals.Curve(curve.position[::4], curve.force[::4], curve.time[::4])
+    chosen = fitted(solid, thin, "both").chosen
+    assert chosen is not None
+    assert chosen.rival.code == "power_law"
+    for estimate in chosen.estimates.values():
+        assert estimate.low is not None
+        assert estimate.high is not None
+        assert estimate.low < estimate.value < estimate.high
+        # About two standard errors either way; these intervals were half as wide.
+        assert estimate.high - estimate.low == pytest.approx(4 * estimate.bound, rel=0.2)
+
+
+def test_balance_of_a_cantilever_derives_the_force_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Derivatives of a model with a memory are those of the last Newton step only."""
+    count = 0
+    whole = PowerLawModel._derivatives
+
+    def counted(*arguments: Any) -> Any:
+        nonlocal count
+        count += 1
+        return whole(*arguments)
+
+    monkeypatch.setattr(PowerLawModel, "_derivatives", counted)
+    force = np.maximum(ROWS.depth, 0.0) ** 1.5 * 1e-9
+    likelihood = Likelihood(
+        ROWS.depth * DEPTH, force, PowerLawModel(ELASTIC, HISTORY), 1e-12, (), 0.005, ROWS.time
+    )
+    at = {CONTACT_POINT: 1e-10, MODULUS: np.log(MODULUS_), TENSION: 1e-3, EXPONENT: 0.2}
+    likelihood.linearised(at | {OFFSET: 0.0, SLOPE: 0.0})
+    assert count == 1
+
+
+def test_interval_of_the_work_of_adhesion_where_no_jump_is_seen() -> None:
+    """As the end of the branch passes a row χ² jumps, which must not end the interval."""
+    score = score_of("retraction", 22, 7)
+    assert all(score[name][1] for name in ("reduced_modulus", "tension", "work_of_adhesion"))
+
+
+def test_tension_that_adhesion_hides() -> None:
+    """Where adhesion leads, the tension beside it is compared, in the short form too."""
+    random = np.random.default_rng([7, 13, *b"tension and adhesion"])
+    solid = Sample(KINDS["tension and adhesion"](random), random)
+    fit = fitted(solid, solid.measured(path()))
+    assert fit.rivals is not None
+    assert "tension+adhesion" in [tie.rival.code for tie in fit.rivals.tied]
+
+
+def test_noise_of_1_over_f_is_neither_tension_nor_drift() -> None:
+    """A tenth of tests/benchmarks/fit_rivals.py: no claim, and intervals that hold."""
+    results = list(fit_rivals.outcomes("1/f noise", 4, 11, follow=False))
+    assert not any(result.verdict in ("needed", "undecided") for result in results)
+    assert sum(result.covers for result in results) >= 3
+    assert sum(result.right for result in results) >= 3
 
 
 def test_the_chosen_model_is_the_answer(tmp_path: Path) -> None:
@@ -223,7 +307,7 @@ def test_an_effect_beside_tension_has_to_beat_tension_alone(
     } | {rival.code: rival for rival in (NONE, TENSED)}
     fits = [RivalFit(rivals[code], 0.0, aic, aic, {}, {}) for code, aic in ranked.items()]
     unused: Any = None
-    comparison = _judge(unused, fits, [], [1.0])
+    comparison = _judge(unused, fits, [])
     assert comparison.verdict == "needed"
     assert (comparison.chosen and comparison.chosen.rival.code) == chosen
     assert ("beside it there is adhesion" in comparison.sentence) == (chosen is not None)

@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+import matplotlib.pyplot as pyplot
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli import app
-from pellicle.plotting import save_figure, svg, without_round_off
+from pellicle.plotting import profile, save_figure, svg, without_round_off
 from pellicle.report.page import Section, Text, page
 from tests.pictures import colourfulness, drawn_width, pixels
 
@@ -103,6 +104,35 @@ def test_round_off_is_no_gap_in_a_study(tmp_path: Path) -> None:
     study = {**RUN, "outputs": [{"type": "html"}], "study": {"vary": {"kernel.tension": [0, 0.01]}}}
     pl.run_study(study, tmp_path, progress=False)
     assert _gaps(tmp_path / "study.html") == [(0.0, 0.0), (0.0, 0.0)]
+
+
+def test_the_profile_meets_the_contact_and_shows_the_whole_gap() -> None:
+    """A centre line without contact gives way to that of the greatest pressure."""
+    x = (np.arange(32) + 0.5) / 32 - 0.5
+    bump = 5e-7 * np.exp(-((x[:, None] + 0.2) ** 2 + (x - 0.3) ** 2) / 0.02)
+    result = pl.run(
+        {
+            "grid": {"points": 32, "size": 1e-4},
+            "kernel": {"type": "half_space", "reduced_modulus": 1e4},
+            "indenter": {"type": "heights", "values": bump.tolist(), "unit": 1.0},
+            "loading": {"depth": 2e-7},
+        },
+        progress=False,
+    )
+    figure, axes = pyplot.subplots()
+    profile(result, axes)
+    assert "at y = 29.7 µm" in axes.get_xlabel()
+    (gap,) = figure.axes[1].lines
+    assert np.isfinite(np.asarray(gap.get_ydata(), dtype=float)[:-1]).all()
+    assert figure.axes[1].get_ylim()[1] > 0.45
+    assert axes.get_title() == "depth 200 nm"
+
+
+def test_a_profile_is_named_after_what_is_prescribed(folder: Path) -> None:
+    """The title of a step under a mean pressure is that pressure."""
+    _, axes = pyplot.subplots()
+    profile(pl.load(folder / "run.h5"), axes, 0)
+    assert axes.get_title() == "mean pressure 0.04 kPa"
 
 
 @pytest.mark.parametrize(

@@ -534,8 +534,8 @@ def test_a_contact_that_all_cells_have_left_is_joined_by_what_penetrates() -> No
     """Without any contact the surface is flat, and the indenter overlaps with it."""
     problem = make(16, "free", skin(0.02), paraboloid, "depth", 0.05)
     nowhere = Preconditioner(problem.operator).on(np.zeros(problem.grid.shape, dtype=bool))
-    nothing = np.zeros(problem.grid.shape)
-    inner = inner_solve(problem, nowhere, nothing, nothing, 1e-10, certainty=1.0)
+    pressure, displacement = np.zeros((2, *problem.grid.shape))
+    inner = inner_solve(problem, nowhere, pressure, displacement, 1e-10, certainty=1.0)
     assert inner.error == 0
     np.testing.assert_array_equal(
         inner.misclassified, np.flatnonzero(problem.profile + 0.05 > 1e-10)
@@ -570,13 +570,13 @@ def test_an_inner_solve_may_end_at_a_share_of_its_error(boundary: Boundary) -> N
     """Sooner than at its goal, once the gap has shrunk to that share of what it was."""
     problem = make(32, boundary, Plate(bending=1e-5), paraboloid, "depth", 0.05)
     on_contact = Preconditioner(problem.operator).on(problem.profile > -0.02)
-    nothing = np.zeros(problem.grid.shape)
     before = float((problem.profile + 0.05)[on_contact.contact].max())
     applications = []
     for reduction in (0.1, 1e-3, 0.0):
         done = problem.operator.applications
+        fields = np.zeros((2, *problem.grid.shape))
         inner = inner_solve(
-            problem, on_contact, nothing, nothing, 1e-9, certainty=np.inf, reduction=reduction
+            problem, on_contact, fields[0], fields[1], 1e-9, certainty=np.inf, reduction=reduction
         )
         assert inner.error <= max(reduction * before, 1e-5 * before)
         applications.append(problem.operator.applications - done)

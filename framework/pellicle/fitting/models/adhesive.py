@@ -116,6 +116,10 @@ class AdhesiveModel:
         }
         return ModelForce(np.where(contact, force, 0.0), np.where(contact, rate, 0.0), by_parameter)
 
+    def end(self, values: Values, deepest: float) -> float:
+        """Return the base position over the contact point [m] at which the contact breaks."""
+        return float(self._stable(values, deepest).position[0])
+
     def pull_off(self, values: Values) -> float:
         """Return the least force [N] of the branch that a dead load can follow."""
         free = AdhesiveModel(self.elastic, self.moves_out, self.attached, None)

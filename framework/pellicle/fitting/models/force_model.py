@@ -7,8 +7,9 @@ that satisfies `ForceModel`; likelihoods and initial guesses work with any.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -35,6 +36,32 @@ class ModelForce(NamedTuple):
 
     For a solid with a memory that of the contact point too, at equal depths: the time in contact.
     """
+
+
+class DeferredDerivatives(Mapping[Parameter, Array]):
+    """Derivatives by parameter that are computed when the first of them is read.
+
+    The balance of a cantilever evaluates a model some six times, and reads them once.
+    """
+
+    def __init__(self, compute: Callable[[], Mapping[Parameter, Array]]) -> None:
+        self._compute = compute
+
+    @cached_property
+    def _values(self) -> Mapping[Parameter, Array]:
+        return self._compute()
+
+    def __getitem__(self, parameter: Parameter) -> Array:
+        """Return the derivative by a parameter."""
+        return self._values[parameter]
+
+    def __iter__(self) -> Iterator[Parameter]:
+        """Iterate over the parameters."""
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        """Return the number of parameters."""
+        return len(self._values)
 
 
 class ForceModel(Protocol):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Parameter, Values
 
-from .force_model import ModelForce, TensionModel
+from .force_model import DeferredDerivatives, ModelForce, TensionModel
 from .history import History
 
 _RAMP, _DWELL, _BACK = 72, 24, 60
@@ -42,6 +43,19 @@ class Course(NamedTuple):
     """Depth [m] at which the contact was as large while it grew; that of the row on loading."""
     by_depth: Array
     """Derivative of this depth with respect to that of the row."""
+
+
+class _PathForce(NamedTuple):
+    """Force at the rows of a curve and its derivatives, each of shape (n,)."""
+
+    force: Array
+    """[N]."""
+    by_depth: Array
+    by_modulus: Array
+    """By the effective modulus."""
+    by_tension: Array
+    by_path: Array
+    """By the depth at which the growing contact was as large."""
 
 
 @dataclass(frozen=True)
@@ -87,12 +101,37 @@ class RelaxingModel(ABC):
     def force(self, depth: Array, values: Values) -> ModelForce:
         """Return force and derivatives at depths [m] of the rows, of shape (n,)."""
         point = values[CONTACT_POINT]
-        course = self._course(point, values)
-        force, by_depth, by_modulus, by_tension, by_path = self._at(course, depth, point, values)
+        course = self._recent_course(point, values)
+        force = self._at(course, depth, values)
+        return ModelForce(
+            force.force,
+            force.by_depth,
+            DeferredDerivatives(lambda: self._derivatives(course, depth, values, force)),
+        )
+
+    def _recent_course(self, point: float, values: Values) -> Course:
+        """Return the response of the solid, kept from the last call if nothing else is asked.
+
+        The balance of a cantilever varies the depths of rows only.
+        """
+        key = (point, *(values[p] for p in self.own))
+        if key not in self._recent:
+            self._recent.clear()
+            self._recent[key] = self._course(point, values)
+        return self._recent[key]
+
+    @cached_property
+    def _recent(self) -> dict[tuple[float, ...], Course]:
+        return {}
+
+    def _derivatives(
+        self, course: Course, depth: Array, values: Values, at: _PathForce
+    ) -> dict[Parameter, Array]:
+        """Return the derivatives of the force by the value of each parameter."""
         derivatives = {
-            MODULUS: by_modulus * course.modulus,
-            TENSION: by_tension,
-            CONTACT_POINT: np.zeros_like(force),
+            MODULUS: at.by_modulus * course.modulus,
+            TENSION: at.by_tension,
+            CONTACT_POINT: np.zeros_like(at.force),
         }
         deepest = max(float(depth.max()), float(np.ptp(depth)) * _STEP)
         for parameter in (CONTACT_POINT, *self.own):
@@ -103,10 +142,10 @@ class RelaxingModel(ABC):
             other = {**values, parameter: values[parameter] + step}
             varied = self._course(other[CONTACT_POINT], other)
             # The course alone depends on these parameters, the force curve does not.
-            change = by_modulus * values[MODULUS] * (varied.modulus - course.modulus)
+            change = at.by_modulus * values[MODULUS] * (varied.modulus - course.modulus)
             path = self._path(varied, depth) - self._path(course, depth)
-            derivatives[parameter] = (change + by_path * path) / step
-        return ModelForce(force, by_depth, derivatives)
+            derivatives[parameter] = (change + at.by_path * path) / step
+        return derivatives
 
     def at_rows(self, rows: NDArray[np.intp]) -> RelaxingModel:
         """Return the model of some of the rows."""
@@ -120,22 +159,17 @@ class RelaxingModel(ABC):
         )
         return path
 
-    def _at(
-        self, course: Course, depth: Array, point: float, values: Values
-    ) -> tuple[Array, Array, Array, Array, Array]:
-        """Return force and derivatives by depth, effective modulus, tension and `_path`."""
+    def _at(self, course: Course, depth: Array, values: Values) -> _PathForce:
+        """Return the force at depths [m] of the rows, and its derivatives."""
         modulus, tension = values[MODULUS], values[TENSION]
         path = self._path(course, depth)
         effective = modulus * course.modulus
         chain = np.where(self.history.unloading, course.by_depth, 1.0)
         if not tension:
             curve = self.elastic.force_curve(path, 0.0)
-            return (
-                effective * curve.force,
-                effective * curve.by_depth * chain,
-                curve.force,
-                2 * curve.by_length,
-                effective * curve.by_depth,
+            by_path = effective * curve.by_depth
+            return _PathForce(
+                effective * curve.force, by_path * chain, curve.force, 2 * curve.by_length, by_path
             )
         low, high = float(effective.min()), float(effective.max())
         if high <= low * (1 + 1e-9):
@@ -154,7 +188,7 @@ class RelaxingModel(ABC):
             force[2] += weight * (curve.force - length * curve.by_length)
             force[3] += weight * 2 * curve.by_length
         by_path = effective * force[1]
-        return effective * force[0], by_path * chain, force[2], force[3], by_path
+        return _PathForce(effective * force[0], by_path * chain, force[2], force[3], by_path)
 
     def _course(self, point: float, values: Values) -> Course:
         """Return the response of the solid to the path from a contact point on."""

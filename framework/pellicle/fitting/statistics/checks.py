@@ -18,6 +18,7 @@ from pellicle.units import readable
 
 from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
+from .memory import exponent_of
 from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
 from .pooled_likelihood import Pool
 from .profile import CONFIDENCE
@@ -75,6 +76,16 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
         )
     minimum = best_minimum(likelihood, guesses)
     estimate, source = judged(likelihood, minimum.parameters)
+    if memory := _memory(likelihood, minimum.parameters, estimate):
+        likelihood = replace(likelihood, memory=memory)
+        minimum = best_minimum(likelihood, [minimum.parameters, *guesses])
+        estimate, source = judged(likelihood, minimum.parameters)
+        source += f", whose power falls as f^{-2 * memory:.2g}"
+        message = (
+            f"the noise before contact is correlated: its power falls as f^{-2 * memory:.2g}, and "
+            "fit and intervals take it so"
+        )
+        estimate = estimate._replace(failed=(FailedCheck("slow_noise", message), *estimate.failed))
     noise, failed = estimate.noise, estimate.failed
     scaled = minimum.chi_squared * (likelihood.noise / noise.deviation) ** 2
     likelihood = replace(likelihood, noise=noise.deviation)
@@ -87,6 +98,14 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
         (*failed, *shape),
         (*estimate.messages, *notes, *(check.message for check in (*failed, *shape))),
     )
+
+
+def _memory(likelihood: Likelihood, parameters: Coordinates, estimate: NoiseEstimate) -> float:
+    """Return the exponent of correlated noise before contact; 0 if it is not of that kind."""
+    if "slow_noise" not in {check.code for check in estimate.failed}:
+        return 0.0
+    before = Residuals.of(likelihood, parameters).before
+    return exponent_of(likelihood.misfit(parameters)[before])
 
 
 def judged(likelihood: Likelihood, parameters: Coordinates) -> tuple[NoiseEstimate, str]:

@@ -51,7 +51,6 @@ def advised(
     chi_squared: ChiSquared,
     tensed: Explanation,
     others: Sequence[Explanation],
-    noises: Sequence[float],
 ) -> str:
     """Return which measurement would separate a model with tension from others, and how many.
 
@@ -60,10 +59,9 @@ def advised(
     among those that have to be told apart is what a measurement is worth.
     """
     members = chi_squared.members if isinstance(chi_squared, Pool) else (chi_squared,)
-    first = members[0]
-    assert isinstance(first, Likelihood)
+    likelihood = members[0]
+    assert isinstance(likelihood, Likelihood)
     part = _part(chi_squared, tensed[1])
-    likelihood = replace(first, noise=noises[0])
     best: tuple[float, str] | None = None
     for measurement in _measurements(likelihood, part[CONTACT_POINT]):
         worth = np.inf
@@ -190,7 +188,7 @@ def _planned(likelihood: Likelihood, measurement: Measurement) -> Likelihood:
         likelihood,
         position=measurement.base,
         force=np.zeros_like(measurement.base),
-        noise=likelihood.noise * np.sqrt(_ROWS / likelihood.force.size),
+        noise=likelihood.noise_of(likelihood.force.size / _ROWS),
         force_model=model,
         time=measurement.time,
         segment=measurement.segment,

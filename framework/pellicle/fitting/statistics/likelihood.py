@@ -14,11 +14,12 @@ from scipy.optimize import least_squares
 from pellicle.arrays import Array, Mask
 from pellicle.errors import ConvergenceError
 from pellicle.fitting.curves.curve import Segment
-from pellicle.fitting.models.force_model import ForceModel, HasRows
+from pellicle.fitting.models.force_model import ForceModel, HasRows, ModelForce
 from pellicle.fitting.models.history import History, constant_speed, last_row_of_loading
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, Parameter
 
 from .condensed import Condensation, Rows
+from .memory import differenced
 
 REACH = np.log(100.0)
 """Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""
@@ -119,6 +120,11 @@ class ChiSquared(ABC):
     @abstractmethod
     def accuracy(self) -> float:
         """Error of the model relative to the largest force; noise below it cannot be resolved."""
+
+    @property
+    def is_sudden(self) -> bool:
+        """Whether χ² jumps as a row touches, where searches to the last digit do not end."""
+        return False
 
     @abstractmethod
     def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
@@ -267,6 +273,9 @@ class Likelihood(ChiSquared):
     """Pass that was measured; rows of one are sorted by position, those of both by time."""
     condensation: Condensation | None = None
     """Sum of squares over more rows, of which those here are the nodes."""
+    memory: float = 0.0
+    """Exponent d of noise whose power falls as f^(−2d); ``noise`` is that of the differences which
+    make it independent."""
 
     @cached_property
     def history(self) -> History:
@@ -300,9 +309,13 @@ class Likelihood(ChiSquared):
             self,
             position=self.position[rows],
             force=self.force[rows],
-            noise=self.noise / np.sqrt(step),
+            noise=self.noise_of(step),
             time=None if self.time is None else self.time[rows],
         )
+
+    def noise_of(self, step: float) -> float:
+        """Return the noise [N] of rows ``step`` times as far apart with as much information."""
+        return self.noise * float(step ** (self.memory - 0.5))
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -334,6 +347,11 @@ class Likelihood(ChiSquared):
         """Error of the model relative to the largest force."""
         return self.force_model.accuracy
 
+    @property
+    def is_sudden(self) -> bool:
+        """Whether χ² jumps as a row touches."""
+        return bool(getattr(self.force_model, "is_sudden", False))
+
     @cached_property
     def ranges(self) -> Mapping[Parameter, Range]:
         """Scale and limits of each coordinate; the scale of a force model's follows its unit."""
@@ -345,6 +363,7 @@ class Likelihood(ChiSquared):
             "N": height,
             "N/m": height / span,
             "J/m^2": height / span,
+            "N/s": height / duration,
             "Pa s": height * duration / span**2,
             "": 1.0,
         }
@@ -380,7 +399,7 @@ class Likelihood(ChiSquared):
 
     def condensed(self, parameters: Coordinates, tolerance: float) -> Likelihood:
         """Return the same χ² from a model that is evaluated at fewer rows, if it is that smooth."""
-        if getattr(self.force_model, "is_sudden", False):
+        if self.memory or self.is_sudden:
             return self
         force, _ = self._balanced(parameters)
         groups, count = self._smooth(parameters[CONTACT_POINT]), _NODES
@@ -423,29 +442,27 @@ class Likelihood(ChiSquared):
 
     def model(self, parameters: Coordinates) -> Array:
         """Return the force [N] at every position."""
-        return (
-            self._balanced(parameters)[0]
-            if self.force_model.on_base
-            else self._model(self.position, parameters)[0]
-        )
+        if self.force_model.on_base:
+            return self._balanced(parameters)[0]
+        return self._elastic(self.position, parameters).force + self._baseline(parameters)
 
-    def _model(self, position: Array, parameters: Coordinates) -> tuple[Array, Array, Array]:
-        """Return force [N], its Jacobian by coordinate, and its derivative by depth.
-
-        The Jacobian has shape (n, number of parameters), the others (n,).
-        """
-        model = self.force_model
+    def _elastic(self, position: Array, parameters: Coordinates) -> ModelForce:
+        """Return the force of the model without the baseline."""
+        model, point = self.force_model, parameters[CONTACT_POINT]
         values = {p: p.value(parameters[p]) for p in model.parameters}
-        point = parameters[CONTACT_POINT]
-        elastic = model.force(position - point, {**values, CONTACT_POINT: point})
+        return model.force(position - point, {**values, CONTACT_POINT: point})
+
+    def _baseline(self, parameters: Coordinates) -> Array:
+        return parameters[OFFSET] + parameters[SLOPE] * self.travel
+
+    def _by_coordinate(self, elastic: ModelForce, parameters: Coordinates) -> Array:
+        """Return the Jacobian of the force by coordinate, of shape (n, number of parameters)."""
         by_point = elastic.by_parameter.get(CONTACT_POINT, 0.0) - elastic.by_depth
-        force = elastic.force + parameters[OFFSET] + parameters[SLOPE] * self.travel
         columns = [
-            elastic.by_parameter[p] * (value if p.logarithmic else 1.0)
-            for p, value in values.items()
+            elastic.by_parameter[p] * (p.value(parameters[p]) if p.logarithmic else 1.0)
+            for p in self.force_model.parameters
         ]
-        jacobian = np.column_stack([by_point, *columns, np.ones_like(self.travel), self.travel])
-        return force, jacobian, elastic.by_depth
+        return np.column_stack([by_point, *columns, np.ones_like(self.travel), self.travel])
 
     def fitted(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return position [m] and force [N] of the model, both without noise.
@@ -455,6 +472,10 @@ class Likelihood(ChiSquared):
         force, _ = self._balanced(parameters)
         return self.base - force / self.stiffness if self.stiffness else self.position, force
 
+    def misfit(self, parameters: Coordinates) -> Array:
+        """Return model − force [N], of shape (n,), as measured."""
+        return self._balanced(parameters)[0] - self.force
+
     def resampled(self, points: int) -> Likelihood:
         """Return the same with forces interpolated at evenly spaced positions of the base."""
         base = np.linspace(self.base[0], self.base[-1], points)
@@ -463,8 +484,14 @@ class Likelihood(ChiSquared):
         return replace(self, position=position, force=force)
 
     def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
-        """Return (model − force)/noise, of shape (n,), and its Jacobian."""
+        """Return (model − force)/noise, of shape (n,), and its Jacobian.
+
+        Of noise with a memory, its fractional differences.
+        """
         force, jacobian = self._balanced(parameters)
+        if self.memory:
+            jacobian = differenced(jacobian, self.memory)
+            return differenced(force - self.force, self.memory) / self.noise, jacobian / self.noise
         if self.condensation is None:
             return (force - self.force) / self.noise, jacobian / self.noise
         residuals, jacobian = self.condensation.residuals(force, jacobian)
@@ -476,22 +503,22 @@ class Likelihood(ChiSquared):
         There the force solves F = P(z − F/k). P is convex in the depth, so Newton's iteration is
         monotonic after its first step.
         """
+        baseline = self._baseline(parameters)
         if self.stiffness is None or self.force_model.on_base:
-            return self._model(self.base, parameters)[:2]
+            elastic = self._elastic(self.base, parameters)
+            return elastic.force + baseline, self._by_coordinate(elastic, parameters)
         force = self.force.copy()
         # Positions far from 0 are rounded, and so is the force that balances them.
         rounding = 8 * float(np.finfo(float).eps * np.max(np.abs(self.base))) * self.stiffness
         tolerance = max(_BALANCE_TOLERANCE * float(np.ptp(self.force)), rounding)
         for _ in range(_BALANCE_STEPS):
-            response, jacobian, by_depth = self._model(
-                self.base - force / self.stiffness, parameters
-            )
-            give = 1 + by_depth / self.stiffness
-            step = (response - force) / give
+            elastic = self._elastic(self.base - force / self.stiffness, parameters)
+            give = 1 + elastic.by_depth / self.stiffness
+            step = (elastic.force + baseline - force) / give
             force += step
             # Negated so that NaN ends the iteration.
             if not np.max(np.abs(step)) > tolerance:
-                return force, jacobian / give[:, None]
+                return force, self._by_coordinate(elastic, parameters) / give[:, None]
         raise ConvergenceError(
             f"the force of the cantilever does not balance that of the solid in {_BALANCE_STEPS} "
             "steps; is the spring constant right?"

@@ -17,6 +17,7 @@ from pellicle.fitting.parameters import OFFSET, SLOPE, Coordinates, Parameter
 from pellicle.units import readable
 
 from .likelihood import Likelihood
+from .memory import differenced
 
 CHANCE = 3e-3
 """Probability that a check flags a curve without fault."""
@@ -104,7 +105,9 @@ class Residuals(NamedTuple):
     likelihood: Likelihood
     parameters: Coordinates
     force: Array
-    """Measured minus model [N]."""
+    """Measured minus model [N]; of noise with a memory, its fractional differences."""
+    measured: Array
+    """Measured force [N], likewise."""
     jacobian: Array
     """Derivatives of the model by the coordinates that the fit varies."""
     before: Mask
@@ -129,6 +132,9 @@ class Residuals(NamedTuple):
             likelihood,
             parameters,
             -scaled * likelihood.noise,
+            differenced(likelihood.force, likelihood.memory)
+            if likelihood.memory
+            else likelihood.force,
             jacobian[:, likelihood.columns(varied)] * likelihood.noise,
             (depth < -_NEAR * float(np.ptp(likelihood.position))) & likelihood.first_pass,
             depth,
@@ -164,7 +170,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     # The force as measured, since a fitted slope of the baseline absorbs part of a dip.
     # A model of adhesion has a dip of its own.
     adheres = WORK_OF_ADHESION in residuals.likelihood.force_model.parameters
-    measured = force if adheres else residuals.likelihood.force[before]
+    measured = force if adheres else residuals.measured[before]
     slope, change = _slope(measured, line)
     messages: tuple[str, ...] = ()
     if SLOPE in residuals.baseline and ndtr(slope / independent.deviation) < CHANCE:

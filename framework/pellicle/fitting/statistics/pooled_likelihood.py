@@ -83,6 +83,11 @@ class Pool(ChiSquared):
         """Largest error of a force model relative to the largest force."""
         return max(member.accuracy for member in self.members)
 
+    @property
+    def is_sudden(self) -> bool:
+        """Whether χ² of a curve jumps as a row touches."""
+        return any(member.is_sudden for member in self.members)
+
     def coarse(self) -> Pool | None:
         """Return the same with force models of coarser grids, if there are any."""
         models = [member.force_model for member in self.members]

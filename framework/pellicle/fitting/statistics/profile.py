@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -25,6 +25,10 @@ _FIRST = 1e-2
 """First trial, as a share of the way to the limit, where the bound lies beyond the limit."""
 _LEAST = 1e-12
 """Smallest share of the way to the limit that is resolved."""
+_RESTARTS = 10
+"""Largest number of searches for intervals, each from a minimum that the last improved."""
+_FINE = 0.1
+"""Error of a condensed χ² of which intervals are sought, in its unit."""
 _IMPROVEMENT = 1e-3
 """Decrease of χ² by which another minimum counts as better."""
 
@@ -133,16 +137,8 @@ def profile_likelihood(
         if TENSION in likelihood.free and without.chi_squared <= best.chi_squared + 1e-6:
             # Of equally good minima, this one has a tension of exactly 0.
             best = without
-        ends: dict[Parameter, Ends] = {}
-        failures = []
         try:
-            for parameter in parameters:
-                report(f"interval of {parameter.name}")
-                try:
-                    ends[parameter] = confidence_interval(likelihood, best, parameter, threshold)
-                except ConvergenceError:
-                    ends[parameter] = None, None
-                    failures.append(parameter.name)
+            ends, failures = profile_intervals(likelihood, best, threshold, parameters, report)
         except ImprovedMinimum as improved:
             again = likelihood.minimise(improved.minimum.parameters)
             best = least([again, improved.minimum])
@@ -156,6 +152,66 @@ def profile_likelihood(
                 )
             bounds = likelihood.deviations(best.parameters)
             return ProfileResult(likelihood, best, without, wider, bounds, messages)
+
+
+def profile_intervals(
+    likelihood: ChiSquared,
+    best: Minimum,
+    threshold: float,
+    parameters: Iterable[Parameter],
+    report: Callable[[str], None] = lambda stage: None,
+) -> tuple[dict[Parameter, Ends], list[str]]:
+    """Return intervals of parameters, and the names of those whose search fails: they are open.
+
+    Raises
+    ------
+    ImprovedMinimum
+        A profile falls below ``best``.
+    """
+    ends: dict[Parameter, Ends] = {}
+    failures = []
+    for parameter in parameters:
+        report(f"interval of {parameter.name}")
+        try:
+            ends[parameter] = confidence_interval(likelihood, best, parameter, threshold)
+        except ConvergenceError:
+            ends[parameter] = None, None
+            failures.append(parameter.name)
+    return ends, failures
+
+
+def profiled(
+    chi_squared: ChiSquared,
+    minimum: Minimum,
+    threshold: float,
+    parameters: Sequence[Parameter],
+) -> tuple[Minimum, dict[Parameter, Ends]]:
+    """Return the minimum, which a profile may have improved, and intervals of profiles.
+
+    They are those of a condensed χ² if the curve is long, and open if every search for them ends in
+    a better minimum than the last.
+    """
+    for _ in range(_RESTARTS):
+        thin = chi_squared.condensed(minimum.parameters, _FINE)
+        near = minimum if thin is chi_squared else thin.minimise(minimum.parameters, rough=True)
+        try:
+            return minimum, profile_intervals(thin, near, threshold, parameters)[0]
+        except ImprovedMinimum as improved:
+            again = chi_squared.minimise(improved.minimum.parameters, rough=True)
+            # A minimum of the condensed χ² is none of the χ² of all rows.
+            known = [improved.minimum] if thin is chi_squared else []
+            minimum = least([minimum, again, *known])
+    return minimum, {}
+
+
+def curvature_interval(
+    parameter: Parameter, best: Minimum, bounds: Coordinates, threshold: float
+) -> Ends:
+    """Return the ends that the curvature of χ² gives; None for one beyond the limits."""
+    value, width = best.parameters[parameter], float(np.sqrt(threshold)) * bounds[parameter]
+    if not np.isfinite(width) or (parameter.logarithmic and width > REACH):
+        return None, None
+    return value - width if value - width > parameter.minimum else None, value + width
 
 
 def widen(
@@ -199,8 +255,12 @@ def confidence_interval(
     value, (scale, low, high) = best.parameters[parameter], likelihood.ranges[parameter]
     if parameter.logarithmic and not parameter.is_length:
         low, high = value - REACH, value + REACH
-    elif np.isinf(high):
-        high = float(np.exp(REACH)) * max(value, scale)
+    else:
+        farthest = float(np.exp(REACH)) * max(abs(value), scale)
+        low, high = (
+            limit if np.isfinite(limit) else sign * farthest
+            for limit, sign in ((low, -1), (high, 1))
+        )
     return (
         _end(likelihood, best, parameter, low, threshold),
         _end(likelihood, best, parameter, high, threshold),
@@ -221,7 +281,8 @@ def _end(
     def excess(share: float) -> float:
         """Return √Δχ² − √threshold, which is nearly linear in the distance."""
         start = path[max(nearer for nearer in path if nearer <= share)]
-        minimum = likelihood.minimise(start | {parameter: value + share * span}, (parameter,))
+        at = start | {parameter: value + share * span}
+        minimum = likelihood.minimise(at, (parameter,), rough=likelihood.is_sudden)
         if minimum.chi_squared < best.chi_squared - _IMPROVEMENT:
             raise ImprovedMinimum(minimum)
         path[share] = minimum.parameters

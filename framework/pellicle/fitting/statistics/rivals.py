@@ -8,10 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pellicle.arrays import Array
 from pellicle.components import HasContactRadius, HasForceCurve, HasLayerForceCurve, Indenter
 from pellicle.errors import ConvergenceError, PellicleError
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.drag import DRAG, DragModel
+from pellicle.fitting.models.drift import DRIFT, DriftModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel, TensionModel
 from pellicle.fitting.models.layer import FreeLayerModel
 from pellicle.fitting.models.relaxing import (
@@ -98,10 +100,13 @@ class Rival:
         start = {p: known.get(p, missing.get(p, 0.0)) for p in chi_squared.parameters}
         return start if self.has_tension or TENSION not in start else start | {TENSION: 0.0}
 
-    def minimum(self, chi_squared: ChiSquared, starts: Sequence[Coordinates]) -> Minimum | None:
-        """Return the least minimum of χ² of this model near several starts; None if none is found.
+    def minimum(
+        self, chi_squared: ChiSquared, starts: Sequence[Coordinates]
+    ) -> tuple[Rival, Minimum] | None:
+        """Return the least minimum of χ² near several starts, and the model that has it.
 
-        ``starts`` may lack the parameters of its own, of which it has guesses.
+        That model may know more: which rows touch.  ``starts`` may lack the parameters of its own,
+        of which it has guesses.  None is returned if no search converges.
         """
         mine, minima, was_thin = self.of(chi_squared), [], False
         is_long = max(m.force.size for m, _ in chi_squared.curves(starts[0])) > _LONG
@@ -117,7 +122,54 @@ class Rival:
         if not minima:
             return None
         best = least(minima)
-        return mine.minimise(best.parameters, rough=True) if was_thin else best
+        if WORK_OF_ADHESION in self.own:
+            return self._attached(chi_squared, best)
+        return self, mine.minimise(best.parameters, rough=True) if was_thin else best
+
+    def _attached(self, chi_squared: ChiSquared, best: Minimum) -> tuple[Rival, Minimum]:
+        """Return the minimum with fixed rows of a retraction that touch, and the model of these.
+
+        As the end of the branch passes a row χ² jumps, and searches and profiles stop there.
+        """
+        choices = []
+        for shift in (0, -1, 1):
+            rival = self._with_contact(chi_squared, best, shift)
+            if rival is None:
+                return self, best
+            with suppress(ConvergenceError, PellicleError):
+                minimum = rival.of(chi_squared).minimise(best.parameters, rough=True)
+                choices.append((rival, minimum))
+        return min(choices, key=lambda choice: choice[1].chi_squared, default=(self, best))
+
+    def _with_contact(self, chi_squared: ChiSquared, at: Minimum, shift: int) -> Rival | None:
+        """Return the model in which the rows of a retraction that touch at a minimum are fixed.
+
+        They end ``shift`` rows deeper.  None is returned if jumps of the force show all of them.
+        """
+        states: list[tuple[Array, Array]] = []
+        is_open = False
+        for member, part in self.of(chi_squared).curves(at.parameters):
+            model = member.force_model
+            assert isinstance(model, AdhesiveModel)
+            attached = model.attached.copy()
+            rows = np.flatnonzero(member.moves_out & (attached == 0))
+            deeper = rows[np.argsort(member.base[rows], kind="stable")]
+            depth = member.base[deeper] - part[CONTACT_POINT]
+            values = {p: p.value(part[p]) for p in model.parameters}
+            last = int(np.sum(depth < model.end(values, float(depth.max(initial=0.0))))) + shift
+            attached[deeper] = np.where(np.arange(deeper.size) < last, -1.0, 1.0)
+            states.append((member.position, attached))
+            is_open = is_open or bool(rows.size)
+
+        def build(likelihood: Likelihood) -> ForceModel:
+            model = self.build(likelihood)
+            assert isinstance(model, AdhesiveModel)
+            for position, attached in states:
+                if likelihood.position is position:
+                    return replace(model, attached=attached)
+            return model
+
+        return replace(self, build=build) if is_open else None
 
     def _guesses(self, chi_squared: ChiSquared, start: Coordinates) -> list[Coordinates]:
         members = chi_squared.curves(start)
@@ -215,6 +267,16 @@ def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
             False,
             lambda member: DragModel(_elastic(member), member.history),
             (DRAG,),
+        )
+    if all(member.segment == "both" for member in members):
+        # On one pass it is a sloping baseline.
+        yield Rival(
+            "drift",
+            "drift in time",
+            False,
+            lambda member: DriftModel(_elastic(member), member.history),
+            (DRIFT,),
+            (OFFSET,),
         )
     elastic = [_elastic(member) for member in members]
     if all(

@@ -1,0 +1,67 @@
+"""Noise whose power falls as f^(−2d), such as 1/f, and differences that make it independent."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+from scipy.special import chdtrc
+
+from pellicle.arrays import Array
+
+_FEWEST = 100
+"""Least number of rows from which an exponent is estimated."""
+_LEAST, _MOST = 0.1, 0.95
+"""Exponents d that count: below, noise is nearly independent; 1/f noise has 1/2."""
+_LAGS = 24
+"""Lags over which differences have to be independent."""
+_CHANCE = 3e-3
+"""Probability that independent differences are taken for dependent ones."""
+
+
+def differenced(rows: Array, exponent: float) -> Array:
+    """Return the fractional differences (1 − B)^d along the first axis, of the same shape.
+
+    Of noise whose power falls as f^(−2d) they are independent (Granger & Joyeux 1980; Hosking
+    1981).  Before the first row they assume 0.
+    """
+    size = rows.shape[0]
+    weights = _weights(size, exponent)
+    spectrum = np.fft.rfft(rows, 2 * size, axis=0)
+    shape = (-1, *(1,) * (rows.ndim - 1))
+    result: Array = np.fft.irfft(spectrum * weights.reshape(shape), 2 * size, axis=0)[:size]
+    return result
+
+
+@lru_cache(maxsize=8)
+def _weights(size: int, exponent: float) -> NDArray[np.complex128]:
+    """Return the transform of the coefficients of (1 − B)^d, padded to twice the size."""
+    lags = np.arange(1, size)
+    coefficients = np.cumprod(np.concatenate([[1.0], (lags - 1 - exponent) / lags]))
+    return np.fft.rfft(coefficients, 2 * size)
+
+
+def exponent_of(force: Array) -> float:
+    """Return the exponent d at which the differences of noise [N] are smallest; 0 if none fits.
+
+    The least sum of squares is the conditional maximum of the likelihood.  Smoothed noise or hum
+    leave differences that depend on each other (test of Ljung & Box 1978), and 0 is returned.
+    """
+    size = force.size
+    if size < _FEWEST:
+        return 0.0
+    values = force - np.mean(force)
+
+    def misfit(exponent: float) -> float:
+        return float(np.sum(differenced(values, exponent) ** 2))
+
+    exponent = float(minimize_scalar(misfit, bounds=(0.0, _MOST), method="bounded").x)
+    rest = differenced(values, exponent)
+    variance = float(rest @ rest)
+    if exponent < _LEAST or not variance:
+        return 0.0
+    correlations = np.array([rest[lag:] @ rest[:-lag] for lag in range(1, _LAGS + 1)]) / variance
+    excess = size * (size + 2) * np.sum(correlations**2 / (size - np.arange(1, _LAGS + 1)))
+    return exponent if chdtrc(_LAGS - 1, float(excess)) >= _CHANCE else 0.0

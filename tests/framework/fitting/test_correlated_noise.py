@@ -1,0 +1,45 @@
+"""Noise whose power falls as f^(−2d), and the differences that make it independent."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fit_rivals import pink_noise
+
+from pellicle.fitting.statistics.memory import differenced, exponent_of
+
+
+def test_differences_of_order_one_and_their_composition() -> None:
+    """(1 − B)^1 takes differences of neighbours, and two powers follow each other."""
+    values = np.random.default_rng(1).standard_normal((50, 2))
+    assert differenced(values, 1.0)[1:] == pytest.approx(np.diff(values, axis=0))
+    assert differenced(values, 0.0) == pytest.approx(values)
+    twice = differenced(differenced(values, 0.3), 0.7)
+    assert twice == pytest.approx(differenced(values, 1.0))
+
+
+@pytest.mark.parametrize("exponent", [0.2, 0.5, 0.8])
+def test_exponent_of_fractional_noise(exponent: float) -> None:
+    """The exponent of noise is recovered; its standard error is 0.78 / √n, here 0.008."""
+    random = np.random.default_rng(2)
+    noise = differenced(random.standard_normal((10_000, 1)), -exponent)[:, 0]
+    assert exponent_of(noise) == pytest.approx(exponent, abs=0.03)
+
+
+def test_exponent_of_1_over_f_noise() -> None:
+    """Noise with a power of 1/f up to its last frequency is close to that of exponent 1/2."""
+    random = np.random.default_rng(2)
+    exponents = [exponent_of(pink_noise(random, 1000)) for _ in range(10)]
+    assert np.median(exponents) == pytest.approx(0.5, abs=0.1)
+
+
+@pytest.mark.parametrize("size", [1e-12, 1.0, 1e6])
+def test_other_noise_has_no_exponent(size: float) -> None:
+    """Independent noise, a moving average, hum, few rows and no noise at all have none."""
+    random = np.random.default_rng(3)
+    white = size * random.standard_normal(300)
+    assert exponent_of(white) == 0
+    assert exponent_of(np.convolve(white, np.ones(15), "valid")) == 0
+    assert exponent_of(white + 2 * size * np.sin(np.arange(300) / 3)) == 0
+    assert exponent_of(white[:50].cumsum()) == 0
+    assert exponent_of(np.zeros(300)) == 0
