@@ -72,6 +72,7 @@ def test_under_tension_it_is_the_closed_theory(length: float, size: float) -> No
     assert radius == pytest.approx(theory.at_force(0.0).contact_radius, rel=5e-3)
 
 
+@pytest.mark.filterwarnings("ignore:.*to its rigid base")
 @pytest.mark.parametrize("thickness", [7.5, 1.5])
 def test_on_a_bonded_layer_it_is_the_dense_solution(thickness: float) -> None:
     """Force near a = 1.5 a₀, where a/h = 0.2 and 1, and pull-off are right to 0.01 πwR."""

@@ -40,6 +40,12 @@ def _in_words(line: str, width: int) -> list[str]:
     return textwrap.wrap(line, width, break_long_words=False, break_on_hyphens=False)
 
 
+def terminal_width() -> int | None:
+    """Return the number of characters on a line of the terminal; None without one."""
+    console = Console()
+    return console.width if console.is_terminal else None
+
+
 class Column(NamedTuple):
     """The head and the cells of a column."""
 
@@ -68,8 +74,7 @@ def print_columns(columns: Sequence[tuple[str, Sequence[str]]], caption: str = "
     if caption:
         echo(f"{caption}:")
     safe = [Column(_safe(head), list(map(_safe, cells))) for head, cells in columns]
-    console = Console()
-    for line in table_lines(safe, console.width if console.is_terminal else None):
+    for line in table_lines(safe, terminal_width()):
         echo(line)
 
 

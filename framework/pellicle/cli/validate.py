@@ -8,13 +8,15 @@ import typer
 
 from pellicle.errors import PluginError
 
-from .printing import echo, print_columns, print_json
+from .printing import echo, print_columns, print_json, terminal_width
 
 if TYPE_CHECKING:
     from pellicle.components import Case
     from pellicle.runs.validation import Verdict
 
 _DIGITS = 8
+_WIDE = 160
+"""Characters on a line from which on the sources fit beside the numbers."""
 
 
 def validate(
@@ -44,18 +46,21 @@ def validate(
         print_json({"passed": passed, "cases": cases})
     else:
         names = "case", [verdict.case.name for verdict in done]
-        print_columns(
-            [
-                names,
-                ("expected", [_value(v.case.expected, v.case) for v in done]),
-                ("computed", [_value(v.computed, v.case) for v in done]),
-                ("error", [f"{verdict.error:.1e}" for verdict in done]),
-                ("allowed", [f"{verdict.case.tolerance:.0e}" for verdict in done]),
-                ("verdict", ["ok" if verdict.passed else "FAILED" for verdict in done]),
-            ]
-        )
-        echo()
-        print_columns([names, ("source", [verdict.case.source for verdict in done])])
+        sources = "source", [verdict.case.source for verdict in done]
+        numbers = [
+            ("expected", [_value(v.case.expected, v.case) for v in done]),
+            ("computed", [_value(v.computed, v.case) for v in done]),
+            ("error", [f"{verdict.error:.1e}" for verdict in done]),
+            ("allowed", [f"{verdict.case.tolerance:.0e}" for verdict in done]),
+            ("verdict", ["ok" if verdict.passed else "FAILED" for verdict in done]),
+        ]
+        width = terminal_width()
+        if width is None or width >= _WIDE:
+            print_columns([names, *numbers, sources])
+        else:
+            print_columns([names, *numbers])
+            echo()
+            print_columns([names, sources])
         echo(_summary(done))
     raise typer.Exit(0 if passed else 1)
 

@@ -12,8 +12,6 @@ from pellicle.analysis.steepness import steepest
 from pellicle.grid import Grid
 from pellicle.units import DIGITS, readable
 
-from .status import Status
-
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -26,8 +24,8 @@ STEEP = "slopes in contact are far beyond the theory"
 def beyond_theory(dataset: xr.Dataset, configuration: Mapping[str, Any]) -> dict[str, str]:
     """Return what lies far outside the theory at the largest contact of a run.
 
-    The keys are `DEEP` and `STEEP`, the values messages with the step and its numbers. Slopes that
-    have a status of their own are left out.
+    The keys are `DEEP` and `STEEP`, the values messages with the step and its numbers. Slopes
+    under an interaction are left out: they have a status.
     """
     last = dataset.isel(step=int(np.argmax(dataset["contact_area"].values)))
     contact, displacement = last["contact"].values, last["displacement"].values
@@ -42,7 +40,7 @@ def beyond_theory(dataset: xr.Dataset, configuration: Mapping[str, Any]) -> dict
             "numbers are those of the equations, not of an experiment; press in less far"
         )
     slope = steepest(displacement, contact, Grid(**configuration["grid"]))
-    if slope > _STEEPEST and Status.STEEP.name not in dataset["status_code"].values:
+    if slope > _STEEPEST and not configuration.get("interaction"):
         messages[STEEP] = (
             f"step {step}: slopes in contact reach {slope:.1f}, and the theory is for slopes up to "
             "0.3: force and area are those of the equations, not of an experiment; press in less "
