@@ -245,9 +245,7 @@ class Scale(NamedTuple):
             return NOTHING
         if math.isinf(number):
             return "∞" if number > 0 else "-∞"
-        # Adding 0 removes the sign of a negative zero.
-        text = f"{number + 0.0:.{digits}g}"
-        return f"{number:.0f}" if "e+0" in text and abs(number) < 1e6 else text
+        return decimal(number, digits)
 
     def text(self, value: object, digits: int = DIGITS) -> str:
         """Return a value in SI as text with the unit, such as ``"30 mN/m"``."""
@@ -266,6 +264,13 @@ class Scale(NamedTuple):
             return f"{self.with_unit(shortened)} ({len(numbers)} values)"
         joined = ", ".join(numbers)
         return joined if {*numbers} <= {NOTHING} else self.with_unit(joined)
+
+
+def decimal(number: float, digits: int) -> str:
+    """Return a number as text with significant digits, without an exponent below a million."""
+    # Adding 0 removes the sign of a negative zero.
+    text = f"{number + 0.0:.{digits}g}"
+    return f"{number:.0f}" if "e+0" in text and abs(number) < 1e6 else text
 
 
 def example(unit: str) -> str:

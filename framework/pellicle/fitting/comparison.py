@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from pellicle.units import readable
+from pellicle.units import decimal, readable
 
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
 from .parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates, Parameter
@@ -102,9 +102,9 @@ class Comparison:
         return [
             {
                 "model": fit.rival.words,
-                "χ²": f"{fit.chi_squared:.4g}",
-                "ΔAIC": f"{fit.aic:.3g}",
-                "ΔBIC": f"{fit.bic:.3g}",
+                "χ²": decimal(fit.chi_squared, 4),
+                "ΔAIC": decimal(fit.aic, 3),
+                "ΔBIC": decimal(fit.bic, 3),
                 "parameters": ", ".join(
                     f"{words(name)} {in_words(estimate, si=si, sought=False)}"
                     for name, estimate in fit.estimates.items()
@@ -387,8 +387,9 @@ def _judge(
     elif margin >= MARGIN:
         verdict, chosen = "needed", with_tension
         sentence = (
-            f"tension is needed (Δχ² = {gain:.3g}, ΔAIC = {none.aic - with_tension.aic:.3g} "
-            f"against none; ΔAIC = {margin:.3g} against {first.rival.words}, the best without it)"
+            f"tension is needed (Δχ² = {decimal(gain, 3)}, "
+            f"ΔAIC = {decimal(none.aic - with_tension.aic, 3)} against none; "
+            f"ΔAIC = {decimal(margin, 3)} against {first.rival.words}, the best without it)"
         )
         if with_tension.rival != TENSED:
             beside = with_tension.rival.words.removeprefix("tension and ")
@@ -397,13 +398,13 @@ def _judge(
         verdict, chosen = "other", first
         sentence = (
             f"{first.rival.words} describes {curves} better than tension "
-            f"(ΔAIC = {-margin:.3g}), so this is not evidence of a tension"
+            f"(ΔAIC = {decimal(-margin, 3)}), so this is not evidence of a tension"
         )
     else:
         verdict = "undecided"
         tied = [fit for fit in without if abs(fit.aic - with_tension.aic) < MARGIN]
         names = [
-            f"{fit.rival.words} (Δχ² = {fit.chi_squared - with_tension.chi_squared:.2g})"
+            f"{fit.rival.words} (Δχ² = {decimal(fit.chi_squared - with_tension.chi_squared, 2)})"
             for fit in tied
         ]
         sentence = f"{curves} cannot tell {with_tension.rival.words} from {_listed(names)}"

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.special import bdtrc, chdtrc
 
 from pellicle.errors import ConfigError, PellicleError
+from pellicle.units import decimal
 
 from .comparison import compare
 from .config import FitConfig
@@ -114,7 +115,7 @@ class PooledFit(FitResult):
             **_column("contact point", [point.value for point in points], "m", si, digits=6),
             **_column("noise", [curve.noise for curve in self.curves], "N", si),
             "points": [str(curve.points) for curve in self.curves],
-            "χ²": [f"{curve.chi_squared:.5g}" for curve in self.curves],
+            "χ²": [decimal(curve.chi_squared, 5) for curve in self.curves],
             **_column(
                 "modulus alone", [curve.reduced_modulus_alone for curve in self.curves], "Pa", si
             ),
@@ -291,13 +292,13 @@ def _fit_pool(
 
 
 def _agreement(curves: Sequence[PooledCurve], excess: float, degrees: int, factor: float) -> str:
-    figures = f"Δχ² = {excess:.3g} for {degrees} degrees of freedom"
+    figures = f"Δχ² = {decimal(excess, 3)} for {degrees} degrees of freedom"
     if factor == 1:
         return f"the curves agree ({figures} against each on its own)"
     worst = max(curves, key=lambda curve: curve.chi_squared - curve.chi_squared_alone)
     return (
         f"the curves do not agree on the shared parameters ({figures} against each on its own), "
-        f"{worst.name} least of all; the intervals are widened by {np.sqrt(factor):.2g}"
+        f"{worst.name} least of all; the intervals are widened by {decimal(np.sqrt(factor), 2)}"
     )
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from pellicle.files import atomic_write
-from pellicle.units import readable
+from pellicle.units import decimal, readable
 
 from .config import FitConfig
 from .curves.curve import Note
@@ -105,7 +105,7 @@ class FitResult:
     def comparison(self) -> str:
         """Whether tension is needed, in words."""
         tension, gain = self.tension, self._gain
-        figures = f"Δχ² = {gain:.3g}, ΔAIC = {gain - 2:.3g}"
+        figures = f"Δχ² = {decimal(gain, 3)}, ΔAIC = {decimal(gain - 2, 3)}"
         if tension.held and not tension.value:
             return "tension is fixed at 0, so whether it is needed was not tested"
         if tension.held:

@@ -10,7 +10,7 @@ from pellicle.fitting.population.summary import ALL, Quartiles
 from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.profile import CONFIDENCE
 from pellicle.fitting.wording import in_words, words
-from pellicle.units import axis_unit
+from pellicle.units import axis_unit, decimal
 
 _GROUPS = 4
 """Groups of a population that are named in a sentence; of more, only all curves are."""
@@ -74,6 +74,7 @@ def _quartiles(part: Quartiles) -> str:
     """Return a median with its quartiles: ``5 mN/m (4.8 to 5.2)``."""
     factor, unit = axis_unit(np.array([part.median or part.upper_quartile]), part.unit)
     median, low, high = (
-        f"{value * factor:.3g}" for value in (part.median, part.lower_quartile, part.upper_quartile)
+        decimal(value * factor, 3)
+        for value in (part.median, part.lower_quartile, part.upper_quartile)
     )
     return f"{median} {unit} ({low} to {high})"

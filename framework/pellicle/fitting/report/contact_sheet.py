@@ -15,7 +15,7 @@ from pellicle.fitting.many import FITTED, ManyFits
 from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.population.sketch import Sketch
 from pellicle.report.plotting import save_pages
-from pellicle.units import axis_unit, readable
+from pellicle.units import axis_unit, decimal, readable
 
 if TYPE_CHECKING:
     from matplotlib.figure import FigureBase
@@ -131,10 +131,10 @@ def _numbers(row: Row) -> str:
         estimate: Mapping[str, Any] = row.get(name, {})
         if estimate and not (estimate["held"] and not estimate["value"]):
             factor, unit = axis_unit([estimate["value"]], estimate["unit"])
-            texts.append(f"{symbol} {estimate['value'] * factor:.3g} {unit}")
+            texts.append(f"{symbol} {decimal(estimate['value'] * factor, 3)} {unit}")
     if "r_squared" in row:
         texts.append(f"R² {row['r_squared']:.4f}")
-        texts.append(f"χ²/n {row['chi_squared'] / row['points']:.3g}")
+        texts.append(f"χ²/n {decimal(row['chi_squared'] / row['points'], 3)}")
     return ", ".join(texts)
 
 

@@ -10,7 +10,7 @@ from pellicle.fitting.result import FitResult
 from pellicle.fitting.wording import interval, scale
 from pellicle.model.html import summary
 from pellicle.report.style import FigureStyle
-from pellicle.units import readable
+from pellicle.units import decimal, readable
 
 from .answer import answer, answer_of_population
 from .figures import SIZE, Panel, panels
@@ -28,7 +28,7 @@ def html_of_fit(fit: Fit | PooledFit) -> str:
     for name, estimate in fit.estimates().items():
         factor, unit = scale(estimate)
         words = name.replace("_", " ").replace("youngs", "Young's")
-        rows.append([words, f"{estimate.value * factor:.4g}", interval(estimate), unit])
+        rows.append([words, decimal(estimate.value * factor, 4), interval(estimate), unit])
     count = len(fit.curve_rows())
     title = f"Fit of {count} curves" if count else "Fit of a curve"
     sentence = f"{answer(fit)} {_state(fit)}"

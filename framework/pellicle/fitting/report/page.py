@@ -22,7 +22,7 @@ from pellicle.fitting.wording import interval, scale, words
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
 from pellicle.report.plotting import svg
-from pellicle.units import axis_unit, readable
+from pellicle.units import axis_unit, decimal, readable
 
 from .answer import answer, answer_of_population
 from .contact_sheet import LEGEND, PAGE, sheets
@@ -143,7 +143,7 @@ def _each(rows: Sequence[Row]) -> Table:
         if any(estimates):
             columns |= _intervals(name.replace("_", " "), estimates, unit)
     for name, head in (("chi_squared", "χ²"), ("r_squared", "R²")):
-        columns[Column(head)] = [f"{row[name]:.5g}" if name in row else "" for row in rows]
+        columns[Column(head)] = [decimal(row[name], 5) if name in row else "" for row in rows]
     verdicts = [row["status"].partition(":")[0] for row in rows]
     columns[Column("status", words=True)] = [Cell(v, bad=v != FITTED) for v in verdicts]
     if any(row["status"] == FITTED and not row["accepted"] for row in rows):
@@ -226,9 +226,9 @@ def _estimates(fit: Fit | PooledFit) -> Table:
     for name, estimate in fit.estimates().items():
         factor, unit = scale(estimate)
         is_known = bounded and np.isfinite(estimate.bound)
-        bound = f"{estimate.bound * factor:.2g}" if is_known else "none"
+        bound = decimal(estimate.bound * factor, 2) if is_known else "none"
         bound = "" if estimate.held else bound
-        value = f"{estimate.value * factor:.4g}"
+        value = decimal(estimate.value * factor, 4)
         rows.append([words(name), value, interval(estimate), unit, bound])
     heads = ("parameter", "value", "interval", "unit", "bound")
     columns = [
@@ -260,8 +260,8 @@ def _data(fit: Fit) -> Table:
     rows = [
         ["points", str(fit.points)],
         ["noise of the force", f"{fit.noise * factor:.3g} {unit}, from {fit.noise_from}"],
-        ["χ² of the fit", f"{fit.chi_squared:.5g}"],
-        ["χ² without tension", f"{fit.chi_squared_without_tension:.5g}"],
+        ["χ² of the fit", decimal(fit.chi_squared, 5)],
+        ["χ² without tension", decimal(fit.chi_squared_without_tension, 5)],
     ]
     columns = [Column(head, words=True) for head in ("what", "value")]
     return Table("Noise and residuals of the curve.", columns, rows)
@@ -278,8 +278,8 @@ def _curves(fit: PooledFit) -> Table:
         **points,
         **_numbers("noise", [c.noise for c in curves], "N"),
         Column("points"): [str(c.points) for c in curves],
-        Column("χ²"): [f"{c.chi_squared:.5g}" for c in curves],
-        Column("χ² alone"): [f"{c.chi_squared_alone:.5g}" for c in curves],
+        Column("χ²"): [decimal(c.chi_squared, 5) for c in curves],
+        Column("χ² alone"): [decimal(c.chi_squared_alone, 5) for c in curves],
         **_numbers("modulus alone", [c.reduced_modulus_alone for c in curves], "Pa"),
         **_numbers("tension alone", [c.tension_alone for c in curves], "N/m"),
     }
@@ -315,7 +315,7 @@ def _table(caption: str, columns: Mapping[Column, Sequence[str | Cell]]) -> Tabl
 def _numbers(name: str, values: Sequence[float], unit: str) -> dict[Column, list[str]]:
     """Return a column of numbers, in a unit that brings them between about 1 and 1000."""
     factor, prefixed = axis_unit(np.array(values), unit)
-    return {Column(name, prefixed): [f"{value * factor:.4g}" for value in values]}
+    return {Column(name, prefixed): [decimal(value * factor, 4) for value in values]}
 
 
 def _intervals(
@@ -338,4 +338,4 @@ def _intervals(
 def _end(value: float | None, factor: float, fixed: bool) -> str:
     if fixed:
         return "fixed"
-    return "open" if value is None else f"{value * factor:.4g}"
+    return "open" if value is None else decimal(value * factor, 4)

@@ -14,7 +14,7 @@ from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
 from pellicle.fitting.models.layer import LayerModel, with_thickness
 from pellicle.fitting.models.solid import lengths
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
-from pellicle.units import readable
+from pellicle.units import decimal, readable
 
 from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
@@ -216,7 +216,7 @@ def _check_contact(residuals: Residuals, before: NoiseEstimate | None) -> NoiseE
     noise, failed, slow = before.noise, list(before.failed), before.slow
     if scatter.exceeds(noise):
         ratio = scatter.deviation / noise.deviation
-        finding = f"the residuals are {ratio:.2g} times the noise before contact"
+        finding = f"the residuals are {decimal(ratio, 2)} times the noise before contact"
         failed.append(_misfit("misfit", finding, residuals))
         noise = Noise(scatter.deviation, min(noise.freedom, freedom))
     sums = residuals.binned(_contact_bins(residuals))
@@ -227,7 +227,7 @@ def _check_contact(residuals: Residuals, before: NoiseEstimate | None) -> NoiseE
         if wrong := sums.exceeds(usual):
             finding = (
                 "the residuals follow a pattern, with sums "
-                f"{np.sqrt(sums.excess(independent)):.2g} times those of independent noise"
+                f"{decimal(np.sqrt(sums.excess(independent)), 2)} times those of independent noise"
             )
             failed.append(_misfit("pattern", finding, residuals))
         # Noise slower than the bins before contact appears in the wider bins in contact.

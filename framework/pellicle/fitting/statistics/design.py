@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.models.layer import FreeLayerModel, LayerModel, with_thickness
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
-from pellicle.units import readable
+from pellicle.units import decimal, readable
 
 from .likelihood import Likelihood
 from .profile import Estimate
@@ -124,7 +124,7 @@ def _bounds(subject: str, shares: Mapping[str, float]) -> str:
 
 
 def _percent(share: float) -> str:
-    return f"{100 * share:.2g} %" if share < 10 else "more than 1000 %"
+    return f"{decimal(100 * share, 2)} %" if share < 10 else "more than 1000 %"
 
 
 def _designs(likelihood: Likelihood, parameters: Coordinates) -> tuple[_Design, list[_Design]]:

@@ -13,7 +13,7 @@ from pellicle.arrays import Array
 from pellicle.errors import PellicleError
 from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.parameters import CONTACT_POINT, Coordinates
-from pellicle.units import readable
+from pellicle.units import decimal, readable
 
 from .likelihood import ChiSquared, Likelihood
 from .pooled_likelihood import Pool
@@ -77,13 +77,15 @@ def advised(
             if worth < _USELESS:
                 break
         if worth >= _NEEDED:
-            return f"{measurement.words} would (expected Δχ² = {worth:.2g})"
+            return f"{measurement.words} would (expected Δχ² = {decimal(worth, 2)})"
         if best is None or worth > best[0]:
             best = worth, measurement.words
     if best is None or best[0] < _NEEDED / _MANY:
         return "no other speed, dwell, pass, depth or radius at this noise would; less noise might"
     count = int(np.ceil(_NEEDED / best[0]))
-    return f"{count} curves of this kind would: {best[1]} (expected Δχ² = {best[0]:.2g} each)"
+    return (
+        f"{count} curves of this kind would: {best[1]} (expected Δχ² = {decimal(best[0], 2)} each)"
+    )
 
 
 def _part(chi_squared: ChiSquared, parameters: Coordinates) -> Coordinates:

@@ -14,7 +14,7 @@ from scipy.special import fdtrc, ndtr, ndtri
 from pellicle.arrays import Array, Mask
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION
 from pellicle.fitting.parameters import OFFSET, SLOPE, Coordinates, Parameter
-from pellicle.units import readable
+from pellicle.units import decimal, readable
 
 from .likelihood import Likelihood
 from .memory import differenced
@@ -203,10 +203,10 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
         far = points
     failed += _drift_or_offset(residuals, force[:far], line[:far], noise_of_sums.deviation)
     if slow is not None:
+        count = max(far / slow.excess(independent), 1)
         message = (
             f"the noise before contact is correlated: {far} points carry as much information as "
-            f"{max(far / slow.excess(independent), 1):.2g} independent ones, and the intervals are "
-            "widened accordingly"
+            f"{decimal(count, 2)} independent ones, and the intervals are widened accordingly"
         )
         failed.append(FailedCheck("slow_noise", message))
     if residuals.step > _COARSE * neighbour_noise(force):

@@ -12,6 +12,7 @@ from scipy.special import stdtrit
 
 from pellicle.errors import ConvergenceError
 from pellicle.fitting.parameters import TENSION, Coordinates, Parameter
+from pellicle.units import decimal
 
 from .likelihood import REACH, ChiSquared, Minimum, least
 
@@ -224,7 +225,8 @@ def widen(
     other = coarse.minimise(best.parameters).parameters
     shift = {p: abs(other[p] - value) for p, value in best.parameters.items()}
     changes = [
-        f"the {p.word} by {100 * (np.expm1(shift[p]) if p.logarithmic else shift[p] / value):.2g} %"
+        f"the {p.word} by "
+        f"{decimal(100 * (np.expm1(shift[p]) if p.logarithmic else shift[p] / value), 2)} %"
         for p, value in best.parameters.items()
         if p in ends and p.shared and (p.logarithmic or value)
     ]
