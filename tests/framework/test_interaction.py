@@ -133,7 +133,9 @@ def test_two_tables(file: Path) -> None:
     """A second table is refused in words."""
     for extra in ('[interaction]\ntype = "jkr"\n', '[[interaction]]\ntype = "jkr"\n'):
         file.write_text(FILE + extra, encoding="utf-8")
-        with pytest.raises(pl.ConfigError, match=r"not valid TOML: (\[interaction\] is there|A key is given twice)"):
+        with pytest.raises(
+            pl.ConfigError, match=r"not valid TOML: (\[interaction\] is there|A key is given twice)"
+        ):
             pl.Run.from_toml(file)
 
 
