@@ -107,7 +107,7 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
             f"the {hidden:.3g} m by which neighbouring cells differ; it has to be 0 at the lowest "
             "point"
         )
-    return read_only(profile)
+    return read_only(np.ascontiguousarray(profile))
 
 
 def _beyond_numbers(what: str) -> ConfigError:

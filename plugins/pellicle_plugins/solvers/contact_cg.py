@@ -148,7 +148,8 @@ def inner_solve(
         misclassified, _ = _misclassified(
             problem, preconditioner, displacement, on_contact, depth, max(error, goal)
         )
-    pressure.ravel()[cells] = on_contact
+    # A start or a guess may be in Fortran order, of which ravel() would be a copy.
+    np.put(pressure, cells, on_contact)
     return InnerSolution(pressure, displacement, error, np.sort(misclassified))
 
 

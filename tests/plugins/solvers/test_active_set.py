@@ -663,6 +663,22 @@ def test_a_start_at_the_solution_is_used(boundary: Boundary) -> None:
     assert active_set(problem, 1e-6, start=solved).applications == 1
 
 
+@pytest.mark.parametrize("points", [(7, 6), (64, 48)])
+@pytest.mark.parametrize("prescribed", ["depth", "force"])
+def test_the_order_of_arrays_in_memory_changes_nothing(
+    prescribed: Prescribed, points: tuple[int, int]
+) -> None:
+    """Profiles and starts in Fortran order, such as of a scan read by lines, are solved too."""
+    value = {"depth": 0.01, "force": 1e-4}[prescribed]
+    problem = make(points, "free", skin(0.02), rough(0.4), prescribed, value)
+    expected = active_set(problem).equilibrium
+    other = replace(problem, profile=np.asfortranarray(problem.profile))
+    for start in (None, np.asfortranarray(0.999 * expected.pressure)):
+        equilibrium = active_set(other, start=start).equilibrium
+        np.testing.assert_allclose(equilibrium.pressure, expected.pressure, atol=1e-6)
+        assert equilibrium.force == pytest.approx(expected.force, rel=1e-8)
+
+
 @pytest.mark.parametrize("s", [0.0, 0.001, 0.1, 10.0])
 @pytest.mark.parametrize(("prescribed", "value"), [("depth", 0.02), ("force", 1e-3)])
 def test_applications_of_a_paraboloid(s: float, prescribed: Prescribed, value: float) -> None:
