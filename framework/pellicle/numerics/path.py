@@ -115,7 +115,7 @@ def _pressure_ahead(problem: Problem, before: PathPoint, last: PathPoint, ratio:
         )
         < 0
     )
-    pressure.ravel()[coming[joins]] = _JOINING * float(pressure.max())
+    np.put(pressure, coming[joins], _JOINING * float(pressure.max()))
     return pressure
 
 
