@@ -204,7 +204,7 @@ _MANY = 2000
 def is_like(expected: str, output: str) -> bool:
     """Whether an output is that of a page, but for what other machines and versions change.
 
-    Where nothing is elided, numbers from 2000 on, or with a point or an exponent, may differ by 5 %;
+    Where nothing is elided, numbers from 2000 on or with a point or an exponent may differ by 5 %;
     iterations, hashes, versions, times, and the order in which runs end, are left out of the
     comparison.
     """

@@ -61,6 +61,11 @@ def test_a_plot_is_upright(result: pl.Result) -> None:
     assert axes.get_xlabel().startswith("x")
     assert mesh.get_array().shape == (18, 24)
     assert axes.get_aspect() == 1.0
+    # Words and engineering units, as in all figures.
+    gap = result.dataset["gap"].isel(step=0).max().item()
+    assert mesh.get_array().max() == pytest.approx(gap * 1e6)
+    assert "[µm]" in mesh.colorbar.ax.get_ylabel()
+    assert re.fullmatch(r"depth .* µm", axes.get_title())
     with pytest.raises(pl.ConfigError, match="not a field; give one of pressure"):
         result.plot("force", ax=axes)
 

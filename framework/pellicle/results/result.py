@@ -19,7 +19,7 @@ from pellicle.units import axis_unit, readable
 
 from . import storage
 from .limits import beyond_theory
-from .path import oscillations_of, path_variables
+from .path import label_of_step, oscillations_of, path_variables
 from .status import Status
 from .variables import FIELDS, REQUIRED, VARIABLES, damage
 
@@ -149,7 +149,8 @@ class Result:
         step
             Index of the load step from 0, as for ``isel``; -1 is the last.
         **options
-            Passed to `xarray.DataArray.plot.pcolormesh`, such as ``ax`` and ``cmap``.
+            Passed to `xarray.DataArray.plot.pcolormesh`, such as ``ax`` and ``cmap``; values are in
+            the unit of the colour bar.
 
         Returns
         -------
@@ -182,8 +183,12 @@ class Result:
         for name in ("x", "y"):
             scaled = data[name] * factor
             field = field.assign_coords({name: scaled.assign_attrs(units=unit, long_name=name)})
+        if field.dtype != bool:
+            scale, prefixed = axis_unit(field.values, str(field.attrs["units"]))
+            field = (field * scale).assign_attrs(field.attrs | {"units": prefixed})
         mesh = field.plot.pcolormesh(x="x", y="y", **options)
-        mesh.axes.set(aspect="equal", facecolor=_NO_CONTACT)
+        title = label_of_step(self.dataset, step, self.configuration)
+        mesh.axes.set(aspect="equal", facecolor=_NO_CONTACT, title=title)
         return mesh
 
     def save(self, path: str | Path) -> None:
