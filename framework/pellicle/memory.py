@@ -18,7 +18,7 @@ _OPERATOR = {"free": 9.0, "periodic": 4.75}
 # The same on a line of cells along x, whose transforms are twice as long and need tables.
 _LINE = 14.0
 # The solver active_set in full contact, and any solver without `HasMemory`.
-_SOLVER = {"free": 11.5, "periodic": 8.5}
+_SOLVER = {"free": 11.5, "periodic": 8.75}
 # What a solve takes more where an interaction acts: eight rounds of three fields, from which the
 # next is extrapolated, and the fields of two rounds.
 _STICKS = 39.0
@@ -41,7 +41,7 @@ def estimate(
     """Return the peak memory [bytes] of a run on ``grid``, without that of the libraries.
 
     The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
-    of the contact is unknown, so full contact is assumed, which takes up to 28 % more memory than a
+    of the contact is unknown, so full contact is assumed, which takes up to a third more memory than a
     small contact. A ``solver`` that is not a `HasMemory` counts as active_set.
     ``history`` is what a solid that relaxes needs for its memory, in arrays of the grid's shape;
     ``sticks`` says whether an interaction acts.

@@ -229,7 +229,7 @@ def test_pull_off_goes_from_elastic_to_liquid(tmp_path: Path) -> None:
 
 def test_a_thin_layer_is_harder_to_pull_off(tmp_path: Path) -> None:
     """The force grows as the layer gets thinner, towards that of separate springs, 2πwR."""
-    vary = 'study.vary={"kernel.substrate.thickness"=[10e-6,500e-6]}'
+    vary = 'study.vary={"kernel.substrate.thickness"=[20e-6,500e-6]}'
     run("sticky_layer.toml", tmp_path, "grid.points=96", vary)
     thin, thick = column(drawn(tmp_path / "study-adhesive_curve-summary.csv"), "pull_off_force [N]")
     assert thin / thick > 1.1

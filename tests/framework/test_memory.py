@@ -114,6 +114,15 @@ KINDS = {
 }
 
 
+FULL_CONTACT = {
+    "free, contact over most of the domain",
+    "free, conjugate_gradient",
+    "periodic, full contact",
+    "periodic, conjugate_gradient",
+    "periodic, full contact, many outputs",
+}
+
+
 def _growths(threads: int, names: Iterable[str]) -> dict[str, int]:
     """Return the growth of the peak of a process [bytes] in each kind of run.
 
@@ -143,11 +152,14 @@ def growths() -> dict[str, int]:
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize("kind", KINDS)
 def test_estimate_is_the_growth_of_the_peak(kind: str, growths: dict[str, int]) -> None:
-    """The estimate is between 0.95 and 1.3 times the measured growth of the peak.
+    """The estimate is 0.95 to 1.15 times the growth of the peak in full contact.
 
-    From scipy 1.18 on a transform along a line needs two arrays less than the estimate assumes.
+    A small contact takes up to a third less, and from scipy 1.18 on a transform along a line needs
+    two arrays less than the estimate assumes.
     """
-    most = 1.6 if kind == LINE and Version(scipy.__version__) >= Version("1.18") else 1.3
+    most = 1.15 if kind in FULL_CONTACT else 1.35
+    if kind == LINE and Version(scipy.__version__) >= Version("1.18"):
+        most = 1.6
     run = pl.Run(**KINDS[kind])
     steps, sticks = len(run.loading.values), run.interaction is not None
     history = history_arrays(run)
