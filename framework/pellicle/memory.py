@@ -41,8 +41,8 @@ def estimate(
     """Return the peak memory [bytes] of a run on ``grid``, without that of the libraries.
 
     The peak occurs in the last solve, when earlier steps and their file are in memory too. The size
-    of the contact is unknown, so full contact is assumed, which takes up to a third more memory than a
-    small contact. A ``solver`` that is not a `HasMemory` counts as active_set.
+    of the contact is unknown, so full contact is assumed, which takes up to a third more memory
+    than a small contact. A ``solver`` that is not a `HasMemory` counts as active_set.
     ``history`` is what a solid that relaxes needs for its memory, in arrays of the grid's shape;
     ``sticks`` says whether an interaction acts.
     """
