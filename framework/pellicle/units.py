@@ -270,7 +270,7 @@ def decimal(number: float, digits: int) -> str:
     """Return a number as text with significant digits, without an exponent below a million."""
     # Adding 0 removes the sign of a negative zero.
     text = f"{number + 0.0:.{digits}g}"
-    return f"{float(text):.0f}" if "e+0" in text and abs(number) < 1e6 else text
+    return f"{number:.0f}" if "e+0" in text and abs(number) < 1e6 else text
 
 
 def example(unit: str) -> str:

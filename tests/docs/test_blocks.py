@@ -197,14 +197,14 @@ def check_part(data: dict[str, Any]) -> None:
                 pl.registry().make(_TABLES[name], entry)
 
 
-_MANY = 2000
+_MANY = 1000
 """Number from which whole ones are not counted but computed, and rounded."""
 
 
 def is_like(expected: str, output: str) -> bool:
     """Whether an output is that of a page, but for what other machines and versions change.
 
-    Where nothing is elided, numbers from 2000 on or with a point or an exponent may differ by 5 %;
+    Where nothing is elided, numbers from 1000 on or with a point or an exponent may differ by 5 %;
     iterations, hashes, versions, times, and the order in which runs end, are left out of the
     comparison.
     """

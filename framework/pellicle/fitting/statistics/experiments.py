@@ -77,15 +77,14 @@ def advised(
             if worth < _USELESS:
                 break
         if worth >= _NEEDED:
-            return f"{measurement.words} would (expected Δχ² = {decimal(worth, 2)})"
+            two_digits = decimal(float(f"{worth:.2g}"), 2)
+            return f"{measurement.words} would (expected Δχ² = {two_digits})"
         if best is None or worth > best[0]:
             best = worth, measurement.words
     if best is None or best[0] < _NEEDED / _MANY:
         return "no other speed, dwell, pass, depth or radius at this noise would; less noise might"
     count = int(np.ceil(_NEEDED / best[0]))
-    return (
-        f"{count} curves of this kind would: {best[1]} (expected Δχ² = {decimal(best[0], 2)} each)"
-    )
+    return f"{count} curves of this kind would: {best[1]} (expected Δχ² = {best[0]:.2g} each)"
 
 
 def _part(chi_squared: ChiSquared, parameters: Coordinates) -> Coordinates:
