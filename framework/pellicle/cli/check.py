@@ -13,13 +13,13 @@ from pellicle.errors import ConfigError
 
 from .printing import echo, print_json, print_table
 
-_ROUND_OFF = 1e-9
-"""Relative error below which a quantity counts as prescribed."""
-
 if TYPE_CHECKING:
     from pellicle.config.run import Run
     from pellicle.config.study import Study
     from pellicle.runs.advice import Advice
+
+_ROUND_OFF = 1e-9
+"""Relative error below which a quantity counts as prescribed."""
 
 
 def check(
@@ -86,7 +86,7 @@ def _check_run(run: Run, error: float, *, json: bool) -> None:
     if advice.size or advice.points != run.grid.points:
         nx, ny = advice.points
         of, on = " and ".join(quantities), ", on that domain" if advice.size else ""
-        echo(f"for {100 * error:.2g} % of {of} in every step{on}: grid.points = [{nx}, {ny}]")
+        echo(f"for {_share(error)} of {of} in every step{on}: grid.points = [{nx}, {ny}]")
 
 
 def _check_study(study: Study, error: float, *, json: bool) -> None:
@@ -122,7 +122,7 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
                 "fewest cells across": f"{min(across):.0f}" if across else "0",
                 "error": _share(_worst(advice, "error")),
                 "error of area": _share(_worst(advice, "area_error")),
-                f"points for {100 * error:.2g} %": f"{nx} × {ny}",
+                f"points for {_share(error)}": f"{nx} × {ny}",
                 "memory": f"{needed / 1e6:.3g} MB",
             }
         )
@@ -131,7 +131,7 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
     many = sum(w > error for w, _ in known)
     echo(
         f"{len(checked)} runs; in {many} the error of force or depth may exceed "
-        f"{100 * error:.2g} % in some step; errors are at most about these"
+        f"{_share(error)} in some step; errors are at most about these"
     )
     if known:
         worst, name = max(known)

@@ -37,6 +37,8 @@ _FIRST_TENSIONS = (0.03, 0.3)
 _FAR = 100.0
 """Difference of AIC beyond which intervals come from the curvature of χ²: their models describe the
 curves so badly that profiles, a third of the time of a comparison, would say nothing more."""
+_BESIDE = {CONTACT_POINT.name, OFFSET.name, SLOPE.name}
+"""Parameters of every curve, of which a comparison tells nothing."""
 Intervals = Literal["none", "profile", "curvature"]
 Verdict = Literal["needed", "not shown", "undecided", "other"]
 
@@ -321,21 +323,18 @@ def _aic(chi_squared: ChiSquared, minimum: Minimum) -> float:
 
 def _reported(chi_squared: ChiSquared) -> list[Parameter]:
     """Return the fitted parameters of which a comparison tells the values."""
-    beside = (CONTACT_POINT.name, OFFSET.name, SLOPE.name)
-    return [p for p in chi_squared.parameters if p in chi_squared.free and p.name not in beside]
+    return [p for p in chi_squared.parameters if p in chi_squared.free and p.name not in _BESIDE]
 
 
 def _estimates(
     chi_squared: ChiSquared, minimum: Minimum, ends: dict[Parameter, Ends]
 ) -> dict[str, Estimate]:
-    """Return estimates by name of what is not fixed, with intervals that are known."""
+    """Return estimates by name, with intervals that are known; none of a tension that is fixed."""
     bounds = chi_squared.deviations(minimum.parameters)
-    fixed = [p for p in chi_squared.parameters if p not in chi_squared.free and p != TENSION]
-    beside = (CONTACT_POINT.name, OFFSET.name, SLOPE.name)
     return {
         p.name: estimate_of(p, chi_squared, minimum, ends.get(p, (None, None)), bounds)
         for p in chi_squared.parameters
-        if p in _reported(chi_squared) or (p in fixed and p.name not in beside)
+        if p.name not in _BESIDE and (p in chi_squared.free or p != TENSION)
     }
 
 

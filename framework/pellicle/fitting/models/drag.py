@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -11,41 +10,23 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import Parameter, Values
 
-from .force_model import ModelForce, TensionModel
-from .history import History
+from .effect import EffectModel
+from .force_model import ModelForce
 
 DRAG = Parameter("drag", "Pa s", minimum=0.0, shared=True)
 """η of the force η a dδ/dt, with the contact radius a."""
 
 
 @dataclass(frozen=True)
-class DragModel:
+class DragModel(EffectModel):
     """Elastic solid under tension with a drag η a dδ/dt in contact.
 
     The contact radius a is that without tension, half the slope of the force over E*.
     """
 
-    elastic: TensionModel
-    history: History
-    coarse: ClassVar[None] = None
+    effect: ClassVar[Parameter] = DRAG
     is_sudden: ClassVar[bool] = True
     """The rows at first touch weigh so much that χ² depends on which of them touch."""
-    on_base: ClassVar[bool] = False
-
-    @property
-    def parameters(self) -> tuple[Parameter, ...]:
-        """Modulus, tension and drag."""
-        return (*self.elastic.parameters, DRAG)
-
-    @property
-    def depth_limit(self) -> float:
-        """Depth [m] up to which the force curve holds."""
-        return self.elastic.depth_limit
-
-    @property
-    def accuracy(self) -> float:
-        """Error of the elastic force."""
-        return self.elastic.accuracy
 
     def force(self, depth: Array, values: Values) -> ModelForce:
         """Return force and derivatives at depths [m] of the rows, of shape (n,)."""
@@ -60,15 +41,6 @@ class DragModel:
             elastic.by_depth + drag * np.where(depth > 0, growth, 0.0),
             {**elastic.by_parameter, DRAG: self.history.velocity * radius},
         )
-
-    def guesses(self, span: float) -> Iterator[Values]:
-        """Yield guesses of the elastic solid without drag."""
-        for values in self.elastic.guesses(span):
-            yield {**values, DRAG: 0.0}
-
-    def scaled(self, values: Values, factor: float) -> Values:
-        """Return all values times ``factor``."""
-        return {parameter: factor * value for parameter, value in values.items()}
 
     def description(self) -> dict[str, Any]:
         """Return the indenter and the drag as JSON data."""
