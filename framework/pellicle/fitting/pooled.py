@@ -12,6 +12,7 @@ import numpy as np
 from scipy.special import bdtrc, chdtrc
 
 from pellicle.errors import ConfigError, PellicleError
+from pellicle.runs.progress import status_line
 from pellicle.units import decimal
 
 from .comparison import compare
@@ -21,7 +22,7 @@ from .curves.readers import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
-from .result import FitResult, status_line, thickness_of
+from .result import FitResult, thickness_of
 from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
 from .statistics.design import pooled_advice
 from .statistics.likelihood import best_minimum

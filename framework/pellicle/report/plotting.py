@@ -20,7 +20,8 @@ from pellicle.numerics.problem import height_scale
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, has_times, label_of_step
 from pellicle.results.result import Result
-from pellicle.results.variables import CONTACT_AREA, CORRECTED_AREA, wording
+from pellicle.results.variables import CONTACT_AREA, CORRECTED_AREA
+from pellicle.results.wording import wording
 from pellicle.units import axis_unit
 
 from .style import (

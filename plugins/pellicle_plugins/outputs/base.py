@@ -24,7 +24,8 @@ from pellicle.report.plotting import save_figure, without_round_off
 from pellicle.report.style import FigureStyle, is_ordered
 from pellicle.results.derived import FIRST_RUN, names
 from pellicle.results.result import Result
-from pellicle.results.variables import wording, words_of_name
+from pellicle.results.variables import words_of_name
+from pellicle.results.wording import wording
 from pellicle.units import DIGITS, readable
 
 if TYPE_CHECKING:

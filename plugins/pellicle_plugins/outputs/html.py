@@ -55,14 +55,8 @@ from pellicle.results.result import Result, first_message
 from pellicle.results.shape import describes_shape
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
-from pellicle.results.variables import (
-    VARIABLES,
-    WALL_PRESSURE,
-    Wording,
-    names_of,
-    wording,
-    wording_of,
-)
+from pellicle.results.variables import VARIABLES, WALL_PRESSURE, names_of
+from pellicle.results.wording import Wording, wording, wording_of
 from pellicle.studies.summary import (
     caveats,
     failures,
