@@ -20,7 +20,8 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
 from pellicle.model.expression import evaluate, formula
 from pellicle.model.messages import nearest
-from pellicle.report.plotting import save_figure, without_round_off
+from pellicle.report.fields import without_round_off
+from pellicle.report.saving import save_figure
 from pellicle.report.style import FigureStyle, is_ordered
 from pellicle.results.derived import FIRST_RUN, names
 from pellicle.results.result import Result

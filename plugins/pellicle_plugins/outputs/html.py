@@ -20,6 +20,13 @@ from pellicle.components import Output, Runs
 from pellicle.config.describe import Input, inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
+from pellicle.report.fields import (
+    DIVERGING,
+    default_step,
+    draws_contact,
+    profile,
+    without_round_off,
+)
 from pellicle.report.page import (
     Cell,
     Code,
@@ -36,18 +43,8 @@ from pellicle.report.page import (
     side,
 )
 from pellicle.report.page import Field as MapField
-from pellicle.report.plotting import (
-    DIVERGING,
-    TIME,
-    default_step,
-    drawings,
-    draws_contact,
-    profile,
-    study_curves,
-    study_figures,
-    svg,
-    without_round_off,
-)
+from pellicle.report.plotting import TIME, drawings, study_curves, study_figures
+from pellicle.report.saving import svg
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step, prescribed_variable

@@ -21,7 +21,7 @@ from pellicle.fitting.statistics.profile import CONFIDENCE
 from pellicle.fitting.wording import interval, scale, words
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
-from pellicle.report.plotting import svg
+from pellicle.report.saving import svg
 from pellicle.units import axis_unit, decimal, readable
 
 from .answer import answer, answer_of_population
