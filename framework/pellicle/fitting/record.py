@@ -36,7 +36,7 @@ class Record:
     """[s]"""
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what the fit has once as JSON data; its curves hold their own data."""
+        """Return versions, date and time as JSON data; each curve holds its own ``data``."""
         return {
             "versions": dict(self.versions),
             "date": self.date,
