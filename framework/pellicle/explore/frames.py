@@ -174,8 +174,8 @@ def _started(run: Run, starts: tuple[State, ...], watched: _Watched) -> Iterator
     """Solve each load step of a run from a state of its own."""
     setting = compose(run)
     for index, (value, start) in enumerate(zip(run.loading.values, starts, strict=True)):
-        here = replace(setting, state=_fitted(run, setting, value, start))
-        yield solve_step(run, here, value, watched.step(index)).equilibrium
+        with_state = replace(setting, state=_fitted(run, setting, value, start))
+        yield solve_step(run, with_state, value, watched.step(index)).equilibrium
 
 
 def _fitted(run: Run, setting: Setting, value: float, start: State) -> State:

@@ -246,8 +246,8 @@ def _zoom(axes: Axes, curves: list[analysis.AdhesiveCurve], length: float, newto
     strongest = -min((curve.force.min() for curve in curves), default=0.0)
     if strongest <= 0:
         return
-    shown = [curve.depth[curve.force <= strongest] for curve in curves]
-    left, right = min(map(np.min, shown)) * length, max(map(np.max, shown)) * length
+    parts = [curve.depth[curve.force <= strongest] for curve in curves]
+    left, right = min(map(np.min, parts)) * length, max(map(np.max, parts)) * length
     margin = 0.05 * (right - left)
     axes.set_xlim(left - margin, right + margin)
     axes.set_ylim(-1.1 * strongest * newton, 1.1 * strongest * newton)

@@ -102,12 +102,12 @@ class Maps(TableFigure):
             colours = diverging(values)
         for axes, (title, run, field) in zip(all_axes, panels, strict=False):
             length, unit = axis_unit(np.append(run["x"].values, run["y"].values), "m")
-            shown = field.transpose("y", "x").values * factor
+            values_shown = field.transpose("y", "x").values * factor
             if blank:
-                shown = np.ma.masked_where(shown == 0, shown)
+                values_shown = np.ma.masked_where(values_shown == 0, values_shown)
                 axes.set_facecolor(NO_CONTACT)
             image = axes.imshow(
-                shown,
+                values_shown,
                 origin="lower",
                 extent=extent(run["x"].values * length, run["y"].values * length),
                 **colours,

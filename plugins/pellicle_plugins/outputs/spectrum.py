@@ -53,10 +53,10 @@ class Spectrum(TableFigure):
         )
         for number, (name, spectra) in enumerate(curves):
             for surface, spectrum in spectra.items():
-                shown = spectrum.density > _ROUND_OFF * highest
+                visible = spectrum.density > _ROUND_OFF * highest
                 axes.plot(
-                    spectrum.wavenumber[shown],
-                    spectrum.density[shown],
+                    spectrum.wavenumber[visible],
+                    spectrum.density[visible],
                     _STYLES[surface],
                     color=colour(number, len(curves), ordered=ordered),
                     linewidth=1.2,
