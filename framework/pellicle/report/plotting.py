@@ -17,9 +17,9 @@ from pellicle.arrays import Array, Mask
 from pellicle.components import Solver
 from pellicle.files import atomic_write, for_document, storage_errors
 from pellicle.numerics.problem import height_scale
-from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, has_times, label_of_step
 from pellicle.results.result import Result
+from pellicle.results.shape import is_periodic
 from pellicle.results.variables import CONTACT_AREA, CORRECTED_AREA, wording
 from pellicle.units import axis_unit
 
@@ -378,9 +378,7 @@ def study_figures(table: xr.Dataset) -> tuple[str, ...]:
     """
     if "force" not in table:
         return ()
-    grid = json.loads(table.attrs.get(FIRST_RUN, "{}")).get("grid", {})
-    periodic = grid.get("boundary") == "periodic"
-    return "force", "contact_fraction" if periodic else "contact_area"
+    return "force", "contact_fraction" if is_periodic(table) else "contact_area"
 
 
 def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
