@@ -10,7 +10,8 @@ import numpy as np
 
 from pellicle.results.shape import means_something
 from pellicle.results.status import Status
-from pellicle.results.variables import names_of, wording
+from pellicle.results.variables import names_of
+from pellicle.results.wording import wording
 
 if TYPE_CHECKING:
     import xarray as xr

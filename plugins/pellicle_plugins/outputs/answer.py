@@ -18,7 +18,8 @@ from pellicle.model.legs import number_of_steps
 from pellicle.plugins import registry
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
 from pellicle.results.shape import has_one_shape
-from pellicle.results.variables import VARIABLES, wording, words_of_name
+from pellicle.results.variables import VARIABLES, words_of_name
+from pellicle.results.wording import wording
 from pellicle.units import DIGITS, axis_unit, readable
 from pellicle.version import CITATION
 

@@ -20,11 +20,13 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
 from pellicle.model.expression import evaluate, formula
 from pellicle.model.messages import nearest
-from pellicle.report.plotting import save_figure, without_round_off
+from pellicle.report.fields import without_round_off
+from pellicle.report.saving import save_figure
 from pellicle.report.style import FigureStyle, is_ordered
 from pellicle.results.derived import FIRST_RUN, names
 from pellicle.results.result import Result
-from pellicle.results.variables import wording, words_of_name
+from pellicle.results.variables import words_of_name
+from pellicle.results.wording import wording
 from pellicle.units import DIGITS, readable
 
 if TYPE_CHECKING:

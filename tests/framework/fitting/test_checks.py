@@ -19,9 +19,9 @@ import pellicle as pl
 from pellicle.fitting.fit import fit_problem
 from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.problem import FitProblem, problems
-from pellicle.fitting.result import status_line
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.noise import resolution
+from pellicle.runs.progress import status_line
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere

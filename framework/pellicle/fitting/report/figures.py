@@ -29,7 +29,7 @@ from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
 from pellicle.fitting.statistics.profile import Estimate
-from pellicle.report.plotting import save_figure as save_drawing
+from pellicle.report.saving import save_figure as save_drawing
 from pellicle.report.style import LINES
 from pellicle.units import axis_unit
 
