@@ -272,8 +272,8 @@ def damage(
     if missing := {*required} - {*map(str, variables)}:
         return f"lacks {', '.join(sorted(missing))}"
     for name, variable in variables.items():
-        known = VARIABLES.get(str(name))
-        allowed = _DTYPES[known.type] if known else "UO" if name == "run" else "fiub"
+        declared = VARIABLES.get(str(name))
+        allowed = _DTYPES[declared.type] if declared else "UO" if name == "run" else "fiub"
         if variable.dtype.kind not in allowed:
             return f"has {name} of type {variable.dtype}"
     if unknown := {*variables["status_code"].values.ravel()} - {*codes}:

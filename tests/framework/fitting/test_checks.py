@@ -206,7 +206,7 @@ def test_tie_names_its_look_alikes_and_what_would_tell() -> None:
     assert "the retraction would" in result.comparison
     assert not result.tension_needed
     assert result.rivals is not None
-    assert {"tension", "power_law"} <= {each.rival.code for each in result.rivals.tied}
+    assert {"tension", "power_law"} <= {rival_fit.rival.code for rival_fit in result.rivals.tied}
     assert "over the 2 models" in result.range_of_moduli
 
 

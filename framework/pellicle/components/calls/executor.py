@@ -27,7 +27,7 @@ def outcomes_of(
         outcome of another type.
     """
     name = component_name(executor)
-    known = {id(task) for task in tasks}
+    ids = {id(task) for task in tasks}
     remaining = {id(task): task for task in tasks}
     with errors_attributed_to(executor):
         pairs: Any = executor.map(work, tasks, report)
@@ -35,7 +35,7 @@ def outcomes_of(
         raise PluginError(f"{name}: map() returned {shown(pairs)}; it has to be written with yield")
     with closing(cast("Generator[Any]", pairs)):
         for pair in _items(executor, pairs):
-            if not isinstance(pair, tuple) or len(pair) != 2 or id(pair[0]) not in known:
+            if not isinstance(pair, tuple) or len(pair) != 2 or id(pair[0]) not in ids:
                 raise PluginError(
                     f"{name}: map() yields {shown(pair)}; it has to yield each of the tasks that "
                     "it was given, the object itself, with its outcome"

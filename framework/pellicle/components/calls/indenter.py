@@ -80,9 +80,9 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
     return read_only(np.ascontiguousarray(profile))
 
 
-def _beyond_numbers(what: str) -> ConfigError:
+def _beyond_numbers(predicate: str) -> ConfigError:
     return ConfigError(
-        f"its heights on this grid {what}, and squares of them are beyond the numbers that a "
+        f"its heights on this grid {predicate}, and squares of them are beyond the numbers that a "
         "computer has; check the units of its lengths",
         "indenter",
     )

@@ -163,11 +163,11 @@ def _read_only_state(state: State) -> State:
 
 
 def _require_unchanged(
-    solver: Solver, call: str, before: dict[str, object], after: dict[str, object], what: str
+    solver: Solver, call: str, before: dict[str, object], after: dict[str, object], owner: str
 ) -> None:
     differences = [key for key in before | after if before.get(key) is not after.get(key)]
     if differences:
         raise PluginError(
-            f"{component_name(solver)}: {call} changes {what}.{differences[0]}; a solver has to "
+            f"{component_name(solver)}: {call} changes {owner}.{differences[0]}; a solver has to "
             "leave its problem as it is"
         )

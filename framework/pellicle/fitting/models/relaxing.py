@@ -383,7 +383,7 @@ def _lagrange(nodes: Array, at: Array) -> Array:
 
 def _filled(values: Array) -> Array:
     """Return values with NaN replaced by the nearest number before, or else after."""
-    known = np.flatnonzero(np.isfinite(values))
-    if not known.size:
+    finite = np.flatnonzero(np.isfinite(values))
+    if not finite.size:
         return np.zeros_like(values)
-    return np.interp(np.arange(values.size), known, values[known])
+    return np.interp(np.arange(values.size), finite, values[finite])

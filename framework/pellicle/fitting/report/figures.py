@@ -337,8 +337,8 @@ def _with_residuals(fit: Fit | PooledFit, figure: FigureBase) -> None:
 
 def _profiles(fit: PooledFit, figure: FigureBase) -> None:
     free = [parameter for parameter in fit.pool.free if parameter.shared]
-    for number, which in enumerate(free, 1):
-        profile(fit, which, figure.add_subplot(len(free), 1, number))
+    for number, shared in enumerate(free, 1):
+        profile(fit, shared, figure.add_subplot(len(free), 1, number))
 
 
 def _estimates(rows: Sequence[Row], figure: FigureBase) -> None:

@@ -124,7 +124,7 @@ def _many(fits: ManyFits) -> tuple[list[Block], list[Block]]:
         blocks.append(Notice("Population:", good=False, details=_first(fits.notes)))
     if any(row["accepted"] for row in rows):
         blocks.append(_groups(fits))
-    blocks += [_each(rows), *_warnings(_first(messages))]
+    blocks += [_rows_of_curves(rows), *_warnings(_first(messages))]
     return blocks, [_inputs(models)] if models else []
 
 
@@ -134,7 +134,7 @@ def _first(lines: Sequence[str]) -> list[str]:
     return [*lines[:_LINES], *([f"… and {more} more, in the table of --output"] * (more > 0))]
 
 
-def _each(rows: Sequence[Row]) -> Table:
+def _rows_of_curves(rows: Sequence[Row]) -> Table:
     """Return the table with a row for each curve."""
     columns: dict[Column, Sequence[str | Cell]] = {}
     columns[Column("curve", words=True)] = [row["curve"] for row in rows]
