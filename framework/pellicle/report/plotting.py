@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -12,9 +11,9 @@ import numpy as np
 
 from pellicle.analysis import Leg, legs
 from pellicle.arrays import Array, Mask
-from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
+from pellicle.results.shape import is_periodic
 from pellicle.results.variables import CONTACT_AREA, CORRECTED_AREA
 from pellicle.results.wording import wording
 
@@ -158,9 +157,7 @@ def study_figures(table: xr.Dataset) -> tuple[str, ...]:
     """
     if "force" not in table:
         return ()
-    grid = json.loads(table.attrs.get(FIRST_RUN, "{}")).get("grid", {})
-    periodic = grid.get("boundary") == "periodic"
-    return "force", "contact_fraction" if periodic else "contact_area"
+    return "force", "contact_fraction" if is_periodic(table) else "contact_area"
 
 
 def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
