@@ -12,9 +12,10 @@ from pydantic import Field, PrivateAttr
 from pydantic.fields import FieldInfo
 
 from pellicle.errors import ConfigError, Problem, shown
-from pellicle.units import Quantity, ramp
+from pellicle.units import Quantity
 
 from .base import Model
+from .ranges import ramp
 
 _MOST = 1_000_000
 _LONGEST = 1e100
