@@ -257,10 +257,7 @@ def _cantilever(stiffness: float) -> tuple[Array, Array]:
     return base - seen / stiffness, seen
 
 
-@pytest.mark.parametrize("baseline", ["offset", "slope"])
-def test_fit_with_a_cantilever_and_a_baseline_ends(
-    baseline: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_fit_with_a_cantilever_and_a_baseline_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     """A curve that the model cannot describe takes no more than thousands of evaluations."""
     count = 0
     whole = Likelihood._elastic
@@ -272,7 +269,7 @@ def test_fit_with_a_cantilever_and_a_baseline_ends(
         return whole(*arguments)
 
     monkeypatch.setattr(Likelihood, "_elastic", counted)
-    result = fit(*_cantilever(5e-4), spring_constant=5e-4, baseline=baseline)
+    result = fit(*_cantilever(5e-4), spring_constant=5e-4, baseline="slope")
     assert result.failed_checks
 
 

@@ -129,6 +129,7 @@ def test_options_replace_values_of_the_file(cli: Cli) -> None:
     assert not pl.FitConfig.merged(changed, radius="3 um").per_file
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_radius_of_each_file(cli: Cli) -> None:
     """A table of the file gives each curve its own radius; the indenter needs none then."""
     for radius in (5, 20):

@@ -62,6 +62,7 @@ def test_command_gives_json(cli: Cli) -> None:
     assert "Cramér–Rao" in report["advice"]
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_command_leaves_files(cli: Cli) -> None:
     """A folder gets JSON and figure, named after the curve; an open interval is null there."""
     position, force = _curve()
@@ -78,6 +79,7 @@ def test_command_leaves_files(cli: Cli) -> None:
     assert any("does not describe the curve" in message for message in report["messages"])
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_command_leaves_a_page(cli: Cli) -> None:
     """The page has what was found and what to be careful of, and loads nothing."""
     position, force = _curve(100)
@@ -91,6 +93,7 @@ def test_command_leaves_a_page(cli: Cli) -> None:
     assert Path("out/curve-fit.html").is_file()
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_fields_of_any_indenter(cli: Cli) -> None:
     """Fields that have no option of their own are set by their names."""
     _write(*_curve())
@@ -123,6 +126,7 @@ def test_held_parameters(cli: Cli) -> None:
     assert hertz["reduced_modulus"]["value"] > 1.2 * MODULUS
 
 
+@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize(
     ("header", "separator"),
     [
@@ -141,6 +145,7 @@ def test_tables(cli: Cli, header: str, separator: str) -> None:
     assert measured.force == pytest.approx(force, abs=1e-18)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_columns_of_other_names(cli: Cli) -> None:
     """A table whose columns nobody knows is refused with what its first line has."""
     _write(*_curve(), "Indentation (um),Force (nN)")
@@ -149,6 +154,7 @@ def test_columns_of_other_names(cli: Cli) -> None:
     assert "'indentation', 'force'" in message
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_decimal_commas(cli: Cli) -> None:
     """Between semicolons a comma is decimal."""
     Path("curve.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n", encoding="utf-8")
@@ -159,6 +165,7 @@ def test_decimal_commas(cli: Cli) -> None:
     assert measured.force == pytest.approx([2.25e-9, np.nan], nan_ok=True)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_hdf5_and_depth(cli: Cli) -> None:
     """An HDF5 file with units is read; depth holds the contact point at 0."""
     position, force = _curve()
@@ -186,6 +193,7 @@ def test_result_of_a_run_is_a_curve(cli: Cli) -> None:
     assert report["tension"]["value"] == pytest.approx(0.1, rel=0.02)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_baseline(cli: Cli) -> None:
     """An offset is pointed out; with offset and slope fitted the truth comes back."""
     position, force = _curve()
@@ -203,6 +211,7 @@ def test_baseline(cli: Cli) -> None:
         assert _holds(report[name], truth)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_wild_rows_are_left_out(cli: Cli) -> None:
     """Rows without a number, and the way back, are left out and counted."""
     position, force = _curve()
@@ -215,6 +224,7 @@ def test_wild_rows_are_left_out(cli: Cli) -> None:
     assert _holds(report["tension"], TENSION)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_repeated_positions(cli: Cli) -> None:
     """Several forces at one position are several measurements."""
     position, force = _curve(600)
@@ -228,6 +238,7 @@ def test_repeated_positions(cli: Cli) -> None:
     assert _holds(fit.tension.to_dict(), TENSION)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_all_in_contact() -> None:
     """Without a point before contact the fit goes on, and says what cannot be told."""
     position, force = _curve()
@@ -237,6 +248,7 @@ def test_all_in_contact() -> None:
     assert _holds(fit.contact_point.to_dict(), POINT)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_ten_points() -> None:
     """Ten points are fitted, with intervals as wide as they must be."""
     position, force = _curve(10)
@@ -245,6 +257,7 @@ def test_ten_points() -> None:
     assert _holds(fit.reduced_modulus.to_dict(), MODULUS)
 
 
+@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize("factor", [1e-3, 1e3])
 def test_wrong_radius_is_noticed(factor: float) -> None:
     """A radius wrong by a thousand is doubted."""
@@ -252,6 +265,7 @@ def test_wrong_radius_is_noticed(factor: float) -> None:
     assert any("are radius and units right?" in message for message in fit.messages)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_sphere_is_not_sunk() -> None:
     """The sphere's curve ends at its equator."""
     with pytest.raises(pl.ConfigError, match="are radius and units right"):
@@ -320,6 +334,7 @@ def test_bad_curves(cli: Cli, what: str, words: str) -> None:
     assert words in cli("curve.csv", *OPTIONS, code=2).stderr
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_retract_on_request() -> None:
     """A retract is fitted if asked for, with a caution."""
     fit = pl.fit(*_changed("retract"), indenter="paraboloid", radius=RADIUS, segment="retract")

@@ -71,6 +71,7 @@ def timeless(text: str) -> str:
     return re.sub(r'\n *"(date|wall_time)": .*', "", text)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_three_ways_give_the_same_bytes(cli: Cli) -> None:
     """Configuration, options and Python leave the same JSON but for date and wall time."""
     measure(FILE)
@@ -150,6 +151,7 @@ def test_record_of_many(cli: Cli) -> None:
     assert [row["tension"] for row in json.loads(again)["curves"]] == [r["tension"] for r in rows]
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_again(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """The same fit gives the same numbers, from another folder too; a change of file is told."""
     measure(FILE)
@@ -221,6 +223,7 @@ def test_file_that_is_replaced_while_it_is_read(
         read(path)
 
 
+@pytest.mark.usefixtures("no_rivals")
 def test_read_curves_and_draw_them(tmp_path: Path) -> None:
     """Curves are read by name, drawn, fitted; one that cannot be read is warned of."""
     measure(tmp_path / "a.csv")
