@@ -292,7 +292,7 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
 
 
 def is_table(path: Path) -> bool:
-    """Whether a path is the folder of a study, or its table."""
+    """Return whether a path is the folder of a study, or its table."""
     return path.name == "study.h5" or (path / "study.h5").is_file()
 
 

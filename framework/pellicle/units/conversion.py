@@ -95,7 +95,7 @@ def split(text: str) -> tuple[float, str] | None:
 
 
 def _is_unit(text: str) -> bool:
-    """Whether a text is a product of names with powers, which pint parses quickly."""
+    """Return whether a text is a product of names with powers, which pint parses quickly."""
     return len(text) <= _LONGEST_UNIT and _UNIT.fullmatch(text) is not None
 
 

@@ -98,7 +98,7 @@ class TableFigure(Output):
             yield label(self.label, point, self.by, table), point
 
     def is_ordered(self, runs: Runs) -> bool:
-        """Whether the curves belong to numbers to compare."""
+        """Return whether the curves belong to numbers to compare."""
         return is_ordered(runs.table, self.by)
 
     def steps(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
