@@ -169,7 +169,7 @@ def _worst(advice: Advice, of: str) -> float:
 
 
 def _is_unknown(advice: Advice, name: str) -> bool:
-    """Return whether a quantity has an error beyond round-off in some step: it is not prescribed."""
+    """Return whether a quantity has errors beyond round-off in a step: it is not prescribed."""
     return _worst(advice, f"{name}_error") > _ROUND_OFF
 
 

@@ -1,4 +1,4 @@
-"""What a component or a table of a run file is: its fields, and an example."""
+"""Explanations of components and of tables of run files: meaning, fields and an example."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Explanation(NamedTuple):
     origin: str
     """Distribution and version of a component; empty for a table."""
     text: str
-    """What it is."""
+    """Its meaning."""
     fields: list[FieldRow]
     example: str
     """TOML."""

@@ -31,7 +31,7 @@ _WIDE = 0.5
 
 
 class Expected(NamedTuple):
-    """What to expect of a load step."""
+    """Force, contact and errors to expect of a load step."""
 
     step: int
     """Number, counted from 1."""
