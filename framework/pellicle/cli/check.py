@@ -171,7 +171,7 @@ def _worst(advice: Advice, of: str) -> float:
 
 
 def _is_unknown(advice: Advice, name: str) -> bool:
-    """Whether a quantity is not prescribed: its error is more than round-off in some step."""
+    """Return whether a quantity has errors beyond round-off in a step: it is not prescribed."""
     return _worst(advice, f"{name}_error") > _ROUND_OFF
 
 

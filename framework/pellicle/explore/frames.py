@@ -1,4 +1,4 @@
-"""What the explorer shows of a run: depth and force of each load step, and a cut through it."""
+"""Frames of the explorer: depth and force of each load step, and a cut through the contact."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Frame:
     cell_area: float
     """Area of a cell [m²]."""
     remarks: tuple[str, ...] = ()
-    """What the run warns of, and the statuses of its load steps other than converged."""
+    """Warnings of the run, and the statuses of its load steps other than converged."""
     is_preview: bool = False
     """Whether it is solved to fewer digits than the run asks for, without remarks."""
 
@@ -174,8 +174,8 @@ def _started(run: Run, starts: tuple[State, ...], watched: _Watched) -> Iterator
     """Solve each load step of a run from a state of its own."""
     setting = compose(run)
     for index, (value, start) in enumerate(zip(run.loading.values, starts, strict=True)):
-        here = replace(setting, state=_fitted(run, setting, value, start))
-        yield solve_step(run, here, value, watched.step(index)).equilibrium
+        with_state = replace(setting, state=_fitted(run, setting, value, start))
+        yield solve_step(run, with_state, value, watched.step(index)).equilibrium
 
 
 def _fitted(run: Run, setting: Setting, value: float, start: State) -> State:

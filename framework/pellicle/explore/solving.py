@@ -100,10 +100,10 @@ class Solving:
             elif self.frame is not None and self.frame.is_preview and not is_finished:
                 self._target.add_timeout_callback(partial(self._finish, self.frame), _REST)
 
-    def _finish(self, shown: Frame) -> None:
+    def _finish(self, preview: Frame) -> None:
         """Solve the run of a preview in full, if it is still shown.
 
         That need not be the last run requested: an impossible one leaves the frame before.
         """
-        if shown is self.frame and self._shown is not None and not self._is_working:
+        if preview is self.frame and self._shown is not None and not self._is_working:
             self._start(self._shown, None)

@@ -58,7 +58,7 @@ _AREA = _Rule(1.0, 1.0, 1.5, 0.5)
 
 
 class Expected(NamedTuple):
-    """What to expect of a load step."""
+    """Force, contact and errors to expect of a load step."""
 
     step: int
     """Number, counted from 1."""

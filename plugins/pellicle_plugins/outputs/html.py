@@ -383,7 +383,7 @@ def _numbers(data: xr.Dataset) -> list[str]:
 
 
 def _is_shown(data: xr.Dataset, name: str) -> bool:
-    """Whether a variable has a meaning here: it describes the contact, and has finite values.
+    """Return whether a variable describes the contact, and has finite values.
 
     Without a finite force the variables of a step stay in the table.
     """

@@ -17,7 +17,7 @@ from pellicle.fitting.parameters import OFFSET, SLOPE, Coordinates, Parameter
 from pellicle.units import decimal, readable
 
 from .likelihood import Likelihood
-from .memory import differenced
+from .long_memory import differenced
 
 CHANCE = 3e-3
 """Probability that a check flags a curve without fault."""
