@@ -207,7 +207,13 @@ def test_tie_names_its_look_alikes_and_what_would_tell() -> None:
     assert not result.tension_needed
     assert result.rivals is not None
     assert {"tension", "power_law"} <= {each.rival.code for each in result.rivals.tied}
-    assert "over the 2 models" in result.range_of_moduli
+    assert result.range_of_moduli().startswith("over the 2 models that the data cannot tell apart")
+    assert result.rivals.modulus is not None
+    low, high = result.rivals.modulus.low, result.rivals.modulus.high
+    assert low is not None
+    assert high is not None
+    own = result.reduced_modulus
+    assert low <= own.low < own.high <= high
 
 
 def test_tables_and_pools_carry_failed_checks(cli: Callable[..., Result], tmp_path: Path) -> None:
