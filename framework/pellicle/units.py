@@ -176,6 +176,23 @@ def one(unit: str) -> Any:
     raise ValueError(f"has an unknown unit ({shown(unit)})")
 
 
+def si_unit(value: Any) -> str:
+    """Return the SI unit of a pint quantity as datasets write it; ``"1"`` for a pure number.
+
+    A unit without a name of its own is a product of N, m and s.
+    """
+    dimensions: Mapping[str, float] = getattr(value, "dimensionality", {})
+    if not dimensions or not all(map(math.isfinite, dimensions.values())):
+        return "1"
+    known = next((u for u in [*_MEASURED, *_NOUNS] if one(u).dimensionality == dimensions), "")
+    if not known and not dimensions.keys() <= {"[mass]", "[length]", "[time]"}:
+        return "1"
+    mass, length, time = (dimensions.get(f"[{name}]", 0) for name in ("mass", "length", "time"))
+    powers = {"N": mass, "m": length - mass, "s": time + 2 * mass}
+    parts = (f"{n}**{power:g}" if power != 1 else n for n, power in powers.items() if power)
+    return (known or "*".join(parts)).replace("m**2", "m2")
+
+
 # pint takes half a millisecond for a conversion, and a study has thousands of values.
 @lru_cache(maxsize=1000)
 def _factor(unit: str, si: str) -> float:
@@ -217,8 +234,8 @@ def _measured(unit: str) -> str:
         root = _root(registry.Quantity(1.0, unit))
         kinds = {"dimensionless": "a pure number", "radian": "an angle"}
         return kinds.get(root, f"a number of {root}")
-    for known, noun in _MEASURED.items():
-        if registry.Unit(known).dimensionality == dimension:
+    for base_unit, noun in _MEASURED.items():
+        if registry.Unit(base_unit).dimensionality == dimension:
             return noun
     return f"a value in {unit}"
 

@@ -296,13 +296,13 @@ def test_a_process_prints_in_the_code_page_of_its_environment(
         capture_output=True,
         check=False,
     )
-    said = done.stderr.decode(encoding)
-    assert done.returncode == 0, said
+    message = done.stderr.decode(encoding)
+    assert done.returncode == 0, message
     shown = done.stdout.decode(encoding)
     for sign in signs:
         assert sign in shown
     assert "\x1b" not in shown
-    assert "Traceback" not in said
+    assert "Traceback" not in message
     # A row of a table has two spaces between its cells; sentences are broken by the terminal.
     wide = [line for line in shown.splitlines() if len(line) > 80]
     assert not [line for line in wide if "  " in line]
@@ -407,12 +407,12 @@ def test_cells_wider_than_the_indenter_are_said_so(cli: Cli) -> None:
 
 
 def test_show_leaves_out_what_means_nothing(cli: Cli) -> None:
-    """A round contact has no major axis, one in several parts neither radius nor ellipse."""
+    """A round contact has a radius and no axes, one in several parts neither radius nor ellipse."""
     rough = {"type": "self_affine", "rms_height": "5 um", "hurst": 0.8, "seed": 1}
     turned = {"type": "quadric", "radius_x": "1 mm", "radius_y": "3 mm"}
     words = "contact radius", "major semi-axis", "major-axis angle"
     for name, indenter, shown in (
-        ("round", RUN["indenter"], (True, True, False)),
+        ("round", RUN["indenter"], (True, False, False)),
         ("long", turned, (True, True, True)),
         ("rough", rough | {"cutoff_wavelength": "60 um"}, (False, False, False)),
     ):

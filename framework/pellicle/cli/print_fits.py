@@ -107,17 +107,21 @@ def _verdict(row: Mapping[str, Any]) -> str:
 
 def _groups(fits: ManyFits, si: bool) -> list[tuple[str, list[str]]]:
     """Return a row for each parameter of each group of curves; no columns without any."""
-    from pellicle.fitting.wording import column_scale
+    from pellicle.fitting.wording import group_scales
 
     parts, quartiles = fits.summary(), []
+    scales = group_scales(parts, si=si)
     for part in parts:
+        scale = scales[part.parameter]
         numbers = part.lower_quartile, part.median, part.upper_quartile
-        scale = column_scale(numbers, part.unit, si=si)
         low, middle, high = map(scale.number, numbers)
-        quartiles.append((scale.with_unit(middle), scale.with_unit(f"{low} to {high}")))
+        quartiles.append((middle, f"{low} to {high}"))
     columns = [
         ("group", [part.group for part in parts]),
-        ("parameter", [_words(part.parameter) for part in parts]),
+        (
+            "parameter",
+            [f"{_words(part.parameter)} [{scales[part.parameter].unit}]" for part in parts],
+        ),
         ("accepted", [f"{part.n} of {part.curves}" for part in parts]),
         ("outliers", [str(part.outliers) for part in parts]),
         ("median", [median for median, _ in quartiles]),

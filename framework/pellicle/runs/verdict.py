@@ -7,7 +7,7 @@ import numpy as np
 from pellicle.analysis.steepness import rim_slope, steepest
 from pellicle.arrays import Mask
 from pellicle.components import Interaction
-from pellicle.components.prescription import Search, in_unit
+from pellicle.components.prescription import Search
 from pellicle.config.run import Run
 from pellicle.numerics.problem import Equilibrium, Stiffness
 from pellicle.numerics.solution import Stop
@@ -34,18 +34,37 @@ def judge(
     ``index`` counts the steps from 0; ``lost`` is the energy [J] that it lost because a part
     of the contact jumped, 0 if that is not known; None without a jump.
     """
+    verdict = _failure(run, index, step, stiffness)
+    if verdict is None and step.search and (step.how != "met" or step.missed > _NEAR):
+        verdict = _not_met(step, step.search)
+    verdict = verdict or _caveat(run, index, step.equilibrium)
+    if verdict:
+        return verdict
+    if lost is not None:
+        loss = f" and lost {readable(lost, 'J', DIGITS)}" if lost > 0 else ""
+        return Status.JUMPED, Status.JUMPED.value.format(loss=loss)
+    return Status.CONVERGED, Status.CONVERGED.value
+
+
+def _failure(
+    run: Run, index: int, step: Reached, stiffness: Stiffness | None
+) -> tuple[Status, str] | None:
+    """Return why the step is not a solution; None if it is one."""
     equilibrium = step.equilibrium
-    tolerance = run.solver.tolerance
     if not np.isfinite(equilibrium.force):
         return Status.NOT_FINITE, Status.NOT_FINITE.value
     if step.stop is Stop.PULLED_OFF:
         carried, lost = step.between
         status = Status.NOTHING_TO_PULL if carried == lost else Status.PULLED_OFF
-        force = equilibrium.problem.control.value
-        return status, status.value.format(force=force, carried=carried, lost=lost)
+        return status, status.value.format(
+            force=readable(equilibrium.problem.control.value, "N", DIGITS),
+            carried=readable(carried, "N", DIGITS),
+            lost=readable(lost, "N", DIGITS),
+        )
     if (lowest := float(equilibrium.wall.min())) < 0:
         share = -lowest / float(np.abs(equilibrium.wall).max())
         return Status.NEGATIVE_PRESSURE, Status.NEGATIVE_PRESSURE.value.format(measure=share)
+    tolerance = run.solver.tolerance
     for status, residual in (
         (Status.LOAD, equilibrium.residual_load),
         (Status.CONTACT_RESIDUAL, equilibrium.residual_contact),
@@ -61,21 +80,39 @@ def judge(
     if run.indenter.footprint == "unbounded" and _touches_edge(
         run, equilibrium.contact | equilibrium.zone
     ):
-        nx, ny = run.grid.size
         loading = run.loading
         return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
-            size=f"{nx:g} × {ny:g} m",
+            size=" × ".join(readable(edge, "m", DIGITS) for edge in run.grid.size),
             prescribed=f"loading.{loading.prescribed} = "
-            f"{in_unit(loading.values[index], loading.prescription.unit)}",
+            f"{readable(loading.values[index], loading.prescription.unit, DIGITS)}",
         )
-    if step.search and (step.how != "met" or step.missed > _NEAR):
-        return _not_met(step, step.search)
-    contact = equilibrium.contact
+    return None
+
+
+def _caveat(run: Run, index: int, equilibrium: Equilibrium) -> tuple[Status, str] | None:
+    """Return what limits the accuracy of a solved step; None if nothing does."""
+    verdict = _coarse(run, equilibrium)
+    if verdict is None and run.interaction:
+        verdict = _caveat_of_interaction(run, run.interaction, equilibrium)
+    if verdict:
+        return verdict
+    needed = least_domain(run, index, equilibrium.contact)
+    if needed > min(run.grid.size):
+        return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
+            size=" × ".join(readable(length, "m", DIGITS) for length in run.grid.size),
+            # A little more, or the rounded length would be refused in turn.
+            least=readable(1.001 * needed, "m", DIGITS),
+        )
+    return None
+
+
+def _coarse(run: Run, equilibrium: Equilibrium) -> tuple[Status, str] | None:
+    """Return the caveat of a contact on too few cells; None if it has enough."""
+    contact, problem = equilibrium.contact, equilibrium.problem
     # An interaction of a range of its own acts beyond the contact, however small that is.
     ranged = run.interaction is not None and not run.interaction.needs_contact
     cells = int(np.count_nonzero(contact | equilibrium.zone if ranged else contact))
     enough = _RESOLVED_ACROSS if min(contact.shape) == 1 else _RESOLVED
-    problem = equilibrium.problem
     # A surface that was left behind may be out of the indenter's reach at a depth above 0.
     least = problem.first_touch if problem.prescribed == "depth" else 0.0
     # An interaction holds a contact at any depth.
@@ -84,26 +121,13 @@ def judge(
         return Status.COARSE, Status.COARSE.value.format(
             cells=cells or "none", width=readable(run.grid.cell_size, "m", DIGITS)
         )
-    doubt = run.interaction and _doubt(run, run.interaction, equilibrium)
-    if doubt:
-        return doubt
-    needed = least_domain(run, index, contact)
-    if needed > min(run.grid.size):
-        return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
-            size=" × ".join(readable(length, "m", DIGITS) for length in run.grid.size),
-            # A little more, or the rounded length would be refused in turn.
-            least=readable(1.001 * needed, "m", DIGITS),
-        )
-    if lost is not None:
-        loss = f" and lost {readable(lost, 'J', DIGITS)}" if lost > 0 else ""
-        return Status.JUMPED, Status.JUMPED.value.format(loss=loss)
-    return Status.CONVERGED, Status.CONVERGED.value
+    return None
 
 
-def _doubt(
+def _caveat_of_interaction(
     run: Run, interaction: Interaction, equilibrium: Equilibrium
 ) -> tuple[Status, str] | None:
-    """Return the caveat of a step that is solved, where an interaction acts, if there is one."""
+    """Return what limits the accuracy of a solved step where an interaction acts."""
     width = equilibrium.zone_width / run.grid.cell_size
     if width < interaction.least_cells:
         return Status.COARSE_ZONE, Status.COARSE_ZONE.value.format(
@@ -129,8 +153,8 @@ def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
         "quantity": search.quantity,
         "measure": step.missed,
         "tolerance": _NEAR,
-        "below": in_unit(below, search.unit),
-        "above": in_unit(above, search.unit),
+        "below": readable(below, search.unit, DIGITS),
+        "above": readable(above, search.unit, DIGITS),
     }
     if step.how == "nearest" and step.missed <= _NEAR:
         return near, near.value.format(**words)

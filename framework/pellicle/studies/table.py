@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle.config.coordinates import units_of
 from pellicle.config.provenance import now_with
 from pellicle.config.study import Study
 from pellicle.files import atomic_write, for_document
@@ -92,7 +93,9 @@ class StudyTable:
             {"long_name": "load step, counted from 1"},
         )
         table = with_path(xr.Dataset(variables, coordinates, self._attributes))
-        return derive(table, self._study.derived) if self._numbers else table
+        if not self._numbers:
+            return table
+        return derive(table, self._study.derived, units_of(self._study.points[0].run))
 
 
 def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any, np.dtype[Any]]:

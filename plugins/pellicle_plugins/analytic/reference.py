@@ -115,7 +115,8 @@ def exact(runs: Runs) -> Runs:
     derived = json.loads(table.attrs["configuration"]).get("study", {}).get("derived", {})
     for name, text in derived.items():
         with suppress(ConfigError):
-            table = derive(table, {name: text})
+            table = derive(table, {name: text}, {})
+            table[name].attrs = runs.table[name].attrs
     return Runs(table, no_fields)
 
 

@@ -20,6 +20,13 @@ from pellicle.components import Output, Runs
 from pellicle.config.describe import Input, inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
+from pellicle.report.fields import (
+    DIVERGING,
+    default_step,
+    draws_contact,
+    profile,
+    without_round_off,
+)
 from pellicle.report.page import (
     Cell,
     Code,
@@ -36,33 +43,17 @@ from pellicle.report.page import (
     side,
 )
 from pellicle.report.page import Field as MapField
-from pellicle.report.plotting import (
-    DIVERGING,
-    TIME,
-    default_step,
-    drawings,
-    draws_contact,
-    profile,
-    study_curves,
-    study_figures,
-    svg,
-    without_round_off,
-)
+from pellicle.report.plotting import TIME, drawings, study_curves, study_figures
+from pellicle.report.saving import svg
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
 from pellicle.results.result import Result, first_message
-from pellicle.results.shape import describes_shape
+from pellicle.results.shape import means_something
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
-from pellicle.results.variables import (
-    VARIABLES,
-    WALL_PRESSURE,
-    Wording,
-    names_of,
-    wording,
-    wording_of,
-)
+from pellicle.results.variables import VARIABLES, WALL_PRESSURE, names_of
+from pellicle.results.wording import Wording, wording, wording_of
 from pellicle.studies.summary import (
     caveats,
     failures,
@@ -391,12 +382,12 @@ def _numbers(data: xr.Dataset) -> list[str]:
     ]
 
 
-def _means_something(data: xr.Dataset, name: str) -> bool:
+def _is_shown(data: xr.Dataset, name: str) -> bool:
     """Whether a variable has a meaning here: it describes the contact, and has finite values.
 
     Without a finite force the variables of a step stay in the table.
     """
-    if not describes_shape(data, name):
+    if not means_something(data, name):
         return False
     missing = not np.isfinite(data[name].values.astype(float)).any()
     return not missing or not np.isfinite(data["force"].values).any()
@@ -410,8 +401,10 @@ def _is_effort(name: str) -> bool:
 def _steps(data: xr.Dataset) -> list[Table]:
     """Return the numbers of each load step: the result, the shape of the contact, the effort."""
     effort = [n for n in _numbers(data) if _is_effort(n)]
-    shape = [n for n in _numbers(data) if n in names_of("contact") and _means_something(data, n)]
-    measures = [n for n in _numbers(data) if n not in (*effort, *names_of("contact"))]
+    shape = [n for n in _numbers(data) if n in names_of("contact") and _is_shown(data, n)]
+    measures = [
+        n for n in _numbers(data) if n not in (*effort, *names_of("contact")) and _is_shown(data, n)
+    ]
     tables = {
         "Results of each load step.": measures,
         "Shape of the contact in each load step.": shape,
@@ -446,7 +439,7 @@ def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table
     ``mapped`` has the indices of the runs that are mapped, in the order of their maps.
     """
     axes = [str(name) for name in table.coords if name != "step"]
-    names = [n for n in _numbers(table) if not _is_effort(n) and _means_something(table, n)]
+    names = [n for n in _numbers(table) if not _is_effort(n) and _is_shown(table, n)]
     varied = [_column(table[name]) for name in axes]
     numbers = [_column(table[name]) for name in names]
     rows: list[list[str | Cell]] = []

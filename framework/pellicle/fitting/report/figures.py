@@ -29,7 +29,7 @@ from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
 from pellicle.fitting.statistics.profile import Estimate
-from pellicle.report.plotting import save_figure as save_drawing
+from pellicle.report.saving import save_figure as save_drawing
 from pellicle.report.style import LINES
 from pellicle.units import axis_unit
 
@@ -126,12 +126,17 @@ def save_figure(fit: Fit | PooledFit, path: Path) -> Path:
 
 
 def plot(fit: FitResult) -> Figure:
-    """Return a figure of pyplot with the panels of a fit beside each other."""
+    """Return a figure of pyplot with the panels of a fit beside each other.
+
+    A notebook shows it once, also where it is the last line of a cell.
+    """
     from matplotlib import pyplot
+
+    from .pyplot_figure import PyplotFigure
 
     assert isinstance(fit, (Fit, PooledFit)), "these are all fits that have panels"
     beside = panels(fit)
-    figure = pyplot.figure(figsize=_size(beside), layout="constrained")
+    figure = pyplot.figure(FigureClass=PyplotFigure, figsize=_size(beside), layout="constrained")
     _beside(beside, figure)
     return figure
 
@@ -332,8 +337,8 @@ def _with_residuals(fit: Fit | PooledFit, figure: FigureBase) -> None:
 
 def _profiles(fit: PooledFit, figure: FigureBase) -> None:
     free = [parameter for parameter in fit.pool.free if parameter.shared]
-    for number, which in enumerate(free, 1):
-        profile(fit, which, figure.add_subplot(len(free), 1, number))
+    for number, shared in enumerate(free, 1):
+        profile(fit, shared, figure.add_subplot(len(free), 1, number))
 
 
 def _estimates(rows: Sequence[Row], figure: FigureBase) -> None:
