@@ -448,7 +448,7 @@ def outcome(sample: Sample, protocol: str = "approach", *, follow: bool = True) 
     return Outcome(verdict, named, tied, second, right, covers, decided, seconds)
 
 
-def modulus_of(fit: Any) -> pl.Estimate:
+def modulus_of(fit: pl.Fit | pl.PooledFit) -> pl.Estimate:
     """Return the modulus over all explanations that the fit cannot tell apart."""
     if fit.rivals is not None and fit.rivals.modulus is not None:
         return fit.rivals.modulus
