@@ -261,7 +261,8 @@ def _frame(
 def _maps_of_runs(table: xr.Dataset, frames: list[Frame], count: int) -> list[Maps]:
     mapped = _mapped(table)
     which = "The last step in contact" if draws_contact(table) else "The last step"
-    caption = f"{which} of {_share_in_words(len(frames), count, 'run')}, each in colours over its own range."
+    of_runs = _share_in_words(len(frames), count, "run")
+    caption = f"{which} of {of_runs}, each in colours over its own range."
     maps = Maps(caption, "run", tuple(mapped.values()), frames, shared=False)
     return [maps] if frames else []
 
