@@ -12,6 +12,7 @@ import typer
 from pellicle.errors import ConfigError
 
 from .printing import echo, print_json, print_table
+from .scales import warn_of_scales
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
@@ -39,6 +40,7 @@ def check(
 
     allowed = _allowed(error.strip())
     configuration = from_toml(file, set_ or ())
+    warn_of_scales(configuration)
     if isinstance(configuration, Study):
         _check_study(configuration, allowed, json=json)
     else:

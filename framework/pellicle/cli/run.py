@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from .exits import INTERRUPTED
-from .printing import echo, print_json, print_table, print_warning
+from .printing import echo, print_json, print_table
 from .results import (
     exit_by_convergence,
     exit_by_status,
@@ -17,13 +17,11 @@ from .results import (
     print_steps,
     print_study_json,
 )
+from .scales import warn_of_scales
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
     from pellicle.config.study import Study
-
-_LARGE = 1.0
-"""Edge of a domain [m] that is more likely a number whose unit was left out."""
 
 
 def run(
@@ -74,7 +72,7 @@ def run(
     from pellicle.config.study import Study, from_toml
 
     configuration = from_toml(file, set_ or ())
-    _warn_of_size(configuration)
+    warn_of_scales(configuration)
     folder = directory or Path(file.stem)
     display = _Display(quiet, si, json)
     if dry_run:
@@ -84,21 +82,6 @@ def run(
     else:
         stem = folder / file.stem
         _run_one(configuration, stem, display, threads=threads, overwrite=overwrite)
-
-
-def _warn_of_size(configuration: Run | Study) -> None:
-    """Warn of a domain so large that its unit is more likely to be missing."""
-    from pellicle.config.study import Study
-
-    if isinstance(configuration, Study):
-        size = max(max(point.run.grid.size) for point in configuration.points)
-    else:
-        size = max(configuration.grid.size)
-    if size > _LARGE:
-        print_warning(
-            f"grid.size is {size:g} m; a number without a unit is in SI: give one, such as "
-            f"'{size:g} um', if that is not meant"
-        )
 
 
 class _Display(NamedTuple):
