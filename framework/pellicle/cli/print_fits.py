@@ -60,7 +60,7 @@ def print_notes(fit: FitResult) -> None:
 
 
 def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool = False) -> None:
-    """Print a line for each curve and for each group, and what to know of them.
+    """Print a line for each curve and for each group, and the notes on them.
 
     Of many curves, lines are left out if the table is in the folder.
     """

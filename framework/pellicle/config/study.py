@@ -242,9 +242,9 @@ class Study(FromFile):
         keys = [*self.vary, *itertools.chain.from_iterable(self.zip)]
         if not keys:
             raise ConfigError("varies nothing; give at least one axis", "vary")
-        for one, other in itertools.combinations(keys, 2):
-            if one == other or one.startswith(f"{other}.") or other.startswith(f"{one}."):
-                short, long = sorted((one, other), key=len)
+        for first, other in itertools.combinations(keys, 2):
+            if first == other or first.startswith(f"{other}.") or other.startswith(f"{first}."):
+                short, long = sorted((first, other), key=len)
                 raise ConfigError(
                     f"would override the axis {short}, which sets the same value; leave one out",
                     f"vary.{long}",

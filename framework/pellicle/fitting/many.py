@@ -94,7 +94,7 @@ class ManyFits:
     resumed: int = 0
     """Number of fits that an earlier call had finished."""
     notes: list[str] = field(default_factory=list)
-    """What to know of the population: rejected curves, outliers, lists with wrong names."""
+    """Notes on the population: rejected curves, outliers, lists with wrong names."""
     sketches: dict[int, Sketch] = field(default_factory=dict)
     """Some points of each curve, by its row."""
     maps: dict[str, xr.Dataset] = field(default_factory=dict)

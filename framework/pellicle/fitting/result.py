@@ -152,12 +152,12 @@ class FitResult:
 
     @property
     def warnings(self) -> list[str]:
-        """What to be careful of."""
+        """Messages that call for care."""
         return [text for text in self.all_messages if not isinstance(text, Note)]
 
     @property
     def notes(self) -> list[str]:
-        """What was done."""
+        """Messages that say what was done."""
         return [text for text in self.all_messages if isinstance(text, Note)]
 
     def estimates(self) -> dict[str, Estimate]:
@@ -200,7 +200,7 @@ class FitResult:
         return result
 
     def _chosen_block(self) -> dict[str, Any]:
-        """Return which model the estimates that count belong to, and what they are."""
+        """Return the code of the chosen model and its estimates as JSON data."""
         if self.chosen is not None:
             model = self.chosen.rival.code
         else:

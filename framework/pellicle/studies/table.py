@@ -14,8 +14,8 @@ from pellicle.config.provenance import now_with
 from pellicle.config.study import Study
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
-from pellicle.results.axes import with_python_names
 from pellicle.results.derived import FIRST_RUN, derive
+from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.results.status import Status
 from pellicle.results.variables import VARIABLES, header
