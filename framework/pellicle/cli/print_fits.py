@@ -30,8 +30,9 @@ def print_fit(fit: FitResult, *, si: bool = False) -> None:
     from pellicle.fitting.report.answer import answer
     from pellicle.fitting.wording import column_scale, interval_text
 
-    if fit.chosen is not None:
+    if fit.chosen is not None or fit.range_of_moduli():
         echo(answer(fit, si=si))
+    if fit.chosen is not None:
         echo("An elastic solid under tension instead:")
     rows = []
     for name, estimate in fit.estimates().items():
