@@ -42,6 +42,9 @@ _DEEPEST: Final = 0.5
 # A local relaxation that leaves a larger error than before, above this share of the height range,
 # is rejected.
 _DIVERGED: Final = 0.5
+# A local relaxation is brief if the misclassified cells have fallen to this share: it then only has
+# to sort out the last of them.
+_FEW: Final = 0.1
 # Outer iterations without progress after which the solve is abandoned.
 _STAGNATION: Final = 30
 # Local relaxation is switched off after this many outer iterations without fewer misclassified
@@ -174,7 +177,8 @@ class ActiveSet(ScaledSolver):
             return _iterate(problem, state.on_contact, inner.pressure, history, state)
         relaxes &= history.returns == 0 and len(history.contacts) <= _RELAXATION_STAGNATION
         if relaxes and inner.pressure.any():
-            contact, forces = relaxed(problem, state.on_contact, inner, goal)
+            brief = inner.misclassified.size <= _FEW * state.history.fewest < np.inf
+            contact, forces = relaxed(problem, state.on_contact, inner, goal, brief=brief)
             on_contact = state.on_contact.preconditioner.on(contact)
             trial = on_contact.transferred(forces)
             if trial.sum() > 0:
