@@ -106,8 +106,8 @@ def variables() -> str:
 
 def _prescribed() -> Iterable[Variable]:
     """Return the variables that prescriptions add to a result, each once."""
-    found = pl.registry().components["prescription"].values()
-    return dict.fromkeys(v for r in found for v in r.component.variables)  # type: ignore[attr-defined]
+    entry = pl.registry().components["prescription"].values()
+    return dict.fromkeys(v for r in entry for v in r.component.variables)  # type: ignore[attr-defined]
 
 
 def cases() -> str:
@@ -127,14 +127,15 @@ def _value(value: float, unit: str) -> str:
 def statuses() -> str:
     """Return a table of how a step may end and what is said about it."""
     return _table(
-        ("status", "message"), [(f"`{each.name}`", _message(each.value)) for each in pl.Status]
+        ("status", "message"),
+        [(f"`{status.name}`", _message(status.value)) for status in pl.Status],
     )
 
 
 def stops() -> str:
     """Return a table of why a solver may stop and the remedy that it stands for."""
     return _table(
-        ("reason", "remedy"), [(f"`{each.name}`", _message(each.value)) for each in pl.Stop]
+        ("reason", "remedy"), [(f"`{status.name}`", _message(status.value)) for status in pl.Stop]
     )
 
 
@@ -183,9 +184,9 @@ def _accepts(info: FieldInfo) -> str:
 
 
 def _bounds(info: FieldInfo) -> Iterator[tuple[str, Any]]:
-    for found in info.metadata:
+    for entry in info.metadata:
         for sign, name in ((">", "gt"), ("≥", "ge"), ("<", "lt"), ("≤", "le")):
-            if (bound := getattr(found, name, None)) is not None:
+            if (bound := getattr(entry, name, None)) is not None:
                 yield sign, bound
 
 

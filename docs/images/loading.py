@@ -46,14 +46,14 @@ def draw(figure: Figure) -> None:
             progress=False,
         ).dataset
         depth, force, stiffness = (data[n].values for n in ("depth", "force", "stiffness"))
-        there = slice(0, 8)
-        left.plot(depth[there] * 1e6, force[there] * 1e6, marker, color=colour, mfc="white", ms=7)
+        steps = slice(0, 8)
+        left.plot(depth[steps] * 1e6, force[steps] * 1e6, marker, color=colour, mfc="white", ms=7)
         left.plot(depth[8:] * 1e6, force[8:] * 1e6, "x", color=colour, ms=5)
-        for d, f, k in zip(depth[there], force[there], stiffness[there], strict=True):
+        for d, f, k in zip(depth[steps], force[steps], stiffness[steps], strict=True):
             near = np.array([-1, 1]) * DEEPEST / 22
             left.plot((d + near) * 1e6, (f + k * near) * 1e6, color=colour, linewidth=1.0)
         left.plot([], [], marker, color=colour, mfc="white", label=label)
-        right.plot(depth[there] * 1e6, stiffness[there], marker, color=colour, mfc="white")
+        right.plot(depth[steps] * 1e6, stiffness[steps], marker, color=colour, mfc="white")
         finer = np.linspace(DEEPEST / 20, DEEPEST, 20)
         exact = [indent(Paraboloid(radius=RADIUS), MODULUS, tension, depth=d).force for d in finer]
         right.plot(finer * 1e6, np.gradient(exact, finer, edge_order=2), color=colour, label=label)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.plotting import save_figure
-from pellicle.report.plotting import EDGE_CELLS, edge_cells
+from pellicle.report.lines import EDGE_CELLS, edge_cells
 from pellicle.report.style import OKABE_ITO
 from pellicle_plugins.analytic.axisymmetric import indent
 from pellicle_plugins.indenters.paraboloid import Paraboloid

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import json
 import os
 import re
 import socket
@@ -115,3 +116,15 @@ def _alive(pid: int) -> bool:
     except PermissionError:
         pass
     return True
+
+
+def json_text(value: object) -> str:
+    """Return indented JSON in ASCII, which every terminal and code page contains."""
+    return json.dumps(value, indent=2) + "\n"
+
+
+def write_json(value: object, path: Path) -> Path:
+    """Write ``value`` to a JSON file, which replaces an old one, and return its path."""
+    with atomic_write(path) as part:
+        part.write_text(json_text(value), encoding="utf-8")
+    return path

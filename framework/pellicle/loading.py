@@ -29,7 +29,7 @@ class LoadSteps:
     legs: bool = False
     """Whether a list of legs is allowed too."""
 
-    def __call__(self, given: object) -> tuple[float, ...] | tuple[Leg, ...]:
+    def __call__(self, spec: object) -> tuple[float, ...] | tuple[Leg, ...]:
         """Return the load steps in order, SI, or their legs.
 
         Raises
@@ -37,33 +37,33 @@ class LoadSteps:
         ConfigError
             Values are not allowed; the message names all of them.
         """
-        if isinstance(given, Mapping):
-            return self._ramp(given)
+        if isinstance(spec, Mapping):
+            return self._ramp(spec)
         # Lists, tuples and arrays have a length; text has one too.
-        several = isinstance(given, Sized) and not isinstance(given, str)
-        values = list(cast("Iterable[object]", given)) if several else [given]
+        several = isinstance(spec, Sized) and not isinstance(spec, str)
+        values = list(cast("Iterable[object]", spec)) if several else [spec]
         if not values:
             raise ValueError("is empty; give at least one load step")
         if self.legs and any(isinstance(value, (Mapping, Leg)) for value in values):
             return legs_of(values, self.quantity)
         return self._all({str(i) if several else "": value for i, value in enumerate(values)})
 
-    def _ramp(self, given: Mapping[Any, Any]) -> tuple[float, ...]:
-        if self.legs and any(kind.key in given for kind in KINDS):
+    def _ramp(self, table: Mapping[Any, Any]) -> tuple[float, ...]:
+        if self.legs and any(kind.key in table for kind in KINDS):
             raise ConfigError("is one leg; give a list of legs, [ { … } ]")
-        back = given.get("back", False)
+        back = table.get("back", False)
         if not isinstance(back, bool):
             raise ConfigError(f"{shown(back)} is not allowed; give true or false", "back")
-        once = {key: value for key, value in given.items() if key != "back"}
+        once = {key: value for key, value in table.items() if key != "back"}
         ends = self._all({end: once[end] for end in ("start", "stop") if end in once})
         once |= zip([end for end in ("start", "stop") if end in once], ends, strict=True)
         values = ranged(once, "ramp", 'back = true or spacing = "log"')
         return values + values[-2::-1] if back else values
 
-    def _all(self, given: Mapping[str, object]) -> tuple[float, ...]:
+    def _all(self, values_by_place: Mapping[str, object]) -> tuple[float, ...]:
         """Return all values in SI, or raise an error that names all values not allowed."""
         values, problems = [], []
-        for where, value in given.items():
+        for where, value in values_by_place.items():
             try:
                 values.append(self.quantity(value))
             except ValueError as error:
@@ -80,12 +80,12 @@ class LoadSteps:
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        one = self.quantity.__get_pydantic_json_schema__(schema, handler)
+        value_schema = self.quantity.__get_pydantic_json_schema__(schema, handler)
         ramp = {
             "type": "object",
             "properties": {
-                "start": one,
-                "stop": one,
+                "start": value_schema,
+                "stop": value_schema,
                 "num": {"type": "integer", "minimum": 2},
                 "spacing": {"enum": list(SPACINGS)},
                 "back": {"type": "boolean"},
@@ -93,5 +93,5 @@ class LoadSteps:
             "required": sorted(RANGE),
             "additionalProperties": False,
         }
-        several = {"type": "array", "items": one, "minItems": 1}
-        return {"anyOf": [one, several, ramp, *[json_schema(one)] * self.legs]}
+        several = {"type": "array", "items": value_schema, "minItems": 1}
+        return {"anyOf": [value_schema, several, ramp, *[json_schema(value_schema)] * self.legs]}

@@ -19,8 +19,8 @@ _OPERATOR = {"free": 9.0, "periodic": 4.75}
 _LINE = 14.0
 # The solver active_set in full contact, and any solver without `HasMemory`.
 _SOLVER = {"free": 11.5, "periodic": 8.75}
-# What a solve takes more where an interaction acts: eight rounds of three fields, from which the
-# next is extrapolated, and the fields of two rounds.
+# An interaction adds eight iterates of three fields, from which the next one is extrapolated, and
+# the fields of two iterations.
 _STICKS = 39.0
 # A load step in the result: pressure, displacement and gap, and a byte per cell for the contact.
 _STEP = 3 + 1 / 8

@@ -94,9 +94,9 @@ class Registry:
         PluginError
             The plugin of the type is broken or disabled, or two plugins claim the type.
         """
-        known = self.components[family]
-        if isinstance(type_, str) and type_ in known:
-            return known[type_].component
+        types = self.components[family]
+        if isinstance(type_, str) and type_ in types:
+            return types[type_].component
         if owners := self.clashes.get((family, str(type_))):
             raise PluginError(
                 f"{family} {type_!r} is claimed by {' and by '.join(map(str, owners))}; uninstall "
@@ -109,9 +109,9 @@ class Registry:
             if origin.entry_point == f"{family}.{type_}":
                 raise PluginError(f"{family} {type_!r} of {origin} is switched off by {DISABLE}")
         article = "an" if family[0] in "aeiou" else "a"
-        others = f"; {len(self.broken)} broken: see `pellicle plugins`" if self.broken else ""
+        hint = f"; {len(self.broken)} broken: see `pellicle plugins`" if self.broken else ""
         raise ConfigError(
-            f"{type_!r} is not {article} {family}; {nearest(type_, known)}{others}", "type"
+            f"{type_!r} is not {article} {family}; {nearest(type_, types)}{hint}", "type"
         )
 
     def make(self, base: type[AnyComponent], value: object) -> AnyComponent:
@@ -127,9 +127,11 @@ class Registry:
         if isinstance(value, base):
             return value
         if not isinstance(value, Mapping) or "type" not in value:
-            known = ", ".join(sorted(self.components[base.family]))
-            what = "has no type" if isinstance(value, Mapping) else f"{shown(value)} is not a table"
-            raise ConfigError(f"{what}; give a table with type = one of: {known}")
+            listing = ", ".join(sorted(self.components[base.family]))
+            reason = f"{shown(value)} is not a table"
+            if isinstance(value, Mapping):
+                reason = "has no type"
+            raise ConfigError(f"{reason}; give a table with type = one of: {listing}")
         component_class = cast("type[AnyComponent]", self.find(base.family, value["type"]))
         try:
             return component_class(**value)

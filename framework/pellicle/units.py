@@ -217,8 +217,8 @@ def _measured(unit: str) -> str:
         root = _root(registry.Quantity(1.0, unit))
         kinds = {"dimensionless": "a pure number", "radian": "an angle"}
         return kinds.get(root, f"a number of {root}")
-    for known, noun in _MEASURED.items():
-        if registry.Unit(known).dimensionality == dimension:
+    for base_unit, noun in _MEASURED.items():
+        if registry.Unit(base_unit).dimensionality == dimension:
             return noun
     return f"a value in {unit}"
 

@@ -72,10 +72,10 @@ def path(
     """Return the rows of an approach, a retraction, both, or an approach and a dwell."""
     down = deepest * np.linspace(-BEFORE, 1.0, POINTS)
     if dwell:
-        held = np.linspace(0, 1 + BEFORE, POINTS)
+        resting = np.linspace(0, 1 + BEFORE, POINTS)
         return Path(
             np.concatenate([down, np.ones(POINTS)]),
-            np.concatenate([down, 1 + held]) / rate,
+            np.concatenate([down, 1 + resting]) / rate,
             np.concatenate([np.ones(POINTS), np.zeros(POINTS)]),
             rate,
         )

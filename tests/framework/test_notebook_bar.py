@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 import rich.console
 
-from pellicle.fitting.result import status_line
 from pellicle.runs import notebook_bar, progress
-from pellicle.runs.progress import Progress, ProgressMessage, StudyProgress
+from pellicle.runs.progress import Progress, ProgressMessage, StudyProgress, status_line
 
 ipython = pytest.importorskip("IPython.display")
 

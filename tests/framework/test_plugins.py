@@ -143,9 +143,9 @@ OLD_OUTPUTS = {
 @pytest.mark.parametrize("name", OLD_OUTPUTS)
 def test_an_output_of_the_earlier_contract_is_told_the_method(name: str, plugin: Plugin) -> None:
     """It is refused when it is loaded, not left without its files."""
-    found = load([plugin(OLD_OUTPUTS[name], name="output.old")])
-    assert "earlier version" in found.broken[0].error
-    assert "write(runs, stem)" in found.broken[0].error
+    registry = load([plugin(OLD_OUTPUTS[name], name="output.old")])
+    assert "earlier version" in registry.broken[0].error
+    assert "write(runs, stem)" in registry.broken[0].error
 
 
 def test_one_plugin_may_bring_several_families(plugin: Plugin) -> None:

@@ -62,32 +62,32 @@ def test_whole_cells_are_met(power: float, start: float | None) -> None:
         return int(min(max(round(40 * force**power), 1), 100))
 
     for area in (0.5, 3.0, 40.4, 99.6):
-        found = search(cells, area, start)
-        assert found.how == "met"
-        count = cells(found.equilibrium.problem.control.value)
+        reached = search(cells, area, start)
+        assert reached.how == "met"
+        count = cells(reached.equilibrium.problem.control.value)
         assert abs(count - area) <= 0.5
-        assert found.missed == pytest.approx(abs(count - area) / area)
-        assert found.iterations % 2 == 0
+        assert reached.missed == pytest.approx(abs(count - area) / area)
+        assert reached.iterations % 2 == 0
 
 
 @pytest.mark.parametrize(("area", "side"), [(32.0, 30), (37.0, 40)])
 def test_jump_is_found(area: float, side: int) -> None:
     """Where the area jumps across what is wanted, the force is the jump's, on the nearer side."""
     jump = 7.3
-    found = search(lambda force: 30 if force < jump else 40, area)
-    assert found.how == "nearest"
-    assert found.equilibrium.problem.control.value == pytest.approx(jump, rel=2e-4)
-    assert np.count_nonzero(found.equilibrium.pressure) == side
-    assert found.missed == pytest.approx(abs(side - area) / area)
-    assert found.between == (30.0, 40.0)
+    reached = search(lambda force: 30 if force < jump else 40, area)
+    assert reached.how == "nearest"
+    assert reached.equilibrium.problem.control.value == pytest.approx(jump, rel=2e-4)
+    assert np.count_nonzero(reached.equilibrium.pressure) == side
+    assert reached.missed == pytest.approx(abs(side - area) / area)
+    assert reached.between == (30.0, 40.0)
 
 
 @pytest.mark.parametrize("area", [20.0, 60.0])
 def test_area_that_no_force_brings(area: float) -> None:
     """The search ends, and says that it found nothing."""
-    found = search(lambda force: 30, area)
-    assert found.how == "not found"
-    assert found.missed == pytest.approx(abs(30 - area) / area)
+    reached = search(lambda force: 30, area)
+    assert reached.how == "not found"
+    assert reached.missed == pytest.approx(abs(30 - area) / area)
 
 
 def test_every_trial_starts_from_the_step_before() -> None:
@@ -109,9 +109,9 @@ def test_any_quantity_by_depth(goal: float, guess: float | None) -> None:
         resolution=1e-6,
         guess=guess,
     )
-    found = reach(setting(), target, Staircase(cells=lambda depth: 5), lambda *_: None)
-    assert found.how == "met"
-    assert found.equilibrium.problem.control.value == pytest.approx((goal + 2) / 4, abs=1e-6)
+    reached = reach(setting(), target, Staircase(cells=lambda depth: 5), lambda *_: None)
+    assert reached.how == "met"
+    assert reached.equilibrium.problem.control.value == pytest.approx((goal + 2) / 4, abs=1e-6)
 
 
 def test_quantity_that_is_lost_is_not_found() -> None:

@@ -296,13 +296,13 @@ def test_a_process_prints_in_the_code_page_of_its_environment(
         capture_output=True,
         check=False,
     )
-    said = done.stderr.decode(encoding)
-    assert done.returncode == 0, said
+    message = done.stderr.decode(encoding)
+    assert done.returncode == 0, message
     shown = done.stdout.decode(encoding)
     for sign in signs:
         assert sign in shown
     assert "\x1b" not in shown
-    assert "Traceback" not in said
+    assert "Traceback" not in message
     # A row of a table has two spaces between its cells; sentences are broken by the terminal.
     wide = [line for line in shown.splitlines() if len(line) > 80]
     assert not [line for line in wide if "  " in line]

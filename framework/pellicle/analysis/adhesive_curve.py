@@ -57,12 +57,17 @@ class AdhesiveCurve:
         """
         if not spring_constant >= 0:
             raise ConfigError(f"must not be negative, got {spring_constant!r}", "spring_constant")
-        held = self.depth if spring_constant == inf else self.force + spring_constant * self.depth
-        lowest = np.flatnonzero((np.diff(held)[:-1] < 0) & (np.diff(held)[1:] >= 0)) + 1
+        fixed_quantity = (
+            self.depth if spring_constant == inf else self.force + spring_constant * self.depth
+        )
+        lowest = (
+            np.flatnonzero((np.diff(fixed_quantity)[:-1] < 0) & (np.diff(fixed_quantity)[1:] >= 0))
+            + 1
+        )
         if not lowest.size:
             return AdhesiveContact(*np.full(3, nan))
         middle = int(lowest[-1])
-        low, centre, high = held[middle - 1 : middle + 2]
+        low, centre, high = fixed_quantity[middle - 1 : middle + 2]
         return self._near(middle, (low - high) / (2 * (low - 2 * centre + high)))
 
     def at_zero_load(self) -> AdhesiveContact:
@@ -133,7 +138,10 @@ def adhesive_curve(
             f"must be positive and finite, got {work_of_adhesion!r}", "work_of_adhesion"
         )
     steps = np.stack(
-        [np.asarray(one, dtype=np.float64) for one in (depth, force, contact_radius, stiffness)]
+        [
+            np.asarray(values, dtype=np.float64)
+            for values in (depth, force, contact_radius, stiffness)
+        ]
     )
     if not np.all((steps > 0) & np.isfinite(steps)):
         raise ConfigError("depth, force, contact radius and stiffness must be positive", "path")
@@ -153,8 +161,8 @@ def adhesive_curve(
     slope = hard_force / hard_depth * log_force.slope(log_depth)
     lowest, highest = np.exp(distinct[3, [0, -1]])
     # The slope of the force and the measured stiffness differ by 3e-4 on a grid.
-    known = (slope >= lowest * (1 - _SCATTER)) & (slope <= highest * (1 + _SCATTER))
-    hard_depth, hard_force, slope = hard_depth[known], hard_force[known], slope[known]
+    in_range = (slope >= lowest * (1 - _SCATTER)) & (slope <= highest * (1 + _SCATTER))
+    hard_depth, hard_force, slope = hard_depth[in_range], hard_force[in_range], slope[in_range]
     log_slope = np.log(slope)
     radius, growth = np.exp(log_radius.value(log_slope)), log_radius.slope(log_slope)
     # The smallest contacts, of few cells, may scatter too much.

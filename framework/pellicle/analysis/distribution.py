@@ -43,8 +43,8 @@ def distribution(values: ArrayLike, bins: int = 50) -> Distribution:
     Distribution
         Without bins if there are no samples or all of them are 0.
     """
-    given = np.asarray(values, dtype=np.float64).ravel()
-    samples = given[np.isfinite(given)]
+    flat = np.asarray(values, dtype=np.float64).ravel()
+    samples = flat[np.isfinite(flat)]
     low, high = samples.min(initial=0.0), samples.max(initial=0.0)
     if low == high:
         return Distribution(np.zeros(1), np.zeros(0), np.zeros(0))

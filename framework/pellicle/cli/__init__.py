@@ -104,7 +104,7 @@ class _Group(TyperGroup):
                 echo(f"error: {line}", err=True)
             raise typer.Exit(BAD_INPUT) from None
         except Exception as error:
-            # The orchestrator adds a note that names the component at fault.
+            # A call of a component adds a note that names the component at fault.
             if not (notes := getattr(error, "__notes__", ())):
                 raise
             echo(f"error: {notes[0]}: {type(error).__name__}: {error}", err=True)

@@ -127,14 +127,14 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
             }
         )
     print_table(list(rows[0]), rows)
-    known = [(w, name) for name, advice, _ in checked if (w := _worst(advice, "error")) == w]
-    many = sum(w > error for w, _ in known)
+    errors = [(w, name) for name, advice, _ in checked if (w := _worst(advice, "error")) == w]
+    many = sum(w > error for w, _ in errors)
     echo(
         f"{len(checked)} runs; in {many} the error of force or depth may exceed "
         f"{_share(error)} in some step; errors are at most about these"
     )
-    if known:
-        worst, name = max(known)
+    if errors:
+        worst, name = max(errors)
         echo(f"the worst: {_share(worst)}, with {name}")
     if any(advice.size is None for _, advice, _ in checked):
         return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -16,8 +17,11 @@ from .print_fits import print_fit, print_fits, print_notes
 from .printing import echo, print_json
 
 if TYPE_CHECKING:
+    from pellicle.fitting.config import FitConfig
     from pellicle.fitting.fit import Fit
+    from pellicle.fitting.many import ManyFits
     from pellicle.fitting.pooled import PooledFit
+    from pellicle.fitting.record import Repetition
 
 
 def fit(
@@ -162,13 +166,8 @@ def fit(
     Exit code 0 only if every curve was fitted, 1 if some could not be fitted.
     """
     from pellicle.fitting.config import FitConfig
-    from pellicle.fitting.curves.readers import SourceStream
-    from pellicle.fitting.fit import fit_source
-    from pellicle.fitting.many import ManyFits, fit_sources
-    from pellicle.fitting.pooled import pool_sources
+    from pellicle.fitting.many import ManyFits
     from pellicle.fitting.record import repetition
-    from pellicle.fitting.report.figures import save_figure
-    from pellicle.fitting.report.page import save_report
 
     files = files or []
     configs = [path for path in files if path.suffix.lower() == ".toml"]
@@ -207,26 +206,7 @@ def fit(
         grid_points=grid_points,
         cache=cache,
     )
-    progress, curves = not quiet and sys.stderr.isatty(), config.files()
-    result: Fit | PooledFit | ManyFits
-    if config.pool:
-        sources = [source for file in curves for source in file.open()]
-        result = pool_sources(config, sources, progress=progress)
-        name, title = "pool", "Pooled fit"
-    elif [file.path for file in curves] == [config.curves[0]] and (
-        (opened := curves[0].open()).is_single
-    ):
-        (source,) = opened
-        result = fit_source(config, source, progress=progress)
-        name, title = f"{config.curves[0].stem}-fit", config.curves[0].stem
-    else:
-        try:
-            result = fit_sources(config, SourceStream(curves), directory, progress=not quiet)
-        except KeyboardInterrupt:
-            hint = f"; finished fits are in {directory}, and the same command continues"
-            echo(f"interrupted{hint if directory else ''}", err=True)
-            raise typer.Exit(INTERRUPTED) from None
-        name, title = "fits", f"Fits of {len(result.rows)} curves"
+    result, name, title = _fit(config, directory, quiet=quiet)
     if json:
         print_json(result.to_dict())
     elif isinstance(result, ManyFits):
@@ -235,28 +215,78 @@ def fit(
         print_notes(result)
     else:
         print_fit(result, si=si)
-    if repeated is not None:
-        record = None if isinstance(result, ManyFits) else result.record
-        rows = result.rows if isinstance(result, ManyFits) else []
-        data = record.data if record else [row["data"] for row in rows if "data" in row]
-        for difference in repeated.differences(data, record):
-            echo(f"warning: {difference}", err=True)
+    for difference in _differences(repeated, result) if repeated else ():
+        echo(f"warning: {difference}", err=True)
+    written = _write(result, name, title, directory, report=report)
+    if not quiet:
+        if isinstance(result, ManyFits) and result.resumed:
+            echo(f"{result.resumed} of {len(result.rows)} fits were done before", err=json)
+        for path in written:
+            echo(f"wrote {path}", err=json)
+    if isinstance(result, ManyFits) and result.failed:
+        echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
+        raise typer.Exit(NOT_CONVERGED)
+
+
+def _fit(
+    config: FitConfig, directory: Path | None, *, quiet: bool
+) -> tuple[Fit | PooledFit | ManyFits, str, str]:
+    """Return the fit of the curves, the name of its files and the title of its page."""
+    from pellicle.fitting.curves.readers import SourceStream
+    from pellicle.fitting.fit import fit_source
+    from pellicle.fitting.many import fit_sources
+    from pellicle.fitting.pooled import pool_sources
+
+    progress, curves = not quiet and sys.stderr.isatty(), config.files()
+    if config.pool:
+        sources = [source for file in curves for source in file.open()]
+        return pool_sources(config, sources, progress=progress), "pool", "Pooled fit"
+    if [file.path for file in curves] == [config.curves[0]]:
+        opened = curves[0].open()
+        if opened.is_single:
+            (source,) = opened
+            stem = config.curves[0].stem
+            return fit_source(config, source, progress=progress), f"{stem}-fit", stem
+    try:
+        fits = fit_sources(config, SourceStream(curves), directory, progress=not quiet)
+    except KeyboardInterrupt:
+        hint = f"; finished fits are in {directory}, and the same command continues"
+        echo(f"interrupted{hint if directory else ''}", err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    return fits, "fits", f"Fits of {len(fits.rows)} curves"
+
+
+def _differences(repeated: Repetition, result: Fit | PooledFit | ManyFits) -> Iterator[str]:
+    """Yield how data and versions differ from those of the fit that is repeated."""
+    from pellicle.fitting.many import ManyFits
+
+    if isinstance(result, ManyFits):
+        return repeated.differences([row["data"] for row in result.rows if "data" in row], None)
+    return repeated.differences(result.record.data if result.record else [], result.record)
+
+
+def _write(
+    result: Fit | PooledFit | ManyFits,
+    name: str,
+    title: str,
+    directory: Path | None,
+    *,
+    report: bool,
+) -> list[Path]:
+    """Write the page, JSON and figure unless `fit_sources` did; return the paths of all files."""
+    from pellicle.fitting.many import ManyFits
+    from pellicle.fitting.report.figures import save_figure
+    from pellicle.fitting.report.page import save_report
+
     written: list[Path] = []
     if isinstance(result, ManyFits):
         written += result.files
-        if result.resumed and not quiet:
-            echo(f"{result.resumed} of {len(result.rows)} fits were done before", err=json)
     elif directory is not None:
         written.append(result.save(directory / f"{name}.json"))
         written.append(save_figure(result, directory / f"{name}.png"))
     if report:
-        page = (directory or Path()) / f"{name}.html"
-        written.append(save_report(result, page, title))
-    for path in [] if quiet else written:
-        echo(f"wrote {path}", err=json)
-    if isinstance(result, ManyFits) and result.failed:
-        echo(f"{result.failed} of {len(result.rows)} curves could not be fitted", err=True)
-        raise typer.Exit(NOT_CONVERGED)
+        written.append(save_report(result, (directory or Path()) / f"{name}.html", title))
+    return written
 
 
 def _override(text: str) -> str:

@@ -107,7 +107,8 @@ def print_path(result: Result, *, si: bool = False) -> None:
 
 def print_oscillations(result: Result, *, si: bool = False) -> None:
     """Print a row for each oscillation on the path."""
-    from pellicle.results.variables import names_of, wording_of
+    from pellicle.results.variables import names_of
+    from pellicle.results.wording import wording_of
 
     if oscillations := result.oscillations:
         columns = []
@@ -120,7 +121,7 @@ def print_oscillations(result: Result, *, si: bool = False) -> None:
 
 def _columns(data: xr.Dataset, names: Sequence[str], si: bool) -> list[tuple[str, list[str]]]:
     """Return head and cells of the steps and of variables."""
-    from pellicle.results.variables import wording
+    from pellicle.results.wording import wording
 
     columns = [("step", [str(number) for number in data["step"].values.tolist()])]
     for name in names:

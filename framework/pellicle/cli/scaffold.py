@@ -73,9 +73,9 @@ def _names(family: str, name: str) -> dict[str, str]:
             "NAME",
         )
     if owner := registry().components[family].get(type_):
-        what = f"{'an' if family[0] in 'aeiou' else 'a'} {family}"
+        noun = f"{'an' if family[0] in 'aeiou' else 'a'} {family}"
         raise ConfigError(
-            f"{type_!r} is already the type of {what} from {owner.origin}; give another", "NAME"
+            f"{type_!r} is already the type of {noun} from {owner.origin}; give another", "NAME"
         )
     module = f"pellicle_{type_}"
     if find_spec(module):

@@ -85,8 +85,8 @@ def _one(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[_Row]
     model = model_of_table(table, annotation)
     if "type" in table:
         family = model_in(annotation)
-        known = registered(family, table["type"])
-        summary, origin = (known.summary, known.origin) if known else ("", None)
+        entry = registered(family, table["type"])
+        summary, origin = (entry.summary, entry.origin) if entry else ("", None)
         yield name, type_words(family, str(table["type"])), summary, origin
     inner = {key: value for key, value in table.items() if key != "type"}
     yield from _table(inner, model.model_fields if model else {}, f"{name}.")

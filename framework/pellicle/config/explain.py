@@ -127,25 +127,25 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
 def _of_family(family: str) -> Explanation:
     """Return a family as a table of its types."""
     rows = [
-        FieldRow(type_, "", "", known.summary)
-        for type_, known in registry().components[family].items()
+        FieldRow(type_, "", "", entry.summary)
+        for type_, entry in registry().components[family].items()
     ]
     return Explanation(family, "family", "", _documentation(FAMILIES[family]), rows, "")
 
 
-def _of_component(known: Registered) -> Explanation:
-    model: type[BaseModel] = known.component
-    family = known.component.family
+def _of_component(entry: Registered) -> Explanation:
+    model: type[BaseModel] = entry.component
+    family = entry.component.family
     if family == "prescription":
-        model = loading_model(known.type)
-    origin = f"{known.origin.distribution} {known.origin.version}"
+        model = loading_model(entry.type)
+    origin = f"{entry.origin.distribution} {entry.origin.version}"
     return Explanation(
-        known.type,
+        entry.type,
         family,
         origin,
-        _documentation(known.component),
+        _documentation(entry.component),
         fields_of(model),
-        _toml(example_table(known)),
+        _toml(example_table(entry)),
     )
 
 
@@ -210,13 +210,13 @@ def _kind(annotation: Any) -> str:
     return " or ".join(kinds)
 
 
-def example_table(known: Registered) -> Mapping[str, Any]:
+def example_table(entry: Registered) -> Mapping[str, Any]:
     """Return a table of a run file that uses a component, with its required fields only."""
-    component = known.component
+    component = entry.component
     values = dict(example_values(component))
     if issubclass(component, Prescription):
-        return {"loading": {known.type: [example(component.unit)], **values}}
-    table = {"type": known.type, **values}
+        return {"loading": {entry.type: [example(component.unit)], **values}}
+    table = {"type": entry.type, **values}
     if component.family == "executor":
         return {"study": {"executor": table}}
     plural = f"{component.family}s"

@@ -57,10 +57,10 @@ class Loading(Model):
 
     @model_validator(mode="before")
     @classmethod
-    def _read(cls, given: Any) -> Any:
-        if not isinstance(given, Mapping):
-            return given
-        data = {key: value for key, value in given.items() if value is not None}
+    def _read(cls, table: Any) -> Any:
+        if not isinstance(table, Mapping):
+            return table
+        data = {key: value for key, value in table.items() if value is not None}
         return {key: value for key, value in model_of(data)(**data) if value is not None}
 
     @model_validator(mode="after")
@@ -108,8 +108,8 @@ class Loading(Model):
     @cached_property
     def samples(self) -> tuple[Sample, ...]:
         """The load steps of a path in legs; none of any other path."""
-        given = getattr(self, self.prescribed)
-        return sampled(given) if isinstance(given[0], Leg) else ()
+        path = getattr(self, self.prescribed)
+        return sampled(path) if isinstance(path[0], Leg) else ()
 
     @cached_property
     def values(self) -> tuple[float, ...]:

@@ -54,17 +54,17 @@ def from_toml(path: str | Path, overrides: Iterable[str] = ()) -> Run | Study:
     return kind.from_toml(path, overrides)
 
 
-def _as_table(given: object) -> object:
-    if isinstance(given, Run):
-        return {name: getattr(given, name) for name in given.model_fields_set}
-    return dict(given) if isinstance(given, Mapping) else given
+def _as_table(value: object) -> object:
+    if isinstance(value, Run):
+        return {name: getattr(value, name) for name in value.model_fields_set}
+    return dict(value) if isinstance(value, Mapping) else value
 
 
-def _expanded(given: object) -> tuple[Axes, ...]:
-    if not isinstance(given, (list, tuple)):
-        raise ConfigError(f"{shown(given)} is not allowed; give [[study.zip]] tables")
+def _expanded(entries: object) -> tuple[Axes, ...]:
+    if not isinstance(entries, (list, tuple)):
+        raise ConfigError(f"{shown(entries)} is not allowed; give [[study.zip]] tables")
     tables = []
-    for index, table in enumerate(given):
+    for index, table in enumerate(entries):
         try:
             tables.append(expand(table))
             _same_length(tables[-1])
@@ -76,8 +76,8 @@ def _expanded(given: object) -> tuple[Axes, ...]:
 def _same_length(table: Axes) -> None:
     lengths = {key: len(values) for key, values in table.items()}
     if not table or len(set(lengths.values())) > 1:
-        given = ", ".join(f"{key} has {length}" for key, length in lengths.items()) or "is empty"
-        raise ConfigError(f"{given}; give axes of equally many values")
+        reason = ", ".join(f"{key} has {length}" for key, length in lengths.items()) or "is empty"
+        raise ConfigError(f"{reason}; give axes of equally many values")
 
 
 class Study(FromFile):
@@ -258,30 +258,30 @@ class Study(FromFile):
         """Refuse expressions with names that the table will not have, before any run is solved."""
         run = self.points[0].run
         texts = {name for name, variable in VARIABLES.items() if variable.type == "text"}
-        known = {*VARIABLES, *constants(json.loads(run.to_json()))}
-        known -= texts | {*names_of("requested")}
+        allowed = {*VARIABLES, *constants(json.loads(run.to_json()))}
+        allowed -= texts | {*names_of("requested")}
         if all(point.run.interaction is None for point in self.points):
-            known -= {*names_of("interaction", "path")}
+            allowed -= {*names_of("interaction", "path")}
         if not any(point.run.loading.oscillates for point in self.points):
-            known -= {*names_of("oscillation")}
-        known |= run.loading.variables
+            allowed -= {*names_of("oscillation")}
+        allowed |= run.loading.variables
         areas = [corrected_area(correction.type_name) for correction in run.corrections]
-        known |= {v.name for area in areas for v in (area, corrected_fraction(area))}
-        known |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
+        allowed |= {v.name for area in areas for v in (area, corrected_fraction(area))}
+        allowed |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         names = python_names([*self.vary, *itertools.chain.from_iterable(self.zip)])
         reserved = {*FUNCTIONS, *CONSTANTS, *texts, *names.values(), "run", "step", "x", "y"}
         problems: list[Problem] = []
         for name, text in self.derived.items():
             try:
-                if name in known | reserved:
+                if name in allowed | reserved:
                     raise ConfigError(f"{shown(name)} has a meaning already; give another name")
                 if not name.isidentifier():
                     raise ConfigError(
                         f"{shown(name)} is not a name; give one of letters, digits and _"
                     )
-                evaluate(text, dict.fromkeys(known - {*FIELDS}, np.float64(1.0)))
+                evaluate(text, dict.fromkeys(allowed - {*FIELDS}, np.float64(1.0)))
             except ConfigError as error:
                 problems.extend(error.within(f"derived.{name}").problems)
-            known.add(name)
+            allowed.add(name)
         if problems:
             raise ConfigError(problems)

@@ -107,8 +107,8 @@ def model_of_table(table: Mapping[str, Any], annotation: Any) -> type[BaseModel]
     """
     model = model_in(annotation)
     if "type" in table:
-        known = registered(model, table["type"])
-        return known.component if known else None
+        entry = registered(model, table["type"])
+        return entry.component if entry else None
     if model is Loading:
         with suppress(ConfigError, PluginError):
             return model_of(table)
@@ -124,5 +124,5 @@ def model_in(annotation: Any) -> type[BaseModel] | None:
 
 def type_words(model: type[BaseModel] | None, type_: str) -> str:
     """Return the words of a component, which need not be installed."""
-    known = registered(model, type_)
-    return words_of_type(known.component, type_) if known else words_of_name(type_)
+    entry = registered(model, type_)
+    return words_of_type(entry.component, type_) if entry else words_of_name(type_)

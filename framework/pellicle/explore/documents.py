@@ -47,29 +47,29 @@ def changed(
 
 def document(run: Run) -> dict[str, Any]:
     """Return a run as a document in SI that makes an equal one, with its load steps as a list."""
-    given: dict[str, Any] = run.model_dump(mode="json", exclude_unset=True, exclude_none=True)
+    data: dict[str, Any] = run.model_dump(mode="json", exclude_unset=True, exclude_none=True)
     if not run.loading.samples:
         key = f"loading.{run.loading.prescribed}"
-        given = dict(replaced(given, key, list(run.loading.values)))
-    return given
+        data = dict(replaced(data, key, list(run.loading.values)))
+    return data
 
 
-def sticking(given: Mapping[str, Any], work_of_adhesion: str) -> dict[str, Any]:
+def sticking(data: Mapping[str, Any], work_of_adhesion: str) -> dict[str, Any]:
     """Return a run document with a contact that sticks, pulled off after it is pressed in.
 
     The load steps go back to half the largest depth above the surface.
     """
-    key = Run.from_mapping(given).loading.prescribed
-    steps = given["loading"][key]
+    key = Run.from_mapping(data).loading.prescribed
+    steps = data["loading"][key]
     back = [0.0, -steps[-1] / 4, -steps[-1] / 2]
     path = [*steps, *reversed(steps[:-1]), *back]
-    loaded = dict(replaced(given, f"loading.{key}", path))
+    loaded = dict(replaced(data, f"loading.{key}", path))
     return loaded | {"interaction": {"type": "jkr", "work_of_adhesion": work_of_adhesion}}
 
 
-def letting_go(given: Mapping[str, Any]) -> dict[str, Any]:
+def letting_go(data: Mapping[str, Any]) -> dict[str, Any]:
     """Return a run document without an interaction, and with the steps up to the deepest."""
-    key = Run.from_mapping(given).loading.prescribed
-    steps = given["loading"][key]
-    loaded = dict(replaced(given, f"loading.{key}", steps[: steps.index(max(steps)) + 1]))
+    key = Run.from_mapping(data).loading.prescribed
+    steps = data["loading"][key]
+    loaded = dict(replaced(data, f"loading.{key}", steps[: steps.index(max(steps)) + 1]))
     return {name: table for name, table in loaded.items() if name != "interaction"}

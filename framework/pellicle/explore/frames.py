@@ -142,8 +142,8 @@ def preview(
     """Solve a changed run to a few digits, each load step from the same one of ``start``.
 
     ``check`` is called at each iteration. This takes a fifth to a third of the time of `solved`.
-    Returns None where load steps depend on the ones before them, as with an interaction or in a
-    solid that relaxes, or are others.
+    Returns None if the load steps are not those of ``start``, or if they depend on the ones before
+    them, as with an interaction or in a solid that relaxes.
 
     Raises
     ------

@@ -75,7 +75,7 @@ class Explorer:
         """Add each part by itself, so that a new text does not lay out the plots again."""
         save = Button(label="Save the run file", button_type="primary", width=200)
         save.js_on_click(CustomJS(args={"text": self._text}, code=_SAVE))
-        panel = column(self._panel, *self._switches(), save, sizing_mode="stretch_width")
+        panel = column(self._panel, *self._other_controls(), save, sizing_mode="stretch_width")
         parts = {
             "answer": self._answer,
             "message": self._message,
@@ -88,8 +88,8 @@ class Explorer:
             part.name = name
             self._target.add_root(part)
 
-    def _switches(self) -> list[Any]:
-        """Return what changes the run or the picture otherwise than by a quantity."""
+    def _other_controls(self) -> list[Any]:
+        """Return the controls beside those of quantities: adhesion, and the contact point."""
         sticks = Checkbox(label="the contact sticks", active=self._run.interaction is not None)
         sticks.on_change("active", self._stick)
         # Only steps in depth follow a contact that jumps.
@@ -156,7 +156,7 @@ class Explorer:
     def _show(self, configuration: Mapping[str, Any], outcome: Frame | Exception) -> None:
         """Draw a frame, or show an error of the present run."""
         if configuration is self._document:
-            self._blame(outcome if isinstance(outcome, Exception) else None)
+            self._show_error(outcome if isinstance(outcome, Exception) else None)
         if isinstance(outcome, Frame):
             self._plots.draw(outcome, self._share)
             self._answer.text = answer(outcome)
@@ -164,7 +164,7 @@ class Explorer:
             if not outcome.is_preview:
                 _fill(self._remarks, lines(outcome.remarks))
 
-    def _blame(self, error: Exception | None) -> None:
+    def _show_error(self, error: Exception | None) -> None:
         """Show an error beside the controls that it names, or above the plots; None clears it."""
         beside: dict[str, str] = {}
         above: list[str] = []
@@ -181,7 +181,7 @@ class Explorer:
             above = ["; ".join([f"{type(error).__name__}: {error}", *notes])]
             _LOG.error("a component failed", exc_info=error)
         for path, entry in self._rows.items():
-            entry.blame(beside.get(path, ""))
+            entry.show_error(beside.get(path, ""))
         _fill(self._message, lines(above))
 
 

@@ -10,7 +10,7 @@ from bokeh.models.annotations.legends import Legend, LegendItem
 from bokeh.models.sources import ColumnDataSource
 from bokeh.plotting import figure
 
-from pellicle.report.plotting import edge_cells
+from pellicle.report.lines import edge_cells
 from pellicle.report.style import OKABE_ITO
 from pellicle.units import axis_unit
 

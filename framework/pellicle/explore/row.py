@@ -47,7 +47,7 @@ class ControlRow:
         self.parts = (self._field, self._slider, self._error)
 
     def follow(self, value: float) -> None:
-        """Show a value in SI that something else than this row has set, or kept."""
+        """Show a value in SI that was set, or left as it is, elsewhere than in this row."""
         if self._is_refused or value != self._value:
             self._is_refused, self._value = False, value
             with self._following():
@@ -55,7 +55,7 @@ class ControlRow:
             self._move(value)
         self._show("")
 
-    def blame(self, message: str) -> None:
+    def show_error(self, message: str) -> None:
         """Show why the run is not possible with this value; nothing if it is.
 
         A text that is not a value at all stays refused until it is replaced.

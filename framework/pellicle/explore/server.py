@@ -74,8 +74,8 @@ class _Guarded(BokehTornado):
         if request.host != self._host or not _SERVED.match(request.path):
             return self.get_handler_delegate(request, _Refused)
         if request.path == "/" and self._enters(request.query_arguments):
-            known = {"cookie": self._cookie, "token": self._token}
-            return self.get_handler_delegate(request, _Entrance, known)
+            credentials = {"cookie": self._cookie, "token": self._token}
+            return self.get_handler_delegate(request, _Entrance, credentials)
         cookie = request.cookies.get(self._cookie)
         if cookie is None or not self._knows(cookie.value):
             return self.get_handler_delegate(request, _Refused)

@@ -87,7 +87,7 @@ class Solving:
             self._target.add_next_tick_callback(partial(self._receive, configuration, outcome))
 
     def _receive(self, configuration: Mapping[str, Any], outcome: Frame | Exception) -> None:
-        """Show a frame or an error, and go on to what is next."""
+        """Show a frame or an error, and start the next solve if there is one."""
         self._is_working, is_finished = False, configuration is self._shown
         if isinstance(outcome, Frame):
             self.frame, self._shown = outcome, configuration

@@ -262,9 +262,9 @@ def _at_its_noise(
     rival, minimum = min(minima.values(), key=partial(_criterion, chi_squared))
     members: list[Likelihood] = []
     failed: list[FailedCheck] = []
-    explained = rival.of(chi_squared).curves(minimum.parameters)
+    best = rival.of(chi_squared).curves(minimum.parameters)
     for (member, _), (own, part) in zip(
-        chi_squared.curves(dict.fromkeys(chi_squared.parameters, 0.0)), explained, strict=True
+        chi_squared.curves(dict.fromkeys(chi_squared.parameters, 0.0)), best, strict=True
     ):
         estimate, _ = judged(own, part)
         members.append(replace(member, noise=estimate.noise.deviation))

@@ -356,8 +356,8 @@ class FitConfig(FromFile, Calibration):
         if not isinstance(indenter, Indenter):
             name = "kernel" if self.thickness is None else "thickness"
             raise ConfigError("cannot be given with a force curve, which includes its solid", name)
-        known = self._solid or solid(DEFAULT_KERNEL, self.poissons_ratio)
-        return known_layer(indenter, known) or Simulation(indenter, known)
+        elastic_solid = self._solid or solid(DEFAULT_KERNEL, self.poissons_ratio)
+        return known_layer(indenter, elastic_solid) or Simulation(indenter, elastic_solid)
 
     def _free_layer(self, indenter: object) -> FreeLayerModel:
         assert self.poissons_ratio is not None

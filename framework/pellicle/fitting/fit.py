@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, PellicleError
+from pellicle.runs.progress import status_line
 from pellicle.units import readable
 
 from .comparison import compare
@@ -21,7 +22,7 @@ from .curves.readers import Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
-from .result import FitResult, status_line, thickness_of
+from .result import FitResult, thickness_of
 from .statistics.checks import check_plausible, fit_single
 from .statistics.design import advice
 from .statistics.initial_guess import initial_guesses

@@ -19,7 +19,7 @@ import numpy as np
 from pellicle.components import Component, Say
 from pellicle.components.calls import outcomes_of
 from pellicle.errors import PellicleError
-from pellicle.files import atomic_write, check_writable
+from pellicle.files import atomic_write, check_writable, write_json
 from pellicle.results import storage
 from pellicle.results.variables import header
 from pellicle.runs.lock import locked
@@ -36,7 +36,6 @@ from .population.sketch import Sketch, from_json, of_curve, to_json
 from .population.summary import Quartiles, summary
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
-from .result import write_json
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,12 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from scipy.special import bdtrc, chdtrc
 
 from pellicle.errors import ConfigError, PellicleError
+from pellicle.runs.progress import status_line
 from pellicle.units import decimal
 
 from .comparison import compare
@@ -21,7 +22,7 @@ from .curves.readers import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
-from .result import FitResult, status_line, thickness_of
+from .result import FitResult, thickness_of
 from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
 from .statistics.design import pooled_advice
 from .statistics.likelihood import best_minimum
@@ -213,6 +214,7 @@ def _fit_pool(
     report: Callable[[str], None],
     compared: bool,
 ) -> PooledFit:
+    """Return the pooled fit of curves, of which each was fitted on its own."""
     report("least squares")
     pool = Pool.of([single.likelihood for _, single in singles])
     start = pool.initial_minimum([single.parameters for _, single in singles])
@@ -221,51 +223,52 @@ def _fit_pool(
         for (_, single), part in zip(singles, pool.parts(start.parameters), strict=True)
     ]
     shared = [p for p in pool.free if p.shared]
-    degrees = len(shared) * (len(singles) - 1)
-    excess = max(start.chi_squared - sum(minimum.chi_squared for minimum in own), 0.0)
-    factor = max(excess / degrees, 1.0) if chdtrc(degrees, excess) < _CHANCE else 1.0
-    threshold = factor * chi_squared_threshold(sum(single.freedom for _, single in singles))
+    excess = _Excess(
+        max(start.chi_squared - sum(minimum.chi_squared for minimum in own), 0.0),
+        len(shared) * (len(singles) - 1),
+    )
+    threshold = excess.factor * chi_squared_threshold(sum(single.freedom for _, single in singles))
     points = [CONTACT_POINT.of_curve(index) for index in range(len(singles))]
     parameters = [*shared, *(p for p in points if contact_points and p in pool.free)]
     without = partial(pool.least_without, TENSION)
     profile = profile_likelihood(pool, start, threshold, parameters, without, report)
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
-    curves = []
-    for index, (member, part) in enumerate(pool.curves(profile.best.parameters)):
-        (problem, single), minimum = singles[index], own[index]
-        point = profile.estimate(points[index])
-        curves.append(
-            PooledCurve(
-                name=problem.name,
-                model=member.force_model.description(),
-                contact_point=point,
-                offset=part[OFFSET],
-                slope=part[SLOPE],
-                noise=member.noise,
-                points=member.force.size,
-                chi_squared=member.chi_squared(part),
-                chi_squared_alone=minimum.chi_squared,
-                reduced_modulus_alone=float(np.exp(minimum.parameters[MODULUS])),
-                tension_alone=minimum.parameters[TENSION],
-                failed_checks=single.failed_checks,
-                messages=(
-                    *problem.curve.messages,
-                    *single.messages,
-                    *check_plausible(member, part),
-                ),
-            )
+    curves = [
+        PooledCurve(
+            name=problem.name,
+            model=member.force_model.description(),
+            contact_point=profile.estimate(point),
+            offset=part[OFFSET],
+            slope=part[SLOPE],
+            noise=member.noise,
+            points=member.force.size,
+            chi_squared=member.chi_squared(part),
+            chi_squared_alone=alone.chi_squared,
+            reduced_modulus_alone=float(np.exp(alone.parameters[MODULUS])),
+            tension_alone=alone.parameters[TENSION],
+            failed_checks=single.failed_checks,
+            messages=(
+                *problem.curve.messages,
+                *single.messages,
+                *check_plausible(member, part),
+            ),
         )
+        for (member, part), (problem, single), alone, point in zip(
+            pool.curves(profile.best.parameters), singles, own, points, strict=True
+        )
+    ]
     _, shapes = check_shape(pool, profile.best)
     advice, undecided = pooled_advice(modulus, tension)
     doubt, rivals = _doubt(curves) or doubt_of_tension(shapes), None
-    if TENSION in pool.free and (compared or doubt or factor > 1 or tension.low is not None):
+    agree = excess.factor == 1
+    if TENSION in pool.free and (compared or doubt or not agree or tension.low is not None):
         rivals = compare(
             pool,
             profile.best,
             profile.without_tension,
             threshold=threshold,
             full=compared,
-            pairs=compared or factor > 1,
+            pairs=compared or not agree,
             report=report,
         )
     return PooledFit(
@@ -283,26 +286,43 @@ def _fit_pool(
         doubt=doubt,
         rivals=rivals,
         curves=tuple(curves),
-        agreement=_agreement(curves, excess, degrees, factor),
-        agree=factor == 1,
+        agreement=_agreement(curves, excess),
+        agree=agree,
         contact_points=contact_points,
         pool=pool,
         thickness=thickness_of(pool.members[0].force_model, profile),
     )
 
 
-def _agreement(curves: Sequence[PooledCurve], excess: float, degrees: int, factor: float) -> str:
-    figures = f"Δχ² = {decimal(excess, 3)} for {degrees} degrees of freedom"
-    if factor == 1:
+class _Excess(NamedTuple):
+    """Rise of χ² where all curves share the parameters, over each curve on its own."""
+
+    chi_squared: float
+    degrees: int
+
+    @property
+    def factor(self) -> float:
+        """The factor by which it widens the intervals, 1 if it is within chance."""
+        if chdtrc(self.degrees, self.chi_squared) >= _CHANCE:
+            return 1.0
+        return max(self.chi_squared / self.degrees, 1.0)
+
+
+def _agreement(curves: Sequence[PooledCurve], excess: _Excess) -> str:
+    """Return in words whether the curves agree, and by how much the intervals are widened."""
+    figures = f"Δχ² = {decimal(excess.chi_squared, 3)} for {excess.degrees} degrees of freedom"
+    if excess.factor == 1:
         return f"the curves agree ({figures} against each on its own)"
     worst = max(curves, key=lambda curve: curve.chi_squared - curve.chi_squared_alone)
     return (
         f"the curves do not agree on the shared parameters ({figures} against each on its own), "
-        f"{worst.name} least of all; the intervals are widened by {decimal(np.sqrt(factor), 2)}"
+        f"{worst.name} least of all; the intervals are widened by "
+        f"{decimal(np.sqrt(excess.factor), 2)}"
     )
 
 
 def _failures(curve: PooledCurve) -> list[FailedCheck]:
+    """Return the checks of the model that a curve fails on its own."""
     # The shape is judged for all curves together.
     return [check for check in curve.failed_checks if check.of_model and check.code != "shape"]
 

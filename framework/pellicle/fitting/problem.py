@@ -93,8 +93,8 @@ def problems(config: FitConfig, sources: Sequence[Source]) -> list[FitProblem | 
         fixed: Coordinates = {CONTACT_POINT: 0.0} if curve.is_depth else {}
         fixed |= {FIXABLE[name]: FIXABLE[name].coordinate(v) for name, v in config.fix.items()}
         fixed |= dict.fromkeys(_FIXED_BASELINE[config.baseline], 0.0)
-        known = model.solid if isinstance(model, Simulation) else model
-        ratio = getattr(known, "poissons_ratio", config.poissons_ratio)
+        elastic_solid = model.solid if isinstance(model, Simulation) else model
+        ratio = getattr(elastic_solid, "poissons_ratio", config.poissons_ratio)
         try:
             curve = clean(curve, config.segment)
             results.append(

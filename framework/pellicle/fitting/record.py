@@ -36,7 +36,7 @@ class Record:
     """[s]"""
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what the fit has once as JSON data; its curves hold their own data."""
+        """Return versions, date and time as JSON data; each curve holds its own ``data``."""
         return {
             "versions": dict(self.versions),
             "date": self.date,
@@ -108,12 +108,12 @@ class Repetition(NamedTuple):
             Record of the fit, with its versions, if it has one.
         """
         hashes = {entry["file"]: entry["sha256"] for entry in data}
-        for file, known in hashes.items():
+        for file, digest in hashes.items():
             if file not in self.sha256:
                 yield f"{file}: was not among the curves that were fitted then"
-            elif self.sha256[file] != known:
+            elif self.sha256[file] != digest:
                 yield (
-                    f"{file}: is not the file that was fitted then: its SHA-256 is {known}, and "
+                    f"{file}: is not the file that was fitted then: its SHA-256 is {digest}, and "
                     f"was {self.sha256[file]}"
                 )
         for file in self.sha256.keys() - hashes.keys():
@@ -152,10 +152,10 @@ def repetition(path: Path) -> Repetition:
     config = FitConfig.from_json(json.dumps(content))
     folder = _folder(path, hashes)
     if folder != Path():
-        hashes = {str(folder / file): known for file, known in hashes.items()}
+        hashes = {str(folder / file): digest for file, digest in hashes.items()}
         config = FitConfig.merged(config, curves=tuple(folder / curve for curve in config.curves))
-    known = content.get("versions")
-    return Repetition(config, hashes, known if isinstance(known, dict) else {})
+    recorded = content.get("versions")
+    return Repetition(config, hashes, recorded if isinstance(recorded, dict) else {})
 
 
 def _content(path: Path) -> dict[str, Any]:
@@ -175,7 +175,7 @@ def _content(path: Path) -> dict[str, Any]:
 
 def _folder(path: Path, hashes: Mapping[str, str]) -> Path:
     """Return the folder from which the recorded paths lead to the curves."""
-    file, known = next(iter(hashes.items()))
+    file, digest = next(iter(hashes.items()))
     above = path.resolve().parents
     folders = [folder for folder in (Path(), *above[: 1 + _ABOVE]) if (folder / file).is_file()]
     if not folders:
@@ -183,4 +183,4 @@ def _folder(path: Path, hashes: Mapping[str, str]) -> Path:
             f"{file}: is not there, nor in the folder of {path} or above it; call pellicle where "
             "the fit was made"
         )
-    return next((folder for folder in folders if sha256(folder / file) == known), folders[0])
+    return next((folder for folder in folders if sha256(folder / file) == digest), folders[0])

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from pellicle.files import atomic_write
+from pellicle.files import json_text, write_json
 from pellicle.units import decimal, readable
 
 from .config import FitConfig
@@ -227,7 +224,7 @@ class FitResult:
 
     def to_json(self) -> str:
         """Return what `to_dict` returns as JSON."""
-        return as_json(self.to_dict())
+        return json_text(self.to_dict())
 
     def save(self, path: str | Path) -> Path:
         """Write what `to_dict` returns to a JSON file, and return its path.
@@ -238,38 +235,3 @@ class FitResult:
             The file cannot be written.
         """
         return write_json(self.to_dict(), Path(path))
-
-
-def as_json(value: object) -> str:
-    """Return indented JSON in ASCII, which every terminal and code page contains."""
-    return json.dumps(value, indent=2) + "\n"
-
-
-def write_json(value: object, path: Path) -> Path:
-    """Write ``value`` to a JSON file, which replaces an old one, and return its path."""
-    with atomic_write(path) as part:
-        part.write_text(as_json(value), encoding="utf-8")
-    return path
-
-
-@contextmanager
-def status_line(enabled: bool) -> Iterator[Callable[[str], None]]:
-    """Show the stage of a fit while it runs; yield a function that sets its description.
-
-    It is shown on a terminal and in a notebook.
-    """
-    from rich.console import Console
-
-    console = Console(stderr=True)
-    if enabled and console.is_jupyter:
-        from pellicle.runs.notebook_bar import NotebookBar
-
-        with NotebookBar() as bar:
-            task = bar.add_task("fitting", total=None, message="")
-            yield lambda stage: bar.update(task, message=stage)
-        return
-    if not (enabled and console.is_terminal):
-        yield lambda stage: None
-        return
-    with console.status("fitting") as line:
-        yield lambda stage: line.update(f"fitting: {stage}")

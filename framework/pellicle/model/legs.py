@@ -184,7 +184,7 @@ def fields_of(kind: type[Leg], unit: str) -> dict[str, FieldInfo]:
     return fields
 
 
-def legs_of(given: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
+def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
     """Return the legs of a path, of whose values ``quantity`` is the unit and range.
 
     Raises
@@ -194,7 +194,7 @@ def legs_of(given: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
     """
     legs: list[Leg] = []
     problems: list[Problem] = []
-    for index, entry in enumerate(given):
+    for index, entry in enumerate(entries):
         try:
             legs.append(_leg(entry, quantity))
         except ConfigError as error:
@@ -223,19 +223,19 @@ def legs_of(given: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
     return tuple(legs)
 
 
-def _leg(given: object, quantity: Quantity) -> Leg:
+def _leg(entry: object, quantity: Quantity) -> Leg:
     """Return one leg."""
-    if isinstance(given, Leg):
-        given = given.model_dump()
-    if not isinstance(given, Mapping):
-        raise ConfigError(f"{shown(given)} is not a leg, as others of the list are; give {_FORMS}")
-    kinds = [kind for kind in KINDS if kind.key in given]
+    if isinstance(entry, Leg):
+        entry = entry.model_dump()
+    if not isinstance(entry, Mapping):
+        raise ConfigError(f"{shown(entry)} is not a leg, as others of the list are; give {_FORMS}")
+    kinds = [kind for kind in KINDS if kind.key in entry]
     if len(kinds) != 1:
         keys = " and ".join(kind.key for kind in kinds)
-        has = f"mixes {keys}" if kinds else f"has {', '.join(map(str, given)) or 'no key'}"
+        has = f"mixes {keys}" if kinds else f"has {', '.join(map(str, entry)) or 'no key'}"
         raise ConfigError(f"{has}; give {_FORMS}")
     (kind,) = kinds
-    data, problems = dict(given), []
+    data, problems = dict(entry), []
     for name, allowed in (("to", quantity), ("amplitude", Quantity(quantity.unit, above=0))):
         if name in data:
             try:
@@ -278,12 +278,12 @@ def number_of_steps(values: Sequence[object]) -> int:
     )
 
 
-def json_schema(one: Mapping[str, Any]) -> dict[str, Any]:
+def json_schema(value_schema: Mapping[str, Any]) -> dict[str, Any]:
     """Return the JSON schema of a list of legs; ``one`` is that of a prescribed value."""
     schemas = [kind.model_json_schema() for kind in KINDS]
     for name, properties in chain.from_iterable(
         ((name, schema["properties"]) for name in ("to", "amplitude")) for schema in schemas
     ):
         if name in properties:
-            properties[name] = {**one, "description": properties[name]["description"]}
+            properties[name] = {**value_schema, "description": properties[name]["description"]}
     return {"type": "array", "items": {"anyOf": schemas}, "minItems": 1}

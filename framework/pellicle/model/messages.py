@@ -13,16 +13,16 @@ from pydantic_core import ErrorDetails
 from pellicle.errors import ConfigError, Problem, shown
 
 
-def nearest(word: object, known: Iterable[str]) -> str:
+def nearest(word: object, candidates: Iterable[str]) -> str:
     """Return the known words as text, after ``did you mean 'x'?`` if one of them is similar."""
-    names = sorted(known)
+    names = sorted(candidates)
     hint = similar(word, names)
     return f"{hint}{' ' if hint else ''}Known: {', '.join(names) or 'none'}"
 
 
-def similar(word: object, known: Iterable[str]) -> str:
+def similar(word: object, candidates: Iterable[str]) -> str:
     """Return ``did you mean 'x'?`` if one of the known words is similar, or an empty text."""
-    names, word = sorted(known), str(word)
+    names, word = sorted(candidates), str(word)
     beginning = [name for name in names if len(word) > 2 and name.startswith(word)]
     close = difflib.get_close_matches(word, names, n=1) or beginning
     return f"did you mean {close[0]!r}?" if close else ""
@@ -68,8 +68,8 @@ def _translated(model: type[BaseModel], detail: ErrorDetails, field: str) -> Ite
         case "missing":
             message = f"is missing; give it: {_description(model, field)}".rstrip(": ")
         case "extra_forbidden":
-            known = [name for name in model.model_fields if name != "type"]
-            message = f"is not a field here; {nearest(field, known)}"
+            candidates = [name for name in model.model_fields if name != "type"]
+            message = f"is not a field here; {nearest(field, candidates)}"
         case "value_error":
             message = str(cause)
         case "literal_error":

@@ -17,7 +17,7 @@ SPACINGS = ("linear", "log")
 _MOST = 1_000_000
 
 
-def expand(given: object) -> dict[str, Values]:
+def expand(table: object) -> dict[str, Values]:
     """Return the values of each axis of a study's table, ranges written out.
 
     Raises
@@ -25,11 +25,11 @@ def expand(given: object) -> dict[str, Values]:
     ConfigError
         Values are missing or not allowed; the message names all such axes.
     """
-    if not isinstance(given, Mapping):
-        raise ConfigError(f'{shown(given)} is not a table; give one: "kernel.tension" = […]')
+    if not isinstance(table, Mapping):
+        raise ConfigError(f'{shown(table)} is not a table; give one: "kernel.tension" = […]')
     axes: dict[str, Values] = {}
     problems: list[Problem] = []
-    for key, values in _flat(given, ""):
+    for key, values in _flat(table, ""):
         try:
             if key in axes:
                 raise ConfigError("is given twice; leave one out")
@@ -41,31 +41,31 @@ def expand(given: object) -> dict[str, Values]:
     return axes
 
 
-def _flat(given: Mapping[str, Any], path: str) -> Iterator[tuple[str, object]]:
+def _flat(table: Mapping[str, Any], path: str) -> Iterator[tuple[str, object]]:
     """Yield each axis with its dotted key; TOML turns an unquoted one into nested tables."""
-    for name, value in given.items():
+    for name, value in table.items():
         if isinstance(value, Mapping) and value and not RANGE & value.keys():
             yield from _flat(value, f"{path}{name}.")
         else:
             yield f"{path}{name}", value
 
 
-def _values(given: object) -> Values:
-    if isinstance(given, Mapping):
-        return ranged(given)
-    if hasattr(given, "tolist"):
-        given = given.tolist()
-    if not isinstance(given, (list, tuple)):
+def _values(spec: object) -> Values:
+    if isinstance(spec, Mapping):
+        return ranged(spec)
+    if hasattr(spec, "tolist"):
+        spec = spec.tolist()
+    if not isinstance(spec, (list, tuple)):
         raise ConfigError(
-            f"{shown(given)} is not allowed; give a list of values, or {{start, stop, num}}"
+            f"{shown(spec)} is not allowed; give a list of values, or {{start, stop, num}}"
         )
-    if not given:
+    if not spec:
         raise ConfigError("is empty; give at least one value, or leave the axis out")
-    return tuple(value.item() if hasattr(value, "item") else value for value in given)
+    return tuple(value.item() if hasattr(value, "item") else value for value in spec)
 
 
 def ranged(
-    given: Mapping[str, Any], what: str = "range", options: str = 'spacing = "log"'
+    table: Mapping[str, Any], what: str = "range", options: str = 'spacing = "log"'
 ) -> Values:
     """Return the values of ``{start, stop, num}``, which may also have a ``spacing``.
 
@@ -77,25 +77,25 @@ def ranged(
     ConfigError
         The mapping is not a range.
     """
-    if not given.keys() >= RANGE or not given.keys() <= RANGE | {"spacing"}:
-        has = ", ".join(map(str, given)) or "nothing"
+    if not table.keys() >= RANGE or not table.keys() <= RANGE | {"spacing"}:
+        has = ", ".join(map(str, table)) or "nothing"
         raise ConfigError(
             f"a {what} that has {has} is not allowed; give start, stop and num, and {options} if "
             "need be"
         )
-    num, spacing = given["num"], given.get("spacing", "linear")
+    num, spacing = table["num"], table.get("spacing", "linear")
     if not isinstance(num, int) or isinstance(num, bool) or not 2 <= num <= _MOST:
         raise ConfigError(
             f"{shown(num)} is not allowed; give a whole number of values, 2 to {_MOST}", "num"
         )
     if spacing not in SPACINGS:
         raise ConfigError(f'{shown(spacing)} is not allowed; give "linear" or "log"', "spacing")
-    (start, unit), (stop, stop_unit) = (_end(given, end) for end in ("start", "stop"))
+    (start, unit), (stop, stop_unit) = (_end(table, end) for end in ("start", "stop"))
     if (stop_unit or unit) != (unit or stop_unit) or bool(unit) != bool(stop_unit):
         if not unit or not stop_unit:
             raise ConfigError("give start and stop both with a unit, or both without")
         try:
-            stop = Quantity(unit)(given["stop"])
+            stop = Quantity(unit)(table["stop"])
         except ValueError as error:
             raise ConfigError(str(error), "stop") from None
     if start == stop:
@@ -104,15 +104,15 @@ def ranged(
     if log and (start == 0 or stop / start <= 0):
         raise ConfigError('spacing = "log" needs start and stop ≠ 0 of the same sign')
     values: list[Any] = list(ramp(start, stop, num, log=log))
-    whole = all(isinstance(given[end], int) for end in ("start", "stop"))
+    whole = all(isinstance(table[end], int) for end in ("start", "stop"))
     if whole and all(value.is_integer() for value in values):
         return tuple(map(int, values))
     return tuple(f"{value:.15g} {unit}" for value in values) if unit else tuple(values)
 
 
-def _end(given: Mapping[str, Any], end: str) -> tuple[float, str]:
+def _end(table: Mapping[str, Any], end: str) -> tuple[float, str]:
     """Return number and unit of one end of a range."""
-    value = given[end]
+    value = table[end]
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         value = f"{float(value.magnitude)!r} {value.units}"
     parts = split(value) if isinstance(value, str) else None
@@ -120,6 +120,6 @@ def _end(given: Mapping[str, Any], end: str) -> tuple[float, str]:
         parts = float(value), ""
     if parts is None or not math.isfinite(parts[0]):
         raise ConfigError(
-            f"{shown(given[end])} is not allowed; give a finite number, with a unit or without", end
+            f"{shown(table[end])} is not allowed; give a finite number, with a unit or without", end
         )
     return parts

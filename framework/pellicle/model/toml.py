@@ -62,8 +62,8 @@ def _reason(message: str, text: str) -> str:
 
 def _unquoted(line: str) -> str:
     """Return the first value of a line that lacks its quotes, or an empty text."""
-    _, _, given = re.sub(r"\"[^\"]*\"|'[^']*'", '""', line).partition("=")
-    value = given.partition("#")[0].strip()
+    _, _, right = re.sub(r"\"[^\"]*\"|'[^']*'", '""', line).partition("=")
+    value = right.partition("#")[0].strip()
     bare = next((m[0] for m in _BARE.finditer(value) if m[0] not in _WORDS), "")
     if bare and value[0] not in "[{":
         return "" if '"' in value else value

@@ -43,9 +43,9 @@ def with_force(problem: Problem, pressure: Array, out: Array | None = None) -> A
     return np.multiply(pressure, factor, out=out)
 
 
-def dot(one: NDArray[Any], other: NDArray[Any]) -> float:
-    """Return Σ one · other over two fields.
+def dot(a: NDArray[Any], b: NDArray[Any]) -> float:
+    """Return Σ a · b over two fields.
 
     BLAS is avoided because its threads spin while waiting, which takes cores from the transforms.
     """
-    return float(np.einsum("i,i->", one.reshape(-1), other.reshape(-1)))
+    return float(np.einsum("i,i->", a.reshape(-1), b.reshape(-1)))

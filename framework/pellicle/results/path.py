@@ -12,7 +12,8 @@ from pellicle.analysis import Oscillation, oscillations, path_summary
 from pellicle.loading import OPTIONS
 from pellicle.units import DIGITS, readable
 
-from .variables import VARIABLES, wording
+from .variables import VARIABLES
+from .wording import wording
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -245,10 +245,10 @@ def _damage(dataset: xr.Dataset) -> str:
     configuration = json.loads(dataset.attrs["configuration"])
     try:
         grid = Grid(**configuration["grid"])
-        known = isinstance(configuration["loading"], dict)
+        is_table = isinstance(configuration["loading"], dict)
     except (ConfigError, LookupError, TypeError):
-        known = False
-    if not known:
+        is_table = False
+    if not is_table:
         return "has a configuration without a grid or a loading"
     if grid.shape != (dataset.sizes["x"], dataset.sizes["y"]):
         return f"has fields of other shapes than its grid of {grid.shape}"

@@ -99,10 +99,10 @@ def advise(run: Run, allowed: float) -> Advice:
         )
     widest = np.max([_extent(c, grids[-1]) for c in finest["contact"].values], axis=0)
     size = _fitting_size(run, widest)
-    known = [step for step in steps if not math.isnan(step.error)]
-    factor = max((step.error / allowed for step in known), default=1.0)
+    with_error = [step for step in steps if not math.isnan(step.error)]
+    factor = max((step.error / allowed for step in with_error), default=1.0)
     # Fewer cells are advised only while the area, which errs most, stays known to a tenth.
-    factor = max(factor, *(min(1.0, step.area_error / _AREA_ERROR) for step in known), 0.0)
+    factor = max(factor, *(min(1.0, step.area_error / _AREA_ERROR) for step in with_error), 0.0)
     return Advice(tuple(steps), _points(run.grid, size or run.grid.size, factor), size)
 
 

@@ -7,7 +7,8 @@ import signal
 import threading
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple, Protocol, Self
 
@@ -249,6 +250,27 @@ class _Interrupt:
         if self._pressed:
             self._pressed = False
             raise KeyboardInterrupt
+
+
+@contextmanager
+def status_line(enabled: bool) -> Iterator[Callable[[str], None]]:
+    """Show the stage of a fit while it runs; yield a function that sets its description.
+
+    It is shown on a terminal and in a notebook.
+    """
+    console = _stderr()
+    if enabled and console.is_jupyter:
+        from .notebook_bar import NotebookBar
+
+        with NotebookBar() as bar:
+            task = bar.add_task("fitting", total=None, message="")
+            yield lambda stage: bar.update(task, message=stage)
+        return
+    if not (enabled and console.is_terminal):
+        yield lambda stage: None
+        return
+    with console.status("fitting") as line:
+        yield lambda stage: line.update(f"fitting: {stage}")
 
 
 def _stderr() -> rich.console.Console:

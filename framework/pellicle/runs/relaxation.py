@@ -72,7 +72,9 @@ class Skin:
     def __init__(self, kernel: HasRelaxation, grid: Grid) -> None:
         solid = kernel.without_skin()
 
-        def made(kernel_of: Callable[[Kernel], HasCompliance]) -> Callable[[float], PlaneOperator]:
+        def operator_of(
+            kernel_of: Callable[[Kernel], HasCompliance],
+        ) -> Callable[[float], PlaneOperator]:
             @lru_cache(maxsize=_OPERATORS)
             def operator(share: float) -> PlaneOperator:
                 with errors_attributed_to(kernel):
@@ -80,8 +82,8 @@ class Skin:
 
             return operator
 
-        self._whole = made(lambda whole: whole)
-        self._carried = made(lambda whole: CarriedShare(whole, solid))
+        self._whole = operator_of(lambda whole: whole)
+        self._carried = operator_of(lambda whole: CarriedShare(whole, solid))
 
     def whole(self, step: TimeStep) -> PlaneOperator:
         """Return the operator from pressure to displacement [m/Pa]."""

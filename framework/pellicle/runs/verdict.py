@@ -34,8 +34,23 @@ def judge(
     ``index`` counts the steps from 0; ``lost`` is the energy [J] that it lost because a part
     of the contact jumped, 0 if that is not known; None without a jump.
     """
+    verdict = _failure(run, index, step, stiffness)
+    if verdict is None and step.search and (step.how != "met" or step.missed > _NEAR):
+        verdict = _not_met(step, step.search)
+    verdict = verdict or _caveat(run, index, step.equilibrium)
+    if verdict:
+        return verdict
+    if lost is not None:
+        loss = f" and lost {readable(lost, 'J', DIGITS)}" if lost > 0 else ""
+        return Status.JUMPED, Status.JUMPED.value.format(loss=loss)
+    return Status.CONVERGED, Status.CONVERGED.value
+
+
+def _failure(
+    run: Run, index: int, step: Reached, stiffness: Stiffness | None
+) -> tuple[Status, str] | None:
+    """Return why the step is not a solution; None if it is one."""
     equilibrium = step.equilibrium
-    tolerance = run.solver.tolerance
     if not np.isfinite(equilibrium.force):
         return Status.NOT_FINITE, Status.NOT_FINITE.value
     if step.stop is Stop.PULLED_OFF:
@@ -46,6 +61,7 @@ def judge(
     if (lowest := float(equilibrium.wall.min())) < 0:
         share = -lowest / float(np.abs(equilibrium.wall).max())
         return Status.NEGATIVE_PRESSURE, Status.NEGATIVE_PRESSURE.value.format(measure=share)
+    tolerance = run.solver.tolerance
     for status, residual in (
         (Status.LOAD, equilibrium.residual_load),
         (Status.CONTACT_RESIDUAL, equilibrium.residual_contact),
@@ -68,14 +84,33 @@ def judge(
             prescribed=f"loading.{loading.prescribed} = "
             f"{in_unit(loading.values[index], loading.prescription.unit)}",
         )
-    if step.search and (step.how != "met" or step.missed > _NEAR):
-        return _not_met(step, step.search)
-    contact = equilibrium.contact
+    return None
+
+
+def _caveat(run: Run, index: int, equilibrium: Equilibrium) -> tuple[Status, str] | None:
+    """Return what limits the accuracy of a solved step; None if nothing does."""
+    verdict = _coarse(run, equilibrium)
+    if verdict is None and run.interaction:
+        verdict = _caveat_of_interaction(run, run.interaction, equilibrium)
+    if verdict:
+        return verdict
+    needed = least_domain(run, index, equilibrium.contact)
+    if needed > min(run.grid.size):
+        return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
+            size=" × ".join(readable(length, "m", DIGITS) for length in run.grid.size),
+            # A little more, or the rounded length would be refused in turn.
+            least=readable(1.001 * needed, "m", DIGITS),
+        )
+    return None
+
+
+def _coarse(run: Run, equilibrium: Equilibrium) -> tuple[Status, str] | None:
+    """Return the caveat of a contact on too few cells; None if it has enough."""
+    contact, problem = equilibrium.contact, equilibrium.problem
     # An interaction of a range of its own acts beyond the contact, however small that is.
     ranged = run.interaction is not None and not run.interaction.needs_contact
     cells = int(np.count_nonzero(contact | equilibrium.zone if ranged else contact))
     enough = _RESOLVED_ACROSS if min(contact.shape) == 1 else _RESOLVED
-    problem = equilibrium.problem
     # A surface that was left behind may be out of the indenter's reach at a depth above 0.
     least = problem.first_touch if problem.prescribed == "depth" else 0.0
     # An interaction holds a contact at any depth.
@@ -84,26 +119,13 @@ def judge(
         return Status.COARSE, Status.COARSE.value.format(
             cells=cells or "none", width=readable(run.grid.cell_size, "m", DIGITS)
         )
-    doubt = run.interaction and _doubt(run, run.interaction, equilibrium)
-    if doubt:
-        return doubt
-    needed = least_domain(run, index, contact)
-    if needed > min(run.grid.size):
-        return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
-            size=" × ".join(readable(length, "m", DIGITS) for length in run.grid.size),
-            # A little more, or the rounded length would be refused in turn.
-            least=readable(1.001 * needed, "m", DIGITS),
-        )
-    if lost is not None:
-        loss = f" and lost {readable(lost, 'J', DIGITS)}" if lost > 0 else ""
-        return Status.JUMPED, Status.JUMPED.value.format(loss=loss)
-    return Status.CONVERGED, Status.CONVERGED.value
+    return None
 
 
-def _doubt(
+def _caveat_of_interaction(
     run: Run, interaction: Interaction, equilibrium: Equilibrium
 ) -> tuple[Status, str] | None:
-    """Return the caveat of a step that is solved, where an interaction acts, if there is one."""
+    """Return what limits the accuracy of a solved step where an interaction acts."""
     width = equilibrium.zone_width / run.grid.cell_size
     if width < interaction.least_cells:
         return Status.COARSE_ZONE, Status.COARSE_ZONE.value.format(

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.results.status import Status
-from pellicle.results.variables import names_of, wording
+from pellicle.results.variables import names_of
+from pellicle.results.wording import wording
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -225,8 +225,8 @@ def death_of_a_worker_is_an_outcome(executor: Executor, observations: Observatio
 def messages_are_reported(executor: Executor, observations: Observations) -> None:
     """report(task, message) is called in this thread, with the messages of the task in order."""
     healthy = observations.healthy
-    here = threading.get_ident(), os.getpid()
-    require(healthy.callers <= {here}, "report is called in another thread")
+    caller = threading.get_ident(), os.getpid()
+    require(healthy.callers <= {caller}, "report is called in another thread")
     passed = {id(task) for task in (*healthy.tasks, *healthy.equal)}
     for task, _ in healthy.messages:
         require(id(task) in passed, f"report is called with {task!r}, not one of the tasks")

@@ -117,19 +117,19 @@ def values_are_vectorised(interaction: Interaction) -> None:
     """Each function of the gap is a float array of its shape; a value depends on its gap only."""
     for name, law in _laws(interaction):
         gaps = np.linspace(0.0, law.cutoff(), 24)
-        for what, function in _functions(law):
+        for function_name, function in _functions(law):
             single = [np.ravel(function(gaps[i : i + 1].copy()))[0] for i in range(24)]
             for shape in ((24,), (4, 6)):
                 values = function(gaps.reshape(shape).copy())
                 require(
                     isinstance(values, np.ndarray) and values.dtype == np.float64,
-                    f"{what}(gap) of {name} is {type(values).__name__} of "
+                    f"{function_name}(gap) of {name} is {type(values).__name__} of "
                     f"{getattr(values, 'dtype', 'no')} dtype",
                 )
                 require_close(
                     values,
                     np.reshape(single, shape),
-                    f"{what} of {name} for gaps of shape {shape}",
+                    f"{function_name} of {name} for gaps of shape {shape}",
                     absolute=_ROUNDING * float(np.abs(single).max()),
                 )
 
@@ -137,21 +137,21 @@ def values_are_vectorised(interaction: Interaction) -> None:
 def functions_leave_their_argument(interaction: Interaction) -> None:
     """An interaction is pure: it does not change the gap, and a second call returns the same."""
     for name, law in _laws(interaction):
-        for what, function in _functions(law):
+        for function_name, function in _functions(law):
             gaps = _gaps(law)
             first = np.array(function(gaps))
-            require_close(gaps, _gaps(law), f"after {what}(gap) of {name}, the gap")
-            require_close(function(gaps), first, f"the second {what}(gap) of {name}")
+            require_close(gaps, _gaps(law), f"after {function_name}(gap) of {name}, the gap")
+            require_close(function(gaps), first, f"the second {function_name}(gap) of {name}")
 
 
 def values_are_finite(interaction: Interaction) -> None:
     """Energy, traction and slope are finite from a closed gap to the cutoff."""
     for name, law in _laws(interaction):
         gaps = _gaps(law)
-        for what, function in _functions(law):
+        for function_name, function in _functions(law):
             for bad in np.flatnonzero(~np.isfinite(function(gaps))):
                 value = function(gaps)[bad]
-                raise AssertionError(f"{what} of {name} is {value} at {gaps[bad]:g} m")
+                raise AssertionError(f"{function_name} of {name} is {value} at {gaps[bad]:g} m")
 
 
 def energy_rises_to_nothing(interaction: Interaction) -> None:

@@ -60,7 +60,7 @@ def check_prescription(prescription: Prescription, values: Sequence[float] = ())
 
 
 @cache
-def _known() -> tuple[Setting, tuple[Equilibrium, ...], Solver]:
+def _reference_steps() -> tuple[Setting, tuple[Equilibrium, ...], Solver]:
     """Return the setting, the two steps that are known, and their solver."""
     run = Run(**_ROUGH)
     setting = compose(run)
@@ -75,7 +75,7 @@ def _ignore(iteration: int, residual_ratio: float) -> None:
 
 def _value(prescription: Prescription, step: Equilibrium) -> float | None:
     """Return the prescribed quantity of a step, if a result has it."""
-    setting, _, _ = _known()
+    setting, _, _ = _reference_steps()
     report = report_of(prescription, setting, step)
     name = prescription.type_name
     if name in report:
@@ -85,7 +85,7 @@ def _value(prescription: Prescription, step: Equilibrium) -> float | None:
 
 
 def _values(prescription: Prescription, candidates: Sequence[float]) -> list[float]:
-    _, steps, _ = _known()
+    _, steps, _ = _reference_steps()
     values: Sequence[float | None] = candidates or [_value(prescription, s) for s in steps]
     numbers = [value for value in values if value is not None]
     require(
@@ -98,7 +98,7 @@ def _values(prescription: Prescription, candidates: Sequence[float]) -> list[flo
 
 def report_is_as_declared(prescription: Prescription, values: Sequence[float]) -> None:
     """report() returns numbers under the names of `variables`, the same in a second call."""
-    setting, steps, _ = _known()
+    setting, steps, _ = _reference_steps()
     for step in steps:
         report = report_of(prescription, setting, step)
         require(report == report_of(prescription, setting, step), "the second report differs")
@@ -106,11 +106,11 @@ def report_is_as_declared(prescription: Prescription, values: Sequence[float]) -
 
 def target_is_pure(prescription: Prescription, values: Sequence[float]) -> None:
     """target() returns a Depth, Force or Search of finite numbers, the same in a second call."""
-    setting, _, _ = _known()
+    setting, _, _ = _reference_steps()
     for value in _values(prescription, values):
         check_value(prescription, setting, value, "")
-        one, other = (_numbers(target_of(prescription, setting, value)) for _ in range(2))
-        require(one == other, f"{other} after {one}")
+        first, second = (_numbers(target_of(prescription, setting, value)) for _ in range(2))
+        require(first == second, f"{second} after {first}")
 
 
 def _numbers(target: object) -> dict[str, Any]:
@@ -119,7 +119,7 @@ def _numbers(target: object) -> dict[str, Any]:
 
 def values_are_refused_in_words(prescription: Prescription, values: Sequence[float]) -> None:
     """At 0 and far beyond what can be reached, check() raises a ConfigError or target() works."""
-    setting, _, _ = _known()
+    setting, _, _ = _reference_steps()
     for value in (0.0, 1e12 * max(map(abs, _values(prescription, values)))):
         try:
             check_value(prescription, setting, value, "")
@@ -130,7 +130,7 @@ def values_are_refused_in_words(prescription: Prescription, values: Sequence[flo
 
 def search_does_not_fall(prescription: Prescription, values: Sequence[float]) -> None:
     """The quantity of a search does not fall if the force doubles."""
-    setting, steps, _ = _known()
+    setting, steps, _ = _reference_steps()
     target = target_of(prescription, setting, _values(prescription, values)[0])
     if isinstance(target, Search):
         low, high = (target.measure(step) for step in steps)
@@ -139,8 +139,8 @@ def search_does_not_fall(prescription: Prescription, values: Sequence[float]) ->
 
 def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[float]) -> None:
     """Prescribing the value of a known step reproduces its force and its value."""
-    setting, steps, solver = _known()
-    for value, known in zip(_values(prescription, values), steps, strict=True):
+    setting, steps, solver = _reference_steps()
+    for value, reference in zip(_values(prescription, values), steps, strict=True):
         target = target_of(prescription, setting, value)
         if isinstance(target, Search):
             step = reach(setting, target, solver, _ignore).equilibrium
@@ -149,7 +149,7 @@ def step_has_what_is_prescribed(prescription: Prescription, values: Sequence[flo
             step = measure(problem, solution_of(solver, problem, None, _ignore).pressure)
         require_close(
             step.force,
-            known.force,
+            reference.force,
             f"the force [N] at {value:g} {prescription.unit}",
             relative=_NEAR,
         )

@@ -16,7 +16,7 @@ from pellicle.errors import ConfigError, ConvergenceError
 
 from .abel_transform import HasAbelTransform
 from .axisymmetric_equation import LEVELS, Solution, solve, without_negligible
-from .checks import given, not_negative, positive
+from .checks import not_negative, positive, single
 
 TOLERANCE = 1e-10
 EDGE_TOLERANCE = 1e-6
@@ -113,7 +113,7 @@ def indent(
     """
     positive(reduced_modulus=reduced_modulus)
     not_negative(tension=tension)
-    quantity, value = given(contact_radius=contact_radius, depth=depth, force=force)
+    quantity, value = single(contact_radius=contact_radius, depth=depth, force=force)
     positive(**{quantity: value})
     limit = indenter.contact_radius_limit
     if quantity == "contact_radius":

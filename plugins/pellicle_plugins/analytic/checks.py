@@ -21,7 +21,7 @@ def not_negative(**values: float) -> None:
             raise ConfigError(f"must be finite and not negative, got {value!r}", name)
 
 
-def given(**values: float | None) -> tuple[str, float]:
+def single(**values: float | None) -> tuple[str, float]:
     """Return name and value of the one value that is not None.
 
     Raises

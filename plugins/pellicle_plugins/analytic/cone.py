@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 
-from .checks import given, positive
+from .checks import positive, single
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def cone(
     if not 0 < half_angle < np.pi / 2:
         raise ConfigError(f"must lie between 0 and π/2 rad, got {half_angle!r}", "half_angle")
     rate = np.pi / 2 / float(np.tan(half_angle))
-    match given(depth=depth, force=force, contact_radius=contact_radius):
+    match single(depth=depth, force=force, contact_radius=contact_radius):
         case "depth", value:
             a = value / rate
         case "force", value:

@@ -82,7 +82,7 @@ def dugdale_contact(
         raise ConfigError(f"must not be negative, got {contact_radius!r}", "contact_radius")
     unit = cbrt(pi * work_of_adhesion * radius**2 / (4 / 3 * reduced_modulus))
     scaled = a / unit
-    angles = np.array([_zone_angle(float(one), transition) for one in scaled.ravel()])
+    angles = np.array([_zone_angle(float(ratio), transition) for ratio in scaled.ravel()])
     angle = angles.reshape(a.shape)
     touching = scaled > 0
     # The point contact has an infinite ratio c/a, but a finite c.

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 
-from .checks import given, positive
+from .checks import positive, single
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def flat_punch(
         δ [m] or F [N].
     """
     positive(radius=radius, reduced_modulus=reduced_modulus)
-    quantity, value = given(depth=depth, force=force)
+    quantity, value = single(depth=depth, force=force)
     stiffness = 2 * reduced_modulus * radius
     depth = value if quantity == "depth" else value / stiffness
     return FlatPunchContact(contact_radius=radius, depth=depth, force=stiffness * depth)

@@ -14,7 +14,7 @@ from scipy.special import elliprd, elliprf
 
 from pellicle.arrays import Array
 
-from .checks import given, positive
+from .checks import positive, single
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def sphere(
         δ [m], F [N] or a [m].
     """
     positive(radius=radius, reduced_modulus=reduced_modulus)
-    match given(depth=depth, force=force, contact_radius=contact_radius):
+    match single(depth=depth, force=force, contact_radius=contact_radius):
         case "depth", value:
             a = float(np.sqrt(radius * value))
         case "force", value:
@@ -123,7 +123,7 @@ def ellipse(
     F = π E* a³ / (3 R D) and p₀ = 3F / (2π a b) (from Johnson 1985, section 4.2).
     """
     positive(radius_x=radius_x, radius_y=radius_y, reduced_modulus=reduced_modulus)
-    quantity, value = given(depth=depth, force=force)
+    quantity, value = single(depth=depth, force=force)
     larger, smaller = max(radius_x, radius_y), min(radius_x, radius_y)
     aspect = aspect_ratio(smaller / larger)
     d = float(elliprd(0, aspect**2, 1)) / 3

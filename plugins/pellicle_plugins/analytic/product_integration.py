@@ -83,15 +83,15 @@ def weights(
         out[far] = values * rule[1] * length / 2
 
     xi, unit = clustered(power)
-    for side, this, other, end in (
+    for side, distance, other, end in (
         (1.0, ahead, behind, panel.start),
         (-1.0, behind, ahead, panel.end),
     ):
         # Integrate away from the point of the panel that is nearest to the target.
-        pick = ~far & (this > 0)
+        pick = ~far & (distance > 0)
         if (above and side < 0) or not np.any(pick):
             continue
-        span = np.minimum(this[pick], length)[:, None]
+        span = np.minimum(distance[pick], length)[:, None]
         offset = np.maximum(-other[pick], 0)[:, None] + span * xi
         chosen = column[pick]
         inside = other[pick][:, None] > 0
@@ -100,7 +100,7 @@ def weights(
         )
         source = nearest.moved(side * span * xi)
         values = kernel(_chord(chosen, source, offset), source, chosen)
-        local = side * (1 - 2 * (this[pick][:, None] - offset) / length)
+        local = side * (1 - 2 * (distance[pick][:, None] - offset) / length)
         basis = legvander(local, order - 1) @ rule[2]
         out[pick] += np.einsum("tq,tqj->tj", values * unit * span, basis)
     return out

@@ -15,7 +15,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 
 from .axisymmetric_equation import LEVELS, without_negligible
-from .checks import given, not_negative, positive
+from .checks import not_negative, positive, single
 from .panels import Points, gauss, graded, joined
 from .product_integration import clustering, collocation
 from .tension_kernel import auxiliary_g
@@ -84,7 +84,7 @@ def punch(
     """
     positive(radius=radius, reduced_modulus=reduced_modulus)
     not_negative(tension=tension)
-    quantity, value = given(depth=depth, force=force)
+    quantity, value = single(depth=depth, force=force)
     ratio = without_negligible(2 * tension / reduced_modulus / radius)
     levels = [unit_forces(ratio, level) for level in (0, 1)]
     if not _agree(*levels):

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from pellicle.arrays import Array
 
-from .checks import given, not_negative, positive
+from .checks import not_negative, positive, single
 from .full_contact import pressure_amplitude
 
 
@@ -65,7 +65,7 @@ def wavy(
         p̄ [Pa] or a [m], at most λ/2.
     """
     positive(amplitude=amplitude, wavelength=wavelength, reduced_modulus=reduced_modulus)
-    quantity, value = given(mean_pressure=mean_pressure, half_width=half_width)
+    quantity, value = single(mean_pressure=mean_pressure, half_width=half_width)
     full = pressure_amplitude(amplitude, wavelength, reduced_modulus)
     if quantity == "half_width":
         not_negative(gap_width=wavelength / 2 - value)

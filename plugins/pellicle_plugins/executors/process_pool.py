@@ -120,8 +120,8 @@ class ProcessPool(Generic[AnyTask]):
         if available is None or self._free_memory is None:
             return True
         needed = _needed(task)
-        others = sum(_needed(other) for _, other in self._running.values())
-        return needed <= available and others + needed <= self._free_memory
+        running = sum(_needed(other) for _, other in self._running.values())
+        return needed <= available and running + needed <= self._free_memory
 
 
 def _needed(task: Any) -> float:

@@ -204,11 +204,11 @@ def _require_shape(
 
 def _require_kind(raw: Any, name: str, field: str) -> None:
     """Refuse anything but a two-dimensional array of real numbers."""
-    given = raw if hasattr(raw, "dtype") and hasattr(raw, "shape") else np.asarray(raw)
+    array = raw if hasattr(raw, "dtype") and hasattr(raw, "shape") else np.asarray(raw)
     # An HDF5 dataset may have no shape at all.
-    kind, shape = given.dtype.kind, tuple(given.shape or ())
+    kind, shape = array.dtype.kind, tuple(array.shape or ())
     if kind not in "fiu":
-        values = "complex" if kind == "c" else str(given.dtype)
+        values = "complex" if kind == "c" else str(array.dtype)
         raise ConfigError(f"{name} holds {values} values; give real numbers", field)
     if len(shape) != 2 or 0 in shape:
         remedy = (
@@ -230,9 +230,9 @@ def _checked(raw: Any, name: str, field: str) -> Array:
     if masked := np.ma.isMaskedArray(raw):
         bad |= np.ma.getmaskarray(raw)
     if count := np.count_nonzero(bad):
-        what = "masked, NaN" if masked else "NaN"
+        kinds = "masked, NaN" if masked else "NaN"
         raise ConfigError(
-            f"{name} holds {count} {what} or infinite heights; fill or crop them first", field
+            f"{name} holds {count} {kinds} or infinite heights; fill or crop them first", field
         )
     return np.array(given, dtype=np.float64, order="C")
 

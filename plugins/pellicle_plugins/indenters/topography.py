@@ -155,15 +155,15 @@ class Topography(FromHeights):
             )
         # Cells, and points of the scan under the domain, as distances from its corner.
         cells = [x.ravel() + self._middle[0], y.ravel() + self._middle[1]]
-        window = tuple(self._under(which, axis, pitch[which]) for which, axis in enumerate(axes))
+        window = tuple(self._under(number, axis, pitch[number]) for number, axis in enumerate(axes))
         heights = self._prepared(window)
         points = [
             (np.arange(s.start, s.stop) + 0.5) * d for s, d in zip(window, pitch, strict=True)
         ]
         sampled = heights
-        for axis, (known, cell) in enumerate(zip(points, cells, strict=True)):
-            spline = make_interp_spline(known, sampled, k=min(3, known.size - 1), axis=axis)
-            sampled = spline(np.clip(cell, known[0], known[-1]))
+        for axis, (positions, cell) in enumerate(zip(points, cells, strict=True)):
+            spline = make_interp_spline(positions, sampled, k=min(3, positions.size - 1), axis=axis)
+            sampled = spline(np.clip(cell, positions[0], positions[-1]))
         # A spline may exceed the points that it interpolates.
         return sampled - max(float(heights.max()), float(sampled.max()))
 
@@ -171,14 +171,14 @@ class Topography(FromHeights):
     def _middle(self) -> tuple[float, float]:
         return self.centre or (self._size[0] / 2, self._size[1] / 2)
 
-    def _under(self, which: int, axis: UniformAxis, pitch: float) -> slice:
+    def _under(self, number: int, axis: UniformAxis, pitch: float) -> slice:
         """Return the points of the scan under the domain along one axis."""
-        low = axis.first - axis.spacing / 2 + self._middle[which]
+        low = axis.first - axis.spacing / 2 + self._middle[number]
         high = low + axis.period
         # The size that an instrument states may or may not include the last point.
-        if low < -0.51 * pitch or high > self._size[which] + 0.51 * pitch:
-            name, centre = "xy"[which], self._middle[which]
-            room = 2 * min(centre, self._size[which] - centre)
+        if low < -0.51 * pitch or high > self._size[number] + 0.51 * pitch:
+            name, centre = "xy"[number], self._middle[number]
+            room = 2 * min(centre, self._size[number] - centre)
             raise ConfigError(
                 f"the domain reaches along {name} from {readable(low, 'm')} to "
                 f"{readable(high, 'm')} of a scan of {_lengths(self._size, 9)}; make grid.size at "
@@ -186,11 +186,12 @@ class Topography(FromHeights):
                 "centre" if self.centre else "path",
             )
         first = max(0, floor(low / pitch + 0.01))
-        last = min(self._heights.shape[which], ceil(high / pitch - 0.01))
+        last = min(self._heights.shape[number], ceil(high / pitch - 0.01))
         if last - first < 2:
             raise ConfigError(
-                f"the domain covers {last - first} points of the scan along {'xy'[which]}; enlarge "
-                f"grid.size, whose points are {readable(pitch, 'm', 3)} apart in {self.path}",
+                f"the domain covers {last - first} points of the scan along {'xy'[number]}; "
+                f"enlarge grid.size, whose points are {readable(pitch, 'm', 3)} apart in "
+                f"{self.path}",
                 "path",
             )
         return slice(first, last)
@@ -227,8 +228,8 @@ def _rms(values: Array) -> float:
 
 def _filled(heights: Array, missing: Mask) -> Array:
     """Return heights with missing ones filled in by the solution of Laplace's equation."""
-    known = np.ma.masked_array(np.where(missing, 0.0, heights), mask=missing)
-    scan = library().Topography(known, heights.shape)
+    masked = np.ma.masked_array(np.where(missing, 0.0, heights), mask=missing)
+    scan = library().Topography(masked, heights.shape)
     filled = scan.interpolate_undefined_data_with_harmonic_function()
     return np.asarray(np.ma.getdata(filled.heights()), dtype=np.float64)
 

@@ -49,14 +49,14 @@ class ElasticModulus(Model):
     @model_validator(mode="after")
     def _check_constants(self) -> Self:
         both = ("youngs_modulus", "poissons_ratio")
-        given = [name for name in both if getattr(self, name) is not None]
-        if self.reduced_modulus is None and len(given) < 2:
+        names = [name for name in both if getattr(self, name) is not None]
+        if self.reduced_modulus is None and len(names) < 2:
             raise ValueError(
                 "no modulus; give reduced_modulus, or both youngs_modulus and poissons_ratio"
             )
-        if self.reduced_modulus is not None and given:
+        if self.reduced_modulus is not None and names:
             raise ValueError(
-                f"reduced_modulus and {' and '.join(given)} are both given; give "
+                f"reduced_modulus and {' and '.join(names)} are both given; give "
                 "reduced_modulus alone, or youngs_modulus and poissons_ratio"
             )
         return self

@@ -130,7 +130,7 @@ class Viscoelastic(Kernel):
     def branches(self) -> tuple[Branch, ...]:
         """Return shares of the instantaneous stiffness with their relaxation times."""
         if self.power_law is None:
-            return tuple(Branch(one.fraction, one.time) for one in self.relaxation or ())
+            return tuple(Branch(branch.fraction, branch.time) for branch in self.relaxation or ())
         series, (shortest, _) = self.power_law.series, self.power_law.span
         return tuple(
             Branch(weight / series.total, time * shortest)
@@ -178,7 +178,7 @@ class Viscoelastic(Kernel):
     def _check_sum(
         cls, relaxation: tuple[RelaxingFraction, ...] | None
     ) -> tuple[RelaxingFraction, ...] | None:
-        total = math.fsum(one.fraction for one in relaxation or ())
+        total = math.fsum(branch.fraction for branch in relaxation or ())
         if total > 1 + _ROUNDING:
             raise ValueError(
                 f"the fractions sum to {total:.6g}; they have to sum to less than 1, or to 1 for a "

@@ -15,7 +15,7 @@ from pydantic import Field
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError, StorageError
-from pellicle.report.plotting import save_figure
+from pellicle.report.saving import save_figure
 from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
 from pellicle.units import Quantity, axis_unit
@@ -113,8 +113,8 @@ class AdhesiveCurve(TableFigure):
         summary = stem.with_name(f"{stem.name}-summary")
         return (
             *files,
-            write_csv(stem, [row for one in drawn for row in _rows(one)], _HEADS),
-            write_csv(summary, [self._summary(one) for one in drawn], _SUMMARY_HEADS),
+            write_csv(stem, [row for drawing in drawn for row in _rows(drawing)], _HEADS),
+            write_csv(summary, [self._summary(drawing) for drawing in drawn], _SUMMARY_HEADS),
         )
 
     def _paths(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
@@ -154,42 +154,46 @@ class AdhesiveCurve(TableFigure):
         return dict(zip(_SUMMARY_HEADS, values, strict=True))
 
     def _fill(self, axes: Axes, drawn: list[_Drawn]) -> None:
-        curves = [(one, one.curve) for one in drawn if one.curve is not None]
-        depths = [one.path["depth"].values for one in drawn] + [curve.depth for _, curve in curves]
-        forces = [one.path["force"].values for one in drawn] + [curve.force for _, curve in curves]
+        curves = [(drawing, drawing.curve) for drawing in drawn if drawing.curve is not None]
+        depths = [drawing.path["depth"].values for drawing in drawn] + [
+            curve.depth for _, curve in curves
+        ]
+        forces = [drawing.path["force"].values for drawing in drawn] + [
+            curve.force for _, curve in curves
+        ]
         length, length_name = axis_unit(np.concatenate([np.zeros(1), *depths]), "m")
         newton, newton_name = axis_unit(np.concatenate([np.zeros(1), *forces]), "N")
-        for one in drawn:
-            path = one.path["depth"].values * length, one.path["force"].values * newton
-            axes.plot(*path, "--", color=one.colour, linewidth=0.8)
-        for number, (one, curve) in enumerate(curves):
-            points = one.points()
+        for drawing in drawn:
+            path = drawing.path["depth"].values * length, drawing.path["force"].values * newton
+            axes.plot(*path, "--", color=drawing.colour, linewidth=0.8)
+        for number, (drawing, curve) in enumerate(curves):
+            points = drawing.points()
             end = points["last at fixed depth"].contact_radius
             # Without that point on the curve all of it is stable at a fixed depth.
             stable = ~(curve.contact_radius < end)
             for part, style in ((stable, "-"), (~stable, ":")):
                 x, y = curve.depth[part] * length, curve.force[part] * newton
-                name = one.name.words if style == "-" else ""
+                name = drawing.name.words if style == "-" else ""
                 marked = sparse_marker(number) if len(drawn) > 1 and style == "-" else {}
                 axes.plot(
-                    x, y, style, color=one.colour, linewidth=1.4, label=name or None, **marked
+                    x, y, style, color=drawing.colour, linewidth=1.4, label=name or None, **marked
                 )
-            for what, contact in points.items():
+            for mark, contact in points.items():
                 x, y = contact.depth * length, contact.force * newton
-                axes.plot(x, y, _MARKERS[what], color=one.colour, markersize=5, mfc="white")
+                axes.plot(x, y, _MARKERS[mark], color=drawing.colour, markersize=5, mfc="white")
         hue = "0.4" if len(drawn) != 1 else drawn[0].colour
         if curves:
             axes.plot([], [], "-", color=hue, linewidth=1.4, label="with adhesion")
             axes.plot([], [], ":", color=hue, linewidth=1.4, label="unstable at fixed depth")
-            for what, marker in _MARKERS.items():
-                axes.plot([], [], marker, color=hue, markersize=5, mfc="white", label=what)
+            for mark, marker in _MARKERS.items():
+                axes.plot([], [], marker, color=hue, markersize=5, mfc="white", label=mark)
         axes.plot([], [], "--", color=hue, linewidth=0.8, label="without adhesion")
         axes.axhline(0.0, color="0.6", linewidth=0.6)
         axes.set(xlabel=f"depth [{length_name}]", ylabel=f"force [{newton_name}]", title=self.title)
         set_scales(axes, ())
         _zoom(axes, [curve for _, curve in curves], length, newton)
         axes.legend(frameon=False, fontsize="small", loc="upper left")
-        problems = dict.fromkeys(one.status for one in drawn if one.curve is None)
+        problems = dict.fromkeys(drawing.status for drawing in drawn if drawing.curve is None)
         axes.text(
             0.02,
             0.02,
@@ -208,18 +212,18 @@ def _status(
     """Return which points are not on the path, not resolved, or steeper than the theory allows."""
     spacing = max(Result(path).grid.spacing)
     steps = np.argsort(path["contact_radius"].values)
-    known = path["contact_radius"].values[steps], steepest_slopes(path)[steps]
+    slopes = path["contact_radius"].values[steps], steepest_slopes(path)[steps]
     missing, coarse, steep = [], [], []
-    for what, contact in points.items():
+    for mark, contact in points.items():
         radius = float(contact.contact_radius)
-        slope = float(np.interp(radius, *known))
+        slope = float(np.interp(radius, *slopes))
         if np.isnan(radius):
-            missing.append(what)
+            missing.append(mark)
             continue
         if radius < _CELLS * spacing:
-            coarse.append(f"{what} {radius / spacing:.1f}")
+            coarse.append(f"{mark} {radius / spacing:.1f}")
         if slope > _STEEP:
-            steep.append(f"{what} {slope:.2f}")
+            steep.append(f"{mark} {slope:.2f}")
     low, high = curve.contact_radius[[0, -1]]
     problems = []
     if missing:

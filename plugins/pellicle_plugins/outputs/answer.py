@@ -15,7 +15,8 @@ from pellicle.errors import ConfigError
 from pellicle.loading import OPTIONS
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
 from pellicle.results.shape import has_one_shape
-from pellicle.results.variables import VARIABLES, wording
+from pellicle.results.variables import VARIABLES
+from pellicle.results.wording import wording
 from pellicle.units import DIGITS, readable
 from pellicle.version import CITATION
 

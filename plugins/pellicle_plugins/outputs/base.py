@@ -20,11 +20,13 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle.files import storage_errors
 from pellicle.model.expression import evaluate, formula
 from pellicle.model.messages import nearest
-from pellicle.report.plotting import save_figure, without_round_off
+from pellicle.report.fields import without_round_off
+from pellicle.report.saving import save_figure
 from pellicle.report.style import FigureStyle, is_ordered
 from pellicle.results.derived import FIRST_RUN, names
 from pellicle.results.result import Result
-from pellicle.results.variables import wording, words_of_name
+from pellicle.results.variables import words_of_name
+from pellicle.results.wording import wording
 from pellicle.units import DIGITS, readable
 
 if TYPE_CHECKING:
@@ -226,12 +228,12 @@ def set_scales(axes: Axes, log: Sequence[str], *, signed: bool = False) -> None:
     With ``signed`` values, a logarithmic axis leaves out those that are not positive, and the lines
     to them; otherwise such lines end at the edge.
     """
-    for which in ("x", "y"):
-        low, _ = getattr(axes, f"get_{which}lim")()
-        if which in log and np.isfinite(getattr(axes.dataLim, f"minpos{which}")):
-            getattr(axes, f"set_{which}scale")("log", nonpositive="mask" if signed else "clip")
-        elif low < 0 and getattr(axes.dataLim, f"{which}0") >= 0:
-            getattr(axes, f"set_{which}lim")(**{"left" if which == "x" else "bottom": 0.0})
+    for direction in ("x", "y"):
+        low, _ = getattr(axes, f"get_{direction}lim")()
+        if direction in log and np.isfinite(getattr(axes.dataLim, f"minpos{direction}")):
+            getattr(axes, f"set_{direction}scale")("log", nonpositive="mask" if signed else "clip")
+        elif low < 0 and getattr(axes.dataLim, f"{direction}0") >= 0:
+            getattr(axes, f"set_{direction}lim")(**{"left" if direction == "x" else "bottom": 0.0})
     axes.grid(alpha=0.3)
 
 

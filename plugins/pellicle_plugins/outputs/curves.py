@@ -18,10 +18,11 @@ from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError
 from pellicle.model.base import Model
 from pellicle.model.expression import names_in
-from pellicle.report.plotting import MOST_LEGS, RETRACTION, draw_legs
+from pellicle.report.legs import MOST_LEGS, RETRACTION, draw_legs
 from pellicle.report.style import LINES, MARKERS, colour, is_log_spaced
 from pellicle.results.path import has_interaction, has_path, has_times
-from pellicle.results.variables import FIELDS, WALL_PRESSURE, wording
+from pellicle.results.variables import FIELDS, WALL_PRESSURE
+from pellicle.results.wording import wording
 from pellicle.units import printed
 from pellicle_plugins.analytic.reference import exact
 

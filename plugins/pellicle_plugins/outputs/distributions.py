@@ -11,7 +11,7 @@ from pydantic import Field
 
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
-from pellicle.report.plotting import save_figure
+from pellicle.report.saving import save_figure
 from pellicle.report.style import LINES, colour
 from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit

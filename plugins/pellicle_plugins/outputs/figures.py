@@ -8,13 +8,7 @@ from typing import ClassVar, Literal
 
 from pellicle import hookimpl
 from pellicle.components import Output, Runs
-from pellicle.report.plotting import (
-    FIGURES,
-    STUDY_FIGURES,
-    TIME,
-    save_figures,
-    save_study_figures,
-)
+from pellicle.report.plotting import FIGURES, STUDY_FIGURES, TIME, save_figures, save_study_figures
 from pellicle.report.style import FigureStyle
 from pellicle.results.result import Result
 

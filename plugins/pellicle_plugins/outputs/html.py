@@ -20,6 +20,13 @@ from pellicle.components import Output, Runs
 from pellicle.config.describe import Input, inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
+from pellicle.report.fields import (
+    DIVERGING,
+    default_step,
+    draws_contact,
+    profile,
+    without_round_off,
+)
 from pellicle.report.page import (
     Cell,
     Code,
@@ -36,18 +43,8 @@ from pellicle.report.page import (
     side,
 )
 from pellicle.report.page import Field as MapField
-from pellicle.report.plotting import (
-    DIVERGING,
-    TIME,
-    default_step,
-    drawings,
-    draws_contact,
-    profile,
-    study_curves,
-    study_figures,
-    svg,
-    without_round_off,
-)
+from pellicle.report.plotting import TIME, drawings, study_curves, study_figures
+from pellicle.report.saving import svg
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
@@ -55,14 +52,8 @@ from pellicle.results.result import Result, first_message
 from pellicle.results.shape import describes_shape
 from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
-from pellicle.results.variables import (
-    VARIABLES,
-    WALL_PRESSURE,
-    Wording,
-    names_of,
-    wording,
-    wording_of,
-)
+from pellicle.results.variables import VARIABLES, WALL_PRESSURE, names_of
+from pellicle.results.wording import Wording, wording, wording_of
 from pellicle.studies.summary import (
     caveats,
     failures,

@@ -13,7 +13,8 @@ from pydantic import Field
 from pellicle import hookimpl
 from pellicle.components import Output, Runs
 from pellicle.model.expression import names_in
-from pellicle.report.plotting import diverging, extent, outline_contact, save_figure
+from pellicle.report.fields import diverging, extent, outline_contact
+from pellicle.report.saving import save_figure
 from pellicle.report.style import NO_CONTACT, add_colour_bar
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction

@@ -11,7 +11,8 @@ from pydantic import Field
 
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
-from pellicle.report.plotting import extent, save_figure
+from pellicle.report.fields import extent
+from pellicle.report.saving import save_figure
 from pellicle.report.style import MARKERS, NO_CONTACT, colour
 from pellicle.results.result import Result
 from pellicle.units import axis_unit

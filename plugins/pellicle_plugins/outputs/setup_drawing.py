@@ -38,18 +38,20 @@ def setup_drawing(configuration: Mapping[str, Any], varied: tuple[str, ...] = ()
 
     Values at the dotted paths ``varied`` differ between the runs of a study and have no number.
     """
-    known = {i.name: i for i in inputs(configuration)}
+    inputs_by_name = {i.name: i for i in inputs(configuration)}
     kernel, indenter = configuration["kernel"], _innermost(configuration["indenter"])
-    body = [*_solid(kernel, known, varied), *_surface(kernel, known, varied)]
+    body = [*_solid(kernel, inputs_by_name, varied), *_surface(kernel, inputs_by_name, varied)]
     outline = _SHAPES.get(indenter["type"], _UNKNOWN)
     body.append(f'<path class="indenter" d="{outline}" fill="#d9dee3" stroke="#222"/>')
-    name = known["indenter"].value if "indenter" in known else indenter["type"]
-    radius = _named("indenter.radius", known, varied)
+    name = inputs_by_name["indenter"].value if "indenter" in inputs_by_name else indenter["type"]
+    radius = _named("indenter.radius", inputs_by_name, varied)
     body.append(_text(_CENTRE, 40, f"{name}{f', {radius}' if radius else ''}"))
     prescribed = prescribed_of(configuration).replace("_", " ")
     body += [_arrow(_RIGHT - 40, 50, _RIGHT - 40, 100), _text(_RIGHT - 40, 40, prescribed)]
     if configuration.get("interaction"):
-        body.append(_text(_LEFT + 8, _TIP + 40, f"adhesion: {known['interaction'].value}", "start"))
+        body.append(
+            _text(_LEFT + 8, _TIP + 40, f"adhesion: {inputs_by_name['interaction'].value}", "start")
+        )
     lines = "\n".join(body)
     return (
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 520 250" '
@@ -59,8 +61,8 @@ def setup_drawing(configuration: Mapping[str, Any], varied: tuple[str, ...] = ()
 
 def description(configuration: Mapping[str, Any]) -> str:
     """Return the set-up in words, for readers who cannot see the drawing."""
-    known = {i.name: i.value for i in inputs(configuration)}
-    return f"Set-up, not to scale: {known['indenter']} on {known['kernel']}."
+    values = {i.name: i.value for i in inputs(configuration)}
+    return f"Set-up, not to scale: {values['indenter']} on {values['kernel']}."
 
 
 def _innermost(indenter: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -89,7 +91,7 @@ def _solids(kernel: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
 
 
 def _solid(
-    kernel: Mapping[str, Any], known: Mapping[str, Input], varied: tuple[str, ...]
+    kernel: Mapping[str, Any], inputs_by_name: Mapping[str, Input], varied: tuple[str, ...]
 ) -> Iterator[str]:
     layers = list(_layers(kernel))
     # Layers on a half-space have a solid below them; a single layer lies on a rigid base.
@@ -106,20 +108,20 @@ def _solid(
             f'y="{top:.1f}" width="{_RIGHT - _LEFT}" height="{height:.1f}" fill="{shade}"/>'
         )
         if band < len(layers):
-            label = _named(f"{layers[band]}.thickness", known, varied)
+            label = _named(f"{layers[band]}.thickness", inputs_by_name, varied)
             yield _text(_RIGHT - 8, top + height - 6, label, "end")
     if on_rigid:
         yield (
             f'<rect class="base" x="{_LEFT}" y="{_BOTTOM}" width="{_RIGHT - _LEFT}" height="8" '
             'fill="#777"/>'
         )
-    yield _text(_LEFT + 8, _BOTTOM - 6, known["kernel"].value, "start")
+    yield _text(_LEFT + 8, _BOTTOM - 6, inputs_by_name["kernel"].value, "start")
     if on_rigid:
         yield _text(_CENTRE, _BOTTOM + 24, "rigid base")
 
 
 def _surface(
-    kernel: Mapping[str, Any], known: Mapping[str, Input], varied: tuple[str, ...]
+    kernel: Mapping[str, Any], inputs_by_name: Mapping[str, Input], varied: tuple[str, ...]
 ) -> Iterator[str]:
     names = ("tension", "bending", "surface_stiffness")
     path = "kernel"
@@ -137,17 +139,17 @@ def _surface(
     if "tension" in skin:
         yield _arrow(_LEFT + 45, _SURFACE, _LEFT - 14, _SURFACE, "tension")
         yield _arrow(_RIGHT - 45, _SURFACE, _RIGHT + 14, _SURFACE, "tension")
-    labels = [_named(f"{path}.{name}", known, varied) for name in skin]
+    labels = [_named(f"{path}.{name}", inputs_by_name, varied) for name in skin]
     if labels:
         yield _text(_LEFT + 8, _TIP + 22, ", ".join(labels), "start")
 
 
-def _named(name: str, known: Mapping[str, Input], varied: tuple[str, ...]) -> str:
+def _named(name: str, inputs_by_name: Mapping[str, Input], varied: tuple[str, ...]) -> str:
     """Return words and value of an input, "(varied)" if it differs; empty if it is not there."""
-    if name not in known:
+    if name not in inputs_by_name:
         return ""
-    words = known[name].words.partition(" of ")[0]
-    return f"{words} (varied)" if name in varied else f"{words} {known[name].value}"
+    words = inputs_by_name[name].words.partition(" of ")[0]
+    return f"{words} (varied)" if name in varied else f"{words} {inputs_by_name[name].value}"
 
 
 def _text(x: float, y: float, text: str, anchor: str = "middle") -> str:

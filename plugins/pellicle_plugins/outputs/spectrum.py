@@ -10,7 +10,7 @@ import numpy as np
 
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
-from pellicle.report.plotting import save_figure
+from pellicle.report.saving import save_figure
 from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
 

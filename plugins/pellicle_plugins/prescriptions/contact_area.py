@@ -46,8 +46,8 @@ def unreachable(setting: Setting, area: float) -> str:
     covered = int(np.count_nonzero(np.isfinite(profile)))
     first = int(np.count_nonzero(profile == profile.max()))
     if area > (covered + 0.5) * cell:
-        whose = "the domain" if covered == profile.size else "the indenter"
-        return f"more than {whose} has, {covered * cell:g} m²; give less"
+        owner = "the domain" if covered == profile.size else "the indenter"
+        return f"more than {owner} has, {covered * cell:g} m²; give less"
     if area > 0 and first == covered:
         return (
             f"not within reach: the indenter is flat, and all its {covered * cell:g} m² touch at "

@@ -19,9 +19,9 @@ import pellicle as pl
 from pellicle.fitting.fit import fit_problem
 from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.problem import FitProblem, problems
-from pellicle.fitting.result import status_line
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.noise import resolution
+from pellicle.runs.progress import status_line
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere
@@ -206,7 +206,7 @@ def test_tie_names_its_look_alikes_and_what_would_tell() -> None:
     assert "the retraction would" in result.comparison
     assert not result.tension_needed
     assert result.rivals is not None
-    assert {"tension", "power_law"} <= {each.rival.code for each in result.rivals.tied}
+    assert {"tension", "power_law"} <= {rival_fit.rival.code for rival_fit in result.rivals.tied}
     assert "over the 2 models" in result.range_of_moduli
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pellicle.fitting.curves.curve import Segment
-from pellicle.fitting.models.drag import DragModel
+from pellicle.fitting.models.effects import DragModel
 from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.models.relaxing import EXPONENT, PowerLawModel
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates

@@ -116,9 +116,11 @@ def test_options_replace_values_of_the_file(cli: Cli) -> None:
     measure(Path("a.csv"))
     Path("bead.toml").write_text(f'curves = "nothing/*.csv"{FILE}', encoding="utf-8")
     arguments = ("bead.toml", "a.csv", "--radius", "6 um", "--baseline", "none", "--json")
-    said = json.loads(cli(*arguments, "--set", "indenter.radius=7 um").stdout)["configuration"]
-    assert said["indenter"] == {"type": "sphere", "radius": 7e-6}
-    assert (said["baseline"], said["curves"]) == ("none", ["a.csv"])
+    configuration = json.loads(cli(*arguments, "--set", "indenter.radius=7 um").stdout)[
+        "configuration"
+    ]
+    assert configuration["indenter"] == {"type": "sphere", "radius": 7e-6}
+    assert (configuration["baseline"], configuration["curves"]) == ("none", ["a.csv"])
     Path("bead.toml").write_text(FILE, encoding="utf-8")
     config = pl.FitConfig.from_toml("bead.toml", ['indenter.type="paraboloid"'])
     changed = pl.FitConfig.merged(config, radius=["1 um", "2 um"], baseline="slope")

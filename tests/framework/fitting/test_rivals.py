@@ -16,8 +16,7 @@ from scipy.special import beta
 import pellicle as pl
 from pellicle.fitting.comparison import RivalFit, _judge
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
-from pellicle.fitting.models.drag import DRAG, DragModel
-from pellicle.fitting.models.drift import DRIFT, DriftModel
+from pellicle.fitting.models.effects import DRAG, DRIFT, DragModel, DriftModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
 from pellicle.fitting.models.history import History, constant_speed
 from pellicle.fitting.models.relaxing import (

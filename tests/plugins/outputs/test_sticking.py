@@ -19,7 +19,7 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli import app
-from pellicle.report.plotting import default_step
+from pellicle.report.fields import default_step
 from pellicle.results.variables import VARIABLES, names_of
 from pellicle.units import readable
 from tests.pictures import pixels

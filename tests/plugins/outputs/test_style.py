@@ -13,7 +13,10 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.report.plotting import edge_cells, pressure_map, save_figure, smooth, study_curves
+from pellicle.report.fields import pressure_map
+from pellicle.report.lines import edge_cells, smooth
+from pellicle.report.plotting import study_curves
+from pellicle.report.saving import save_figure
 from pellicle.report.style import OKABE_ITO, FigureStyle, colour, is_log_spaced
 from tests.pictures import pixels
 

@@ -22,7 +22,8 @@ from pellicle.fitting.curves.readers import SourceStream
 from pellicle.fitting.many import fit_sources
 from pellicle.fitting.report.page import save_report
 from pellicle.model.paths import walk
-from pellicle.results.variables import VARIABLES, wording
+from pellicle.results.variables import VARIABLES
+from pellicle.results.wording import wording
 from pellicle_plugins.outputs.base import scaled
 
 RUN: dict[str, Any] = {

@@ -59,8 +59,8 @@ def read(path: Path, calibration: Calibration, segment: str) -> Mapping[str, Cur
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")
     from afmformats.formats import get_recipe
 
-    given = {_SPRING: calibration.spring_constant, "sensitivity": calibration.sensitivity}
-    overrides = {name: value for name, value in given.items() if value is not None}
+    values = {_SPRING: calibration.spring_constant, "sensitivity": calibration.sensitivity}
+    overrides = {name: value for name, value in values.items() if value is not None}
     if not path.is_file():
         raise StorageError(f"{path}: cannot be read (no such file)")
     with warnings.catch_warnings(record=True) as caught:

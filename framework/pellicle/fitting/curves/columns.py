@@ -77,9 +77,9 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
         A column, a unit or a calibration is missing, or a unit measures something else.
     """
     if not SIGNALS & columns.keys():
-        known = ", ".join(columns) or "none that is known"
+        listing = ", ".join(columns) or "none that is known"
         raise ConfigError(
-            f"has no column force or deflection (columns: {known}); give a "
+            f"has no column force or deflection (columns: {listing}); give a "
             f"header such as {EXAMPLE!r}, or name its columns (--columns on the command line), "
             "which has to name each column that is read"
         )

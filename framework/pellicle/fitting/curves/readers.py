@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -17,7 +18,7 @@ from pellicle.units import Quantity
 
 from . import afm
 from .columns import Calibration, from_columns, is_curve
-from .curve import Curve, Site
+from .curve import Curve, Segment, Site
 from .origin import Stamped, state
 from .roles import EXAMPLE
 from .text_table import FILE, curves_of, read_cells
@@ -324,4 +325,47 @@ def _read(
         except ConfigError as error:
             where = f"{path}: curve {label}" if label else str(path)
             curves[label] = ConfigError(f"{where}: {error}{hint}")
+    return curves
+
+
+def read_curves(
+    path: str | Path, *, segment: Segment = "both", **calibration: Any
+) -> dict[str, Curve]:
+    """Return the curves of a file, a folder, a pattern or a table of files by their names.
+
+    Position, force and time are in SI; a curve draws itself with `Curve.plot`.
+
+    Parameters
+    ----------
+    path
+        As the curves of `fit_many`.
+    segment
+        Segment of the files of instruments that label segments; both are all rows.
+    **calibration
+        Options of `fit` that say how files are read: ``spring_constant``, ``sensitivity``,
+        ``speed``, ``columns``.
+
+    Returns
+    -------
+    dict[str, Curve]
+        In order; a curve that cannot be read is left out with a warning.
+
+    Raises
+    ------
+    ConfigError
+        No curve can be read, or an argument is not allowed.
+    StorageError
+        A folder or a list of files cannot be read.
+    """
+    curves: dict[str, Curve] = {}
+    errors: list[PellicleError] = []
+    for source in SourceStream(gather(path, segment, Calibration(**calibration), {})):
+        if isinstance(source.curve, Curve):
+            curves[source.name] = source.curve
+        else:
+            errors.append(source.named(ConfigError(source.reason(source.curve))))
+    if not curves:
+        raise ConfigError("\n".join(map(str, errors)))
+    for error in errors:
+        warnings.warn(str(error), stacklevel=2)
     return curves

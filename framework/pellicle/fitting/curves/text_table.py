@@ -232,7 +232,7 @@ def curves_of(
     ConfigError
         A column is missing, or several have its name.
     """
-    indices, units = _mapped(path, cells, mapped) if mapped else _known(path, cells)
+    indices, units = _mapped(path, cells, mapped) if mapped else _standard_columns(path, cells)
     label = indices.pop(LABEL, None)
     curves: dict[str, list[list[str]]] = {"": cells.rows}
     if label is not None and indices:
@@ -248,7 +248,7 @@ def curves_of(
     }
 
 
-def _known(path: Path, cells: Cells) -> tuple[dict[str, int], dict[str, str]]:
+def _standard_columns(path: Path, cells: Cells) -> tuple[dict[str, int], dict[str, str]]:
     names = cells.names
     indices = {name: index for index, name in enumerate(names) if name in (*NAMES, LABEL)}
     for name in indices:
@@ -275,14 +275,14 @@ def _mapped(
 
 def _index(path: Path, cells: Cells, name: str) -> int:
     """Return the index of the column with a name or, if none has it, a number."""
-    known = [index for index, head in enumerate(cells.heads) if head.is_called(name)]
-    if len(known) == 1:
-        return known[0]
+    matches = [index for index, head in enumerate(cells.heads) if head.is_called(name)]
+    if len(matches) == 1:
+        return matches[0]
     width = max((len(cells.heads), *(len(row) for row in cells.rows[:1])))
-    if not known and name.isdecimal() and 1 <= int(name) <= width:
+    if not matches and name.isdecimal() and 1 <= int(name) <= width:
         return int(name) - 1
     has = ", ".join(shown(text) for text in [h.text for h in cells.heads] or cells.first)
-    problem = f"has {len(known)} columns {name!r}" if known else f"has no column {name!r}"
+    problem = f"has {len(matches)} columns {name!r}" if matches else f"has no column {name!r}"
     raise ConfigError(
         f"{path}: {problem} (it has {has}); give a name of one column, or its number from 1 to "
         f"{width}",

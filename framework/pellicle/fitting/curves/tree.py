@@ -41,10 +41,10 @@ def read_hdf5(path: Path, mapped: Mapping[str, str]) -> dict[str, Mapping[str, C
         with h5py.File(path) as file:
             if mapped:
                 return _mapped(path, file, mapped)
-            if columns := _known(file):
+            if columns := _standard_columns(file):
                 return {"": columns}
             groups = {
-                str(name): _known(group)
+                str(name): _standard_columns(group)
                 for name, group in file.items()
                 if isinstance(group, h5py.Group)
             }
@@ -78,7 +78,7 @@ def read_matlab(path: Path, mapped: Mapping[str, str]) -> dict[str, Mapping[str,
     return _mapped(path, content, mapped)
 
 
-def _known(group: h5py.Group) -> dict[str, Channel]:
+def _standard_columns(group: h5py.Group) -> dict[str, Channel]:
     """Return the columns with known names that are datasets of a group."""
     import h5py
 

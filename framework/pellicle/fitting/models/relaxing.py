@@ -45,6 +45,19 @@ class Course(NamedTuple):
     """Derivative of this depth with respect to that of the row."""
 
 
+class _Loading(NamedTuple):
+    """The response of a solid while the contact grows, at n nodes of the path."""
+
+    time: Array
+    """[s]."""
+    depth: Array
+    """[m]."""
+    elastic_force: Array
+    """Force of the elastic solid without tension over E* [m²]."""
+    log_modulus: Array
+    """Logarithm of the effective modulus over E*, of shape (n − 1,): not at the first touch."""
+
+
 class _PathForce(NamedTuple):
     """Force at the rows of a curve and its derivatives, each of shape (n,)."""
 
@@ -197,6 +210,21 @@ class RelaxingModel(ABC):
         size = times.size
         if not end > start:
             return Course(np.ones(size), np.zeros(size), np.ones(size))
+        loading = self._loading(start, end, point, values)
+        earliest = _EARLIEST * (end - start)
+        # Nodes of a far contact point may coincide by rounding.
+        log_time = np.log(np.maximum(loading.time[1:] - start, 1e-6 * earliest))
+        at = np.log(np.maximum(times - start, earliest))
+        modulus = np.exp(np.interp(at, log_time, loading.log_modulus))
+        course = Course(modulus, np.zeros(size), np.ones(size))
+        back_times, _ = history.unloading_path
+        if history.unloading.any() and back_times.size > 1 and back_times[-1] > end:
+            return self._unloading(course, loading, point, values)
+        return course
+
+    def _loading(self, start: float, end: float, point: float, values: Values) -> _Loading:
+        """Return the response while the contact grows, between two times [s]."""
+        history = self.history
         top = min(max(history.top, start + _EARLIEST * (end - start)), end)
         ramp = start + (top - start) * np.linspace(0, 1, _RAMP + 1) ** 2
         dwell = top + (end - top) * np.linspace(0, 1, _DWELL + 1)[1:] ** 2
@@ -204,19 +232,16 @@ class RelaxingModel(ABC):
         z = np.maximum.accumulate(history.positions(t, point) - point)
         # Equal depths of the elastic solid without tension.
         g = self.elastic.force_curve(z, 0.0).force
-        loaded = self._hereditary(t[1:], t, g, values)
+        force = self._hereditary(t[1:], t, g, values)
         with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.where(g[1:] > 0, loaded / g[1:], np.nan)
-        log_ratio = _filled(np.log(np.maximum(ratio, 1e-12)))
-        earliest = _EARLIEST * (end - start)
-        # Nodes of a far contact point may coincide by rounding.
-        log_time = np.log(np.maximum(t[1:] - start, 1e-6 * earliest))
-        at = np.log(np.maximum(times - start, earliest))
-        modulus = np.exp(np.interp(at, log_time, log_ratio))
-        depth, by_depth = np.zeros(size), np.ones(size)
-        back_times, back_positions = history.unloading_path
-        if not history.unloading.any() or back_times.size < 2 or back_times[-1] <= end:
-            return Course(modulus, depth, by_depth)
+            ratio = np.where(g[1:] > 0, force / g[1:], np.nan)
+        return _Loading(t, z, g, _filled(np.log(np.maximum(ratio, 1e-12))))
+
+    def _unloading(self, course: Course, loading: _Loading, point: float, values: Values) -> Course:
+        """Return the response with that of the rows at which the contact shrinks."""
+        history, times = self.history, self.history.time
+        t, z, g, log_modulus = loading
+        end, (back_times, back_positions) = history.loading_path[0][-1], history.unloading_path
         u = end + (back_times[-1] - end) * np.linspace(0, 1, _BACK + 1)[1:] ** 1.5
         back = np.concatenate([[end], u])
         y = np.interp(back, back_times, back_positions) - point
@@ -226,19 +251,20 @@ class RelaxingModel(ABC):
         growing = self.elastic.force_curve(equal, 0.0).force
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = np.where(growing > 1e-9 * g[-1], force / growing, np.nan)
-        log_back = np.concatenate([log_ratio[-1:], np.log(np.maximum(ratio, 1e-12))])
+        log_back = np.concatenate([log_modulus[-1:], np.log(np.maximum(ratio, 1e-12))])
         rows = history.unloading
+        modulus, depth, by_depth = (part.copy() for part in course)
         modulus[rows] = np.exp(np.interp(times[rows], back, _filled(log_back)))
         equal = np.concatenate([z[-1:], equal])
         path = np.interp(times[rows], back, y)
         falls = np.minimum(np.diff(y), -1e-12 * max(float(z[-1]), 1e-300))
         slopes = np.clip(np.diff(equal) / falls, 0.0, 3.0)
         index = np.clip(np.searchsorted(back, times[rows]) - 1, 0, slopes.size - 1)
-        by_depth[rows] = slopes[index]
-        depth[rows] = np.interp(times[rows], back, equal) - slopes[index] * path
-        lost = np.interp(times[rows], back, np.concatenate([[t[-1]], earlier])) <= start
-        by_depth[rows] = np.where(lost, 0.0, by_depth[rows])
-        depth[rows] = np.where(lost, 0.0, depth[rows])
+        contact_lost = np.interp(times[rows], back, np.concatenate([t[-1:], earlier])) <= t[0]
+        by_depth[rows] = np.where(contact_lost, 0.0, slopes[index])
+        depth[rows] = np.where(
+            contact_lost, 0.0, np.interp(times[rows], back, equal) - slopes[index] * path
+        )
         return Course(modulus, depth, by_depth)
 
     def _weights(self, at: Array, times: Array, values: Values) -> Array:
@@ -357,7 +383,7 @@ def _lagrange(nodes: Array, at: Array) -> Array:
 
 def _filled(values: Array) -> Array:
     """Return values with NaN replaced by the nearest number before, or else after."""
-    known = np.flatnonzero(np.isfinite(values))
-    if not known.size:
+    finite = np.flatnonzero(np.isfinite(values))
+    if not finite.size:
         return np.zeros_like(values)
-    return np.interp(np.arange(values.size), known, values[known])
+    return np.interp(np.arange(values.size), finite, values[finite])

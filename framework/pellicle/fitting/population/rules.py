@@ -51,10 +51,10 @@ _ENDS = ("low", "high", "bound")
 
 def units() -> dict[str, str]:
     """Return the names that rules may contain, each with its unit."""
-    known = {p.name: p.unit for p in vars(parameters).values() if isinstance(p, Parameter)}
-    known |= _DERIVED
-    ends = {f"{name}_{end}": unit for name, unit in known.items() for end in _ENDS}
-    return known | ends | NUMBERS
+    names = {p.name: p.unit for p in vars(parameters).values() if isinstance(p, Parameter)}
+    names |= _DERIVED
+    ends = {f"{name}_{end}": unit for name, unit in names.items() for end in _ENDS}
+    return names | ends | NUMBERS
 
 
 def values(row: Row) -> dict[str, float]:

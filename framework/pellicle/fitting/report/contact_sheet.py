@@ -14,7 +14,7 @@ from pellicle.files import for_document
 from pellicle.fitting.many import FITTED, ManyFits
 from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.population.sketch import Sketch
-from pellicle.report.plotting import save_pages
+from pellicle.report.saving import save_pages
 from pellicle.units import axis_unit, decimal, readable
 
 if TYPE_CHECKING:

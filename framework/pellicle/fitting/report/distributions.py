@@ -29,7 +29,7 @@ _RASTERISED = 1000
 
 
 def drawable(rows: Sequence[Row]) -> list[Row]:
-    """Return the accepted curves."""
+    """Return the rows of accepted curves, which are those that are drawn."""
     return [row for row in rows if row["accepted"]]
 
 

@@ -29,7 +29,7 @@ from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
 from pellicle.fitting.statistics.profile import Estimate
-from pellicle.report.plotting import save_figure as save_drawing
+from pellicle.report.saving import save_figure as save_drawing
 from pellicle.report.style import LINES
 from pellicle.units import axis_unit
 
@@ -332,8 +332,8 @@ def _with_residuals(fit: Fit | PooledFit, figure: FigureBase) -> None:
 
 def _profiles(fit: PooledFit, figure: FigureBase) -> None:
     free = [parameter for parameter in fit.pool.free if parameter.shared]
-    for number, which in enumerate(free, 1):
-        profile(fit, which, figure.add_subplot(len(free), 1, number))
+    for number, shared in enumerate(free, 1):
+        profile(fit, shared, figure.add_subplot(len(free), 1, number))
 
 
 def _estimates(rows: Sequence[Row], figure: FigureBase) -> None:

@@ -11,17 +11,17 @@ from typing import Any
 import numpy as np
 
 from pellicle.config.describe import inputs
-from pellicle.files import atomic_write
+from pellicle.files import atomic_write, json_text
 from pellicle.fitting.fit import Fit
 from pellicle.fitting.many import FITTED, ManyFits
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.population.judgement import Row
-from pellicle.fitting.result import FitResult, as_json
+from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.profile import CONFIDENCE
 from pellicle.fitting.wording import interval, scale, words
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
-from pellicle.report.plotting import svg
+from pellicle.report.saving import svg
 from pellicle.units import axis_unit, decimal, readable
 
 from .answer import answer, answer_of_population
@@ -71,7 +71,7 @@ def save_report(fit: Fit | PooledFit | ManyFits, path: Path, title: str) -> Path
     ]
     if isinstance(fit, ManyFits):
         figures += _sheets(fit)
-    content = as_json(fit.to_dict())
+    content = json_text(fit.to_dict())
     code: Block = Code(content, "All numbers, in SI.", f"{path.stem}.json")
     if len(content) > _LONGEST:
         code = Text("With this number of curves the page does not repeat the tables of --output.")
@@ -122,7 +122,7 @@ def _many(fits: ManyFits) -> tuple[list[Block], list[Block]]:
         blocks.append(Notice("Population:", good=False, details=_first(fits.notes)))
     if any(row["accepted"] for row in rows):
         blocks.append(_groups(fits))
-    blocks += [_each(rows), *_warnings(_first(messages))]
+    blocks += [_rows_of_curves(rows), *_warnings(_first(messages))]
     return blocks, [_inputs(models)] if models else []
 
 
@@ -132,7 +132,7 @@ def _first(lines: Sequence[str]) -> list[str]:
     return [*lines[:_LINES], *([f"… and {more} more, in the table of --output"] * (more > 0))]
 
 
-def _each(rows: Sequence[Row]) -> Table:
+def _rows_of_curves(rows: Sequence[Row]) -> Table:
     """Return the table with a row for each curve."""
     columns: dict[Column, Sequence[str | Cell]] = {}
     columns[Column("curve", words=True)] = [row["curve"] for row in rows]

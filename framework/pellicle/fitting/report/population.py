@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from pellicle.fitting.many import ManyFits
-from pellicle.report.plotting import save_figure
+from pellicle.report.saving import save_figure
 
 from . import distributions
 from .contact_sheet import save_sheets

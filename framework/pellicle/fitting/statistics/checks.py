@@ -208,8 +208,8 @@ def _check_contact(residuals: Residuals, before: NoiseEstimate | None) -> NoiseE
     """
     points = np.full(residuals.force.size, True) if before is None else ~residuals.before
     # The points before contact determine the baseline.
-    known = () if before is None else residuals.baseline
-    freedom = max(int(points.sum()) - len(residuals.likelihood.free) + len(known), 1)
+    baseline = () if before is None else residuals.baseline
+    freedom = max(int(points.sum()) - len(residuals.likelihood.free) + len(baseline), 1)
     scatter = Noise(float(np.sqrt(np.sum(residuals.force[points] ** 2) / freedom)), freedom)
     if before is None:
         before = NoiseEstimate(Noise(max(scatter.deviation, residuals.floor), freedom), ())

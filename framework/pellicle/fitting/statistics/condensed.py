@@ -61,17 +61,17 @@ class Condensation:
         for rows, coordinate, bend in groups:
             order = np.argsort(coordinate, kind="stable")
             x, index = np.unique(coordinate[order], return_index=True)
-            known = rows[order][index]
+            representatives = rows[order][index]
             at = _nodes(x, bend, max(count * rows.size // size, _FEWEST))
-            nodes.append(known[at])
+            nodes.append(representatives[at])
             cell = np.clip(np.searchsorted(x[at], coordinate, side="right") - 1, 0, at.size - 1)
             after = np.minimum(cell + 1, at.size - 1)
-            first[rows], second[rows] = known[at][cell], known[at][after]
+            first[rows], second[rows] = representatives[at][cell], representatives[at][after]
             width = x[at][after] - x[at][cell]
             share[rows] = np.where(
                 width > 0, (coordinate - x[at][cell]) / np.where(width > 0, width, 1.0), 0.0
             )
-            following[known[at][:-1]] = known[at][1:]
+            following[representatives[at][:-1]] = representatives[at][1:]
         sequence = np.concatenate(nodes)
         place = np.empty(size, dtype=np.intp)
         place[sequence] = np.arange(sequence.size)

@@ -48,26 +48,26 @@ def advice(
     """
     if modulus.held or tension.held:
         return "", []
-    supposed = _with_tension(likelihood, parameters, tension)
-    now, others = _designs(likelihood, supposed)
+    with_tension = _with_tension(likelihood, parameters, tension)
+    now, others = _designs(likelihood, with_tension)
     if tension.value and not np.isfinite([modulus.bound, tension.bound]).all():
         words = (
             "the force is so far from linear in modulus and tension that no bound (Cramér–Rao) of "
             "their errors holds; the intervals do"
         )
     else:
-        condition = f"for a tension of {readable(supposed[TENSION], 'N/m', 2)}: "
+        condition = f"for a tension of {readable(with_tension[TENSION], 'N/m', 2)}: "
         shares = {"modulus": now.modulus, "tension": now.tension}
         words = (
-            f"{condition if supposed[TENSION] != tension.value else ''}"
+            f"{condition if with_tension[TENSION] != tension.value else ''}"
             f"{_bounds('this curve', shares)}; {_better(now, others)}"
         )
     if not _is_open(modulus, tension):
         return words, []
-    which = "modulus" if modulus.low is None or modulus.high is None else "tension"
+    parameter = "modulus" if modulus.low is None or modulus.high is None else "tension"
     warning = (
-        f"the curve cannot tell modulus and tension apart: the interval of the {which} is open, "
-        "and its value is one of many"
+        f"the curve cannot tell modulus and tension apart: the interval of the {parameter} is "
+        "open, and its value is one of many"
     )
     if min(design.worse for design in (now, *others)) < _USELESS:
         length = 2 * tension.value / modulus.value
@@ -110,8 +110,8 @@ def pooled_advice(modulus: Estimate, tension: Estimate) -> tuple[str, list[str]]
 
 def _is_open(modulus: Estimate, tension: Estimate) -> bool:
     """Return whether both are fitted, and one has an interval that does not end."""
-    held = modulus.held or tension.held
-    return not held and None in (modulus.low, modulus.high, tension.high)
+    fixed = modulus.held or tension.held
+    return not fixed and None in (modulus.low, modulus.high, tension.high)
 
 
 def _bounds(subject: str, shares: Mapping[str, float]) -> str:

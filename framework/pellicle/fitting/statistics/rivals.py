@@ -12,8 +12,7 @@ from pellicle.arrays import Array
 from pellicle.components import HasContactRadius, HasForceCurve, HasLayerForceCurve, Indenter
 from pellicle.errors import ConvergenceError, PellicleError
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
-from pellicle.fitting.models.drag import DRAG, DragModel
-from pellicle.fitting.models.drift import DRIFT, DriftModel
+from pellicle.fitting.models.effects import DRAG, DRIFT, DragModel, DriftModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel, TensionModel
 from pellicle.fitting.models.layer import FreeLayerModel
 from pellicle.fitting.models.relaxing import (

@@ -1,0 +1,31 @@
+"""Calls of components: one function for each method that the framework calls.
+
+Arguments of components are read-only. Returned values are checked against the contract, at a cost
+far below that of the call. `pellicle.operators` calls kernels in the same way.
+"""
+
+from .correction import corrected_area
+from .executor import outcomes_of
+from .indenter import force_curve_of, layer_force_curve_of, profile_of
+from .kernel import branches_of, instantaneous
+from .output import files_of, require_files
+from .prescription import check_value, report_of, target_of
+from .solver import check_solver, response_of, solution_of
+
+__all__ = [
+    "branches_of",
+    "check_solver",
+    "check_value",
+    "corrected_area",
+    "files_of",
+    "force_curve_of",
+    "instantaneous",
+    "layer_force_curve_of",
+    "outcomes_of",
+    "profile_of",
+    "report_of",
+    "require_files",
+    "response_of",
+    "solution_of",
+    "target_of",
+]

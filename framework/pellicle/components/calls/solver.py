@@ -1,0 +1,173 @@
+"""Calls of a solver: the solution of a load step and its stiffness."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from numbers import Integral
+
+import numpy as np
+
+from pellicle.arrays import Array
+from pellicle.checks import (
+    component_name,
+    errors_attributed_to,
+    read_only,
+    real_array,
+    real_number,
+)
+from pellicle.components.solver import Monitor, Solver
+from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.numerics.path import Start
+from pellicle.numerics.problem import Problem
+from pellicle.numerics.solution import Solution, State, Stop
+
+# How Python refuses a State used as an array, which it was in earlier versions.
+_OUTDATED = "'State'|State is not an array|can't multiply sequence|argument 'pressure'"
+
+
+def check_solver(solver: Solver, problem: Problem) -> None:
+    """Let a solver refuse a problem.
+
+    Raises
+    ------
+    ConfigError
+        The solver cannot solve the problem.
+    """
+    with errors_attributed_to(solver):
+        reason = solver.refuses(problem)
+    if reason:
+        raise ConfigError(f"{component_name(solver)} {reason}", "solver.type")
+
+
+def solution_of(
+    solver: Solver, problem: Problem, start: State | None, monitor: Monitor
+) -> Solution:
+    """Return the solution of a load step, with a copy of its pressure.
+
+    A negative or non-finite pressure is accepted here; the status of the step reports it.
+
+    Raises
+    ------
+    ConfigError
+        The solver refuses the problem.
+    PluginError
+        The solver does not return a `Solution` of the grid's shape, changes the problem, or treats
+        ``start`` as an array, which it was in earlier versions.
+    """
+    check_solver(solver, problem)
+    adheres = problem.law is not None
+    sticks = adheres and start is not None and start.is_loaded
+    if not problem.needs_solving and not sticks:
+        return _solution_without_load(problem)
+    value = _solve(solver, problem, start, monitor)
+    state = _checked_state(solver, problem, value)
+    jumped = bool(value.jumped) or (adheres and _in_contact(state) != _in_contact(start))
+    return Solution(
+        state, int(value.iterations), value.stop, jumped, adheres and bool(value.extrapolated)
+    )
+
+
+def _solution_without_load(problem: Problem) -> Solution:
+    """Return the solution of a step at which nothing touches."""
+    nothing = np.zeros(problem.grid.shape)
+    if problem.law is None:
+        return Solution(nothing, 0, Stop.DONE)
+    stop = Stop.DONE if problem.prescribed == "depth" else Stop.PULLED_OFF
+    return Solution(State(nothing, nothing, problem.depth(np.zeros(1))), 0, stop)
+
+
+def _solve(solver: Solver, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
+    """Return what a solver returns for a problem that it cannot change."""
+    view = _read_only_problem(problem)
+    fields, parts = dict(vars(view)), problem.operator.parts()
+    try:
+        with errors_attributed_to(solver):
+            value = solver.solve(view, None if start is None else _read_only_state(start), monitor)
+    except (AttributeError, TypeError) as error:
+        if not re.search(_OUTDATED, str(error)):
+            raise
+        raise PluginError(
+            f"{' '.join(error.__notes__)}: {error}; solve() starts from None or a pellicle.State, "
+            "not an array: its pressure is start.pressure; it returns "
+            "pellicle.Solution(pressure or state, iterations, stop)"
+        ) from error
+    _require_unchanged(solver, "solve()", fields, dict(vars(view)), "problem")
+    _require_unchanged(solver, "solve()", parts, problem.operator.parts(), "problem.operator")
+    return value
+
+
+def _checked_state(solver: Solver, problem: Problem, value: object) -> State | Array:
+    """Return a copy of the state of a solution, or of its pressure where nothing adheres."""
+    name = component_name(solver)
+    if not isinstance(value, Solution):
+        raise PluginError(
+            f"{name}: solve() returned {shown(value)}; it has to return a pellicle.Solution"
+        )
+    pressure = real_array(solver, "solve().pressure", value.pressure, problem.grid.shape)
+    if not isinstance(value.iterations, Integral) or not isinstance(value.stop, Stop):
+        raise PluginError(
+            f"{name}: solve() returned iterations {shown(value.iterations)} and stop "
+            f"{shown(value.stop)}; they have to be a whole number and a pellicle.Stop"
+        )
+    # The solver may reuse the memory of the arrays that it returned.
+    pressure = pressure.copy()
+    if problem.law is None:
+        return pressure
+    if not isinstance(value.state, State):
+        raise PluginError(
+            f"{name}: solve() returned a pressure alone; with an interaction it has to return "
+            "a pellicle.State with the wall pressure"
+        )
+    wall = real_array(solver, "solve().state.wall", value.state.wall, problem.grid.shape)
+    depth = real_number(solver, "solve().state.depth", value.state.depth)
+    return State(pressure, wall.copy(), depth)
+
+
+def _in_contact(state: State | Array | None) -> bool:
+    return isinstance(state, State) and bool(state.contact.any())
+
+
+def response_of(solver: Solver, problem: Problem, state: State, monitor: Monitor) -> Array:
+    """Return dp/dδ [Pa/m] with the contact of ``state`` fixed.
+
+    Raises
+    ------
+    PluginError
+        The result is not an array of the grid's shape, or not 0 off the contact.
+    """
+    view, parts = _read_only_problem(problem), problem.operator.parts()
+    with errors_attributed_to(solver):
+        value = solver.response(view, _read_only_state(state), monitor)
+    _require_unchanged(solver, "response()", parts, problem.operator.parts(), "problem.operator")
+    pressure = real_array(solver, "response()", value, problem.grid.shape)
+    if problem.law is None and pressure[~state.contact].any():
+        raise PluginError(
+            f"{component_name(solver)}: response() returned a pressure off the contact; it has to "
+            "be 0 there"
+        )
+    return pressure
+
+
+def _read_only_problem(problem: Problem) -> Problem:
+    return replace(problem, profile=read_only(problem.profile))
+
+
+def _read_only_state(state: State) -> State:
+    pressure = read_only(state.pressure)
+    wall = pressure if state.wall is state.pressure else read_only(state.wall)
+    view = State(pressure, wall, state.depth)
+    if isinstance(state, Start) and state.ahead:
+        return Start.of(view, _read_only_state(state.ahead))
+    return view
+
+
+def _require_unchanged(
+    solver: Solver, call: str, before: dict[str, object], after: dict[str, object], owner: str
+) -> None:
+    differences = [key for key in before | after if before.get(key) is not after.get(key)]
+    if differences:
+        raise PluginError(
+            f"{component_name(solver)}: {call} changes {owner}.{differences[0]}; a solver has to "
+            "leave its problem as it is"
+        )

@@ -1,0 +1,108 @@
+"""How figures and tables show a variable: in words, in one unit, with as many digits as needed."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from pellicle.arrays import Array
+from pellicle.units import DIGITS, NOTHING, Scale, axis_unit, printed
+
+from .variables import (
+    CORRECTED_AREA,
+    CORRECTED_FRACTION,
+    VARIABLES,
+    WORDS,
+    WORDS_OF_VALUES,
+    corrected_area,
+    corrected_fraction,
+    words_of_name,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_SI_DIGITS, _ALL_DIGITS = 6, 15
+
+
+@dataclass(frozen=True)
+class Wording:
+    """A variable as figures and tables show it: in words, and in one unit for all values."""
+
+    words: str
+    """Such as "contact radius"."""
+    scale: Scale
+    digits: int = DIGITS
+    """Significant digits of its numbers."""
+    texts: Mapping[str, str] = field(default_factory=dict)
+    """Words for values that are texts, such as types of components."""
+
+    @property
+    def head(self) -> str:
+        """Words and unit, for an axis or a column: "contact radius [µm]"."""
+        return f"{self.words} [{self.scale.unit}]" if self.scale.unit else self.words
+
+    def number(self, value: object) -> str:
+        """Return a value in SI as text in the unit, without it."""
+        if isinstance(value, str):
+            return self.texts.get(value, value)
+        return self.scale.number(value, self.digits)
+
+    def text(self, value: object) -> str:
+        """Return words, value and unit: "surface tension 30 mN/m"."""
+        number = self.number(value)
+        return f"{self.words} {number if number == NOTHING else self.scale.with_unit(number)}"
+
+    def listing(self, values: Iterable[object]) -> str:
+        """Return several values in SI as a list with the unit; of many, some are left out."""
+        return self.scale.listing([self.number(value) for value in values])
+
+
+def wording(variable: xr.DataArray, *, si: bool = False) -> Wording:
+    """Return how a variable or a coordinate of a result or a table is shown.
+
+    Its attributes, then the table of variables, then its name give the words; its largest value the
+    prefix of its unit, which with ``si`` has none. The values of a coordinate have as many digits
+    as distinguish them, four at least; with ``si`` numbers have six.
+    """
+    name = str(variable.name)
+    words = str(variable.attrs.get(WORDS, _known_words(name)))
+    unit = str(variable.attrs.get("units", "1"))
+    if variable.dtype.kind not in "iuf":
+        return Wording(
+            words, Scale(1.0, ""), texts=json.loads(variable.attrs.get(WORDS_OF_VALUES, "{}"))
+        )
+    if si:
+        return Wording(words, Scale(1.0, "" if unit == "1" else printed(unit)), digits=_SI_DIGITS)
+    scale = axis_unit(variable.values, unit)
+    is_axis = variable.ndim == 1 and name in variable.coords
+    return Wording(words, scale, _digits(variable.values, scale) if is_axis else DIGITS)
+
+
+def wording_of(name: str, values: Sequence[float], *, si: bool = False) -> Wording:
+    """Return how values of a variable of `VARIABLES` are shown."""
+    import xarray as xr
+
+    attributes = VARIABLES[name].attributes
+    return wording(xr.DataArray(list(values), dims="row", name=name, attrs=attributes), si=si)
+
+
+def _known_words(name: str) -> str:
+    """Return words for a variable without them, as in files of earlier versions."""
+    if name in VARIABLES:
+        return VARIABLES[name].words
+    if not name.startswith((CORRECTED_AREA, CORRECTED_FRACTION)):
+        return words_of_name(name)
+    area = corrected_area(name.removeprefix(CORRECTED_AREA).removeprefix(CORRECTED_FRACTION))
+    return (area if name.startswith(CORRECTED_AREA) else corrected_fraction(area)).words
+
+
+def _digits(values: Array, scale: Scale) -> int:
+    """Return the number of digits that distinguish values, at least `DIGITS`."""
+    distinct = {*values.tolist()}
+    for digits in range(DIGITS, _ALL_DIGITS):
+        if len({scale.number(value, digits) for value in distinct}) == len(distinct):
+            return digits
+    return _ALL_DIGITS
