@@ -16,11 +16,11 @@ from pellicle.numerics.grid_transfer import highest
 from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Depth, Problem
+from pellicle.numerics.sharing import row_blocks, shared
 from pellicle.numerics.solution import Progress, Solution, State, Stop
 
 from .adhesion import AdhesionSolver
 from .adhesive_response import with_zone
-from .blocks import blocks
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
 from .nested_grids import coarse_solution, coarser, prolonged
 from .preconditioner import OnContact, Preconditioner
@@ -312,8 +312,11 @@ def _iterate(
     pressed = cells[trial.ravel()[cells] != 0]
     inside = displacement.ravel()[pressed] - problem.profile.ravel()[pressed]
     depth = problem.depth(inside)
-    u, f = displacement.ravel(), problem.profile.ravel()
-    lowest = min(float((u[block] - f[block]).min()) for block in blocks(u.size))
+
+    def least(rows: slice) -> float:
+        return float((displacement[rows] - problem.profile[rows]).min())
+
+    lowest = min(shared(least, row_blocks(displacement.shape)))
     error = max(float(np.abs(inside - depth).max(initial=0.0)), depth - lowest)
     scale = problem.height_scale(pressed, depth, float(trial.sum()))
     progress = before.progress if before else Progress()

@@ -119,15 +119,16 @@ def _minimised(
 
 def _window(cells: Mask) -> tuple[NDArray[np.int64], ...] | None:
     """Return the index of a rectangle around ``cells`` on their periodic plane; None for all."""
-    axes = [_interval(cells.any(axis=1)), _interval(cells.any(axis=0))]
-    if all(axis.size == n for axis, n in zip(axes, cells.shape, strict=True)):
-        return None
-    return np.ix_(*axes)
+    axes = [
+        _interval(np.flatnonzero(cells.any(axis=i)), n)
+        for i, n in zip((1, 0), cells.shape, strict=True)
+    ]
+    whole = (axes[0].size, axes[1].size) == cells.shape
+    return None if whole else np.ix_(*axes)
 
 
-def _interval(occupied: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Return the indices of the shortest periodic interval of ``occupied``, with a margin."""
-    number, indices = occupied.size, np.flatnonzero(occupied)
+def _interval(indices: NDArray[np.int64], number: int) -> NDArray[np.int64]:
+    """Return the indices of the shortest periodic interval around some, with a margin."""
     steps = np.diff(indices, append=indices[0] + number)
     widest = int(np.argmax(steps))
     extent = number - int(steps[widest]) + 1
@@ -135,7 +136,8 @@ def _interval(occupied: NDArray[np.bool_]) -> NDArray[np.int64]:
     if length > _WHOLE * number:
         return np.arange(number)
     start = int(indices[(widest + 1) % indices.size]) - (length - extent) // 2
-    return (start + np.arange(length)) % number
+    interval: NDArray[np.int64] = (start + np.arange(length)) % number
+    return interval
 
 
 def _rims(shape: tuple[int, int], whole: tuple[int, ...]) -> list[tuple[slice, slice]]:
