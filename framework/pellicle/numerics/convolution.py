@@ -13,7 +13,7 @@ from .sharing import blocks, shared
 Float = TypeVar("Float", np.float32, np.float64)
 
 # Cells in a block of rows or columns that one thread transforms at once, few enough for the cache.
-_BLOCK: Final = 2**16
+_BLOCK: Final = 2**17
 # Least number of columns in a block: numbers side by side are in one line of the cache.
 _LINE: Final = 16
 # Points of a transform below which it is one block: sharing it takes longer.

@@ -36,8 +36,8 @@ def shared(work: Callable[[Block], Result], blocks: Sequence[Block]) -> list[Res
     array only. What a block gives does not depend on the number of threads, and neither does a sum
     over the returned list.
     """
-    threads = min(scipy.fft.get_workers(), len(blocks))
-    if threads < 2:
+    threads = min(scipy.fft.get_workers(), len(blocks)) if len(blocks) > 1 else 1
+    if threads == 1:
         return [work(block) for block in blocks]
     results: dict[int, Result] = {}
     remaining = enumerate(blocks)

@@ -244,24 +244,24 @@ def _transposed_interpolate(fine: Field, free: Field) -> Field:
     """Return the transpose of the map from ``coarse`` in `_interpolate`, applied to ``fine``."""
     coarse = np.empty([n // 2 for n in fine.shape], fine.dtype)
 
+    def transposed(rows: slice) -> Field:
+        block = fine[rows] * free[rows]
+        return block if block.ndim == 1 else _transposed_refined(block)
+
     def gather(rows: slice) -> None:
-        first, last = _fine(rows).start, _fine(rows).stop
-        # The cell before the first and the one after the last, on the periodic plane.
-        above, below = (fine[row % len(fine)] * free[row % len(fine)] for row in (first - 1, last))
-        block = fine[first:last] * free[first:last]
-        if fine.ndim > 1:
-            block, (above, below) = (
-                _transposed_refined(block),
-                _transposed_refined(np.stack([above, below])),
-            )
+        block = transposed(_fine(rows))
         even, odd = block[0::2], block[1::2]
         result = coarse[rows]
         np.add(even, odd, out=result)
         result *= _NEAR
         result[:-1] += _FAR * even[1:]
-        result[-1] += _FAR * below
         result[1:] += _FAR * odd[:-1]
-        result[0] += _FAR * above
+        # Beside the block, on the periodic plane.
+        if len(result) < len(coarse):
+            before, after = (2 * rows.start - 1) % len(fine), 2 * rows.stop % len(fine)
+            odd, even = (transposed(slice(row, row + 1)) for row in (before, after))
+        result[:1] += _FAR * odd[-1:]
+        result[-1:] += _FAR * even[:1]
 
     shared(gather, _blocks(coarse.shape))
     return coarse
@@ -352,18 +352,15 @@ def _laplacian(wide: Field, stretch: tuple[float, float]) -> Field:
 def _wrapped(field: Field, width: int = 1) -> Field:
     """Return a periodic field padded by ``width`` cells at both ends of each axis."""
     wide = np.empty([n + 2 * width for n in field.shape], field.dtype)
-    inner = tuple(slice(width, -width) for _ in field.shape)
-    rows = wide[width:-width]
+    inner = wide[width:-width] if field.ndim == 1 else wide[width:-width, width:-width]
 
-    def copy(block: slice) -> None:
-        rows[block][(slice(None), *inner[1:])] = field[block]
+    def copy(rows: slice) -> None:
+        inner[rows] = field[rows]
 
     shared(copy, row_blocks(field.shape))
-    for axis, number in enumerate(field.shape):
-        # An axis may be shorter than the padding.
-        cells = np.arange(width)
-        wide[_along(axis, 0, width)] = wide.take(width + (cells - width) % number, axis)
-        wide[_along(axis, -width)] = wide.take(width + cells % number, axis)
+    for axis in range(field.ndim):
+        wide[_along(axis, 0, width)] = wide[_along(axis, -2 * width, -width)]
+        wide[_along(axis, -width)] = wide[_along(axis, width, 2 * width)]
     return wide
 
 
