@@ -216,8 +216,8 @@ def _is_disabled(origin: Origin, disable: str) -> bool:
     if origin.distribution == "pellicle":
         return False
     named = {_same(name) for name in disable.split(",")} - {""}
-    mine = {_same(origin.distribution), _same(origin.entry_point)}
-    return bool(named & ({"1", "true", "all"} | mine))
+    names_of_origin = {_same(origin.distribution), _same(origin.entry_point)}
+    return bool(named & ({"1", "true", "all"} | names_of_origin))
 
 
 def _same(name: str) -> str:

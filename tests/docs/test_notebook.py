@@ -55,4 +55,4 @@ def test_the_notebook_runs(maker: ModuleType, monkeypatch: pytest.MonkeyPatch) -
     for words in ("surface tension", "2 steps, all converged", "3 runs", "Fit of a curve"):
         assert any(words in html for html in shown), words
     plots = [out for cell in cells for out in cell["outputs"] if "image/png" in out.get("data", ())]
-    assert len(plots) == 2
+    assert len(plots) == 3, "each figure is shown once"

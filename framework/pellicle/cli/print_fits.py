@@ -30,8 +30,9 @@ def print_fit(fit: FitResult, *, si: bool = False) -> None:
     from pellicle.fitting.report.answer import answer
     from pellicle.fitting.wording import column_scale, interval_text
 
-    if fit.chosen is not None:
+    if fit.chosen is not None or fit.range_of_moduli():
         echo(answer(fit, si=si))
+    if fit.chosen is not None:
         echo("An elastic solid under tension instead:")
     rows = []
     for name, estimate in fit.estimates().items():
@@ -59,7 +60,7 @@ def print_notes(fit: FitResult) -> None:
 
 
 def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool = False) -> None:
-    """Print a line for each curve and for each group, and what to know of them.
+    """Print a line for each curve and for each group, and the notes on them.
 
     Of many curves, lines are left out if the table is in the folder.
     """
@@ -106,17 +107,21 @@ def _verdict(row: Mapping[str, Any]) -> str:
 
 def _groups(fits: ManyFits, si: bool) -> list[tuple[str, list[str]]]:
     """Return a row for each parameter of each group of curves; no columns without any."""
-    from pellicle.fitting.wording import column_scale
+    from pellicle.fitting.wording import group_scales
 
     parts, quartiles = fits.summary(), []
+    scales = group_scales(parts, si=si)
     for part in parts:
+        scale = scales[part.parameter]
         numbers = part.lower_quartile, part.median, part.upper_quartile
-        scale = column_scale(numbers, part.unit, si=si)
         low, middle, high = map(scale.number, numbers)
-        quartiles.append((scale.with_unit(middle), scale.with_unit(f"{low} to {high}")))
+        quartiles.append((middle, f"{low} to {high}"))
     columns = [
         ("group", [part.group for part in parts]),
-        ("parameter", [_words(part.parameter) for part in parts]),
+        (
+            "parameter",
+            [f"{_words(part.parameter)} [{scales[part.parameter].unit}]" for part in parts],
+        ),
         ("accepted", [f"{part.n} of {part.curves}" for part in parts]),
         ("outliers", [str(part.outliers) for part in parts]),
         ("median", [median for median, _ in quartiles]),

@@ -74,13 +74,13 @@ def print_steps(result: Result, *, si: bool = False) -> None:
 
 def print_contact(result: Result, *, si: bool = False) -> None:
     """Print the shape of the contact at each step, and of the zone around it."""
-    from pellicle.results.shape import describes_shape
+    from pellicle.results.shape import means_something
     from pellicle.results.variables import names_of
 
     data = result.dataset
     # Files of earlier versions lack some.
     names = [name for name in names_of("contact", "interaction") if name in data]
-    names = [name for name in names if describes_shape(data, name)]
+    names = [name for name in names if means_something(data, name)]
     if names := [name for name in names if not name.startswith("residual_")]:
         print_columns(_columns(data, names, si), "contact")
 

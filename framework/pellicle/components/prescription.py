@@ -126,8 +126,3 @@ class Prescription(Component):
     def report(self, setting: Setting, step: Equilibrium) -> dict[str, float]:
         """Return the `variables` of a solved step, except that of kind ``residual``."""
         return {}
-
-
-def in_unit(value: float, unit: str) -> str:
-    """Return a number with its unit for a message."""
-    return f"{value:g} {unit.replace('**', '')}".rstrip()

@@ -39,7 +39,7 @@ def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
     words = words_at(json.loads(runs[0].to_json()), Run, key)
     attributes = {"long_name": words, WORDS: words}
     if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
-        if unit := _unit(runs[0], key):
+        if unit := units_of(runs[0]).get(key):
             attributes["units"] = unit
         return Coordinate(np.array(values), attributes)
     texts = [
@@ -134,9 +134,8 @@ def _single(value: Any, given: Any) -> Any:
     return path_as_given(value) if isinstance(value, Path) else value
 
 
-def _unit(run: Run, key: str) -> str | None:
-    """Return the SI unit of the field at a dotted key."""
-    field = next((field for path, _, field in walk(run) if path == key), None)
-    quantity = quantity_of(field) if field else None
+def units_of(run: Run) -> dict[str, str]:
+    """Return the SI unit of each field with one, by dotted path."""
+    quantities = {path: quantity_of(field) for path, _, field in walk(run) if field}
     # Attributes of datasets write m2 for m**2 of pint.
-    return quantity.unit.replace("m**2", "m2") if quantity else None
+    return {path: q.unit.replace("m**2", "m2") for path, q in quantities.items() if q}

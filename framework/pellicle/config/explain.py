@@ -1,4 +1,4 @@
-"""What a component or a table of a run file is: its fields, and an example."""
+"""Explanations of components and of tables of run files: meaning, fields and an example."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Explanation(NamedTuple):
     origin: str
     """Distribution and version of a component; empty for a table."""
     text: str
-    """What it is."""
+    """Its meaning."""
     fields: list[FieldRow]
     example: str
     """TOML."""
@@ -82,11 +82,11 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
     ConfigError
         There is nothing of that name; the message names similar ones.
     """
-    known = {**_TABLES, **tables}
+    entries = {**_TABLES, **tables}
     name = re.sub(r"[\s-]+", "_", word.strip().strip("[]").lower())
     families = registry().components
-    if name in known:
-        return [_of_table(name, known[name])]
+    if name in entries:
+        return [_of_table(name, entries[name])]
     singular = name.removesuffix("s")
     if singular in FAMILIES:
         return [_of_family(singular)]
@@ -98,7 +98,7 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
     ]
     if not matches:
         types = {type_ for members in families.values() for type_ in members}
-        hint = similar(name, types | {*known, *FAMILIES}) or "see `pellicle plugins`"
+        hint = similar(name, types | {*entries, *FAMILIES}) or "see `pellicle plugins`"
         raise ConfigError(f"{shown(word)} is neither a type nor a table; {hint}", "TYPE")
     return [_of_component(match) for match in matches]
 
@@ -279,7 +279,7 @@ def _example(name: str, info: FieldInfo) -> Any:
         value = dict(example_values(inner))
     elif inner is not None:
         types = registry().components[inner.family].values()
-        simplest = min(types, key=lambda known: (len(known.component.model_fields), known.type))
+        simplest = min(types, key=lambda entry: (len(entry.component.model_fields), entry.type))
         value = {"type": simplest.type, **dict(example_values(simplest.component))}
     else:
         value = {"true or false": True, "whole number": 1}.get(_kind(info.annotation), name)

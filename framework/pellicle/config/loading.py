@@ -220,27 +220,27 @@ def prescribed_in(data: Mapping[str, Any]) -> str:
         The table has no such key, or several.
     """
     families = registry().components["prescription"]
-    known = [*_USUAL, *sorted(families.keys() - {*_USUAL})]
-    given = [name for name in known if name in data]
-    if len(given) == 1:
-        return given[0]
-    if given:
-        reason = f"prescribes {' and '.join(given)}"
+    types = [*_USUAL, *sorted(families.keys() - {*_USUAL})]
+    keys = [name for name in types if name in data]
+    if len(keys) == 1:
+        return keys[0]
+    if keys:
+        reason = f"prescribes {' and '.join(keys)}"
     else:
         problems = []
         for key in filterfalse(OPTIONS.__contains__, data):
             try:
                 registry().find("prescription", key)
             except ConfigError:
-                message = f"is not a field here; {nearest(key, [*known, *OPTIONS])}"
+                message = f"is not a field here; {nearest(key, [*types, *OPTIONS])}"
                 problems.append(Problem(key, message))
         if problems:
             raise ConfigError(problems)
         reason = "prescribes nothing"
-    remedy = f"give exactly one of {', '.join(known)}"
-    if given:
+    remedy = f"give exactly one of {', '.join(types)}"
+    if keys:
         # One that an override adds stands last.
-        last = [name for name in data if name in given][-1]
+        last = [name for name in data if name in keys][-1]
         value = data[last] if isinstance(data[last], (str, float, int)) else "…"
         remedy += f'; to set another one, replace the table: --set loading="{{{last} = {value!r}}}"'
     raise ConfigError(f"{reason}; {remedy}")

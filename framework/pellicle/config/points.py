@@ -96,8 +96,8 @@ def _with_runs(message: str, runs: list[str], total: int) -> str:
     """Return a message with the runs that it concerns, unless it concerns all."""
     if len(runs) == total:
         return message
-    others = f" and {len(runs) - 1} more" if len(runs) > 1 else ""
-    return f"{message} (in the run of {runs[0]}{others})"
+    more = f" and {len(runs) - 1} more" if len(runs) > 1 else ""
+    return f"{message} (in the run of {runs[0]}{more})"
 
 
 def short(value: object) -> str:

@@ -171,8 +171,9 @@ class Run(FromFile):
         return cls(**data)
 
     def _repr_html_(self) -> str:
-        """Return HTML for a notebook: every value with its unit and meaning."""
+        """Return HTML for a notebook: every value with its unit and meaning, and the indenter."""
         from .describe import inputs
+        from .picture import picture_of
 
         values = list(inputs(json.loads(self.to_json())))
         types = {i.name: i.value for i in values}
@@ -182,7 +183,8 @@ class Run(FromFile):
             if i.name != "title"
         ]
         sentence = f"{types['indenter']} on {types['kernel']}"
-        return summary(self.title or "Run", sentence, ("of", "input", "value", "meaning"), rows)
+        heads = "of", "input", "value", "meaning"
+        return summary(self.title or "Run", sentence, heads, rows, picture=picture_of([self]))
 
     @property
     def identity(self) -> str:

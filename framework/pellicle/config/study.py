@@ -115,7 +115,9 @@ class Study(FromFile):
     _points: tuple[Point, ...] = PrivateAttr()
 
     def _repr_html_(self) -> str:
-        """Return HTML for a notebook: the varied parameters and the number of runs."""
+        """Return HTML for a notebook: the varied parameters, the number of runs, the indenters."""
+        from .picture import picture_of
+
         varied = [*self.vary.items(), *(pair for table in self.zip for pair in table.items())]
         run = self.points[0].run
         configuration = json.loads(run.to_json())
@@ -124,7 +126,8 @@ class Study(FromFile):
             for name, values in varied
         ]
         heads = ("varied", "values", "field")
-        return summary(run.title or "Study", f"{len(self.points)} runs", heads, rows)
+        sentence, picture = f"{len(self.points)} runs", picture_of([p.run for p in self.points])
+        return summary(run.title or "Study", sentence, heads, rows, picture=picture)
 
     @model_validator(mode="after")
     def _expand(self) -> Self:
@@ -239,9 +242,9 @@ class Study(FromFile):
         keys = [*self.vary, *itertools.chain.from_iterable(self.zip)]
         if not keys:
             raise ConfigError("varies nothing; give at least one axis", "vary")
-        for one, other in itertools.combinations(keys, 2):
-            if one == other or one.startswith(f"{other}.") or other.startswith(f"{one}."):
-                short, long = sorted((one, other), key=len)
+        for first, other in itertools.combinations(keys, 2):
+            if first == other or first.startswith(f"{other}.") or other.startswith(f"{first}."):
+                short, long = sorted((first, other), key=len)
                 raise ConfigError(
                     f"would override the axis {short}, which sets the same value; leave one out",
                     f"vary.{long}",

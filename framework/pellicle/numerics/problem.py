@@ -160,7 +160,7 @@ class Problem:
         return gap, depth
 
     def has_infinite_stiffness(self, contact: Mask) -> bool:
-        """Whether the contact stiffness is infinite.
+        """Return whether the contact stiffness is infinite.
 
         This is so in full contact on a periodic domain whose mean displacement is 0.
         """

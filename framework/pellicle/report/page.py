@@ -79,6 +79,8 @@ class Cell:
     frame: int | None = None
     """Index of the frame of the page's first maps that a click shows."""
     bad: bool = False
+    whole: str = ""
+    """The text in full, if it is shortened; shown while the pointer rests on the cell."""
 
 
 @dataclass(frozen=True)

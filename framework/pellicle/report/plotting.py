@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -12,9 +11,9 @@ import numpy as np
 
 from pellicle.analysis import Leg, legs
 from pellicle.arrays import Array, Mask
-from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, has_times
 from pellicle.results.result import Result
+from pellicle.results.shape import is_periodic
 from pellicle.results.variables import CONTACT_AREA, CORRECTED_AREA
 from pellicle.results.wording import wording
 
@@ -60,19 +59,19 @@ def over_time(result: Result, figure: Figure) -> None:
     """Draw force, depth and contact area against time, one above the other."""
     data = result.dataset
     panels = figure.subplots(len(_OVER_TIME), sharex=True)
-    shown_t = wording(data["time"])
+    time_axis = wording(data["time"])
     good = data["converged"].values.astype(bool)
-    t = data["time"].values * shown_t.scale.factor
+    t = data["time"].values * time_axis.scale.factor
     for axes, (name, hue) in zip(panels, _OVER_TIME.items(), strict=True):
-        shown = wording(data[name])
-        y = data[name].values * shown.scale.factor
+        y_axis = wording(data[name])
+        y = data[name].values * y_axis.scale.factor
         axes.plot(t, y, color=hue, linestyle="-", mfc="white", **_marked(t.size))
         axes.plot(t[~good], y[~good], "x", color="red", markersize=9)
-        axes.set_ylabel(shown.head)
+        axes.set_ylabel(y_axis.head)
         axes.axhline(0.0, color="0.4", linewidth=0.6)
         axes.grid(alpha=0.3)
     panels[0].set_title(data.attrs.get("title", ""))
-    panels[-1].set_xlabel(shown_t.head)
+    panels[-1].set_xlabel(time_axis.head)
     figure.align_ylabels(panels)
 
 
@@ -158,9 +157,7 @@ def study_figures(table: xr.Dataset) -> tuple[str, ...]:
     """
     if "force" not in table:
         return ()
-    grid = json.loads(table.attrs.get(FIRST_RUN, "{}")).get("grid", {})
-    periodic = grid.get("boundary") == "periodic"
-    return "force", "contact_fraction" if periodic else "contact_area"
+    return "force", "contact_fraction" if is_periodic(table) else "contact_area"
 
 
 def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
@@ -178,7 +175,7 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     # Seeds are repetitions, not values to compare.
     rest = [d for d in dimensions if d != along]
     compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
-    shown, shown_x = wording(table[variable]), wording(table[against])
+    y_axis, x_axis = wording(table[variable]), wording(table[against])
     named_by = wording(table[compared[0]]) if compared else None
     stacked = [d for d in table["status"].dims if d not in (along, *compared)]
     many = table.sizes[compared[0]] if compared else 1
@@ -191,8 +188,8 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
         named = compared and number % -(-many // _MOST_NAMED) == 0
         label = named_by.text(part[compared[0]].item()) if named and named_by else ""
         for line in _parts(part, stacked):
-            x = line[against].values * shown_x.scale.factor
-            y = line[variable].values * shown.scale.factor
+            x = line[against].values * x_axis.scale.factor
+            y = line[variable].values * y_axis.scale.factor
             path, good = None, line["converged"].values
             if pulls and against == "depth":
                 finished = np.isfinite(line["depth"].values)
@@ -202,8 +199,8 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
             _draw_line(axes, x, y, good, path, color=hue, marker=marker, linestyle="-", label=label)
             label = ""
     axes.set(
-        xlabel=shown_x.head,
-        ylabel=shown.head,
+        xlabel=x_axis.head,
+        ylabel=y_axis.head,
         title=table.attrs.get("title", ""),
     )
     if along != "step" and is_log_spaced(table[against].values):
@@ -247,13 +244,13 @@ def _curve(
 ) -> None:
     """Draw variables, with label and style, against another over the steps of a run."""
     data = result.dataset
-    shown, shown_x = wording(data[series[0][0]]), wording(data[against])
+    y_axis, x_axis = wording(data[series[0][0]]), wording(data[against])
     good = data["converged"].values.astype(bool)
     pulls, path = has_interaction(data), legs(data["depth"].values)
     hysteretic = pulls or (has_times(data) and len(path) <= MOST_LEGS)
     for number, (variable, label, style) in enumerate(series):
-        x = data[against].values * shown_x.scale.factor
-        y = data[variable].values * shown.scale.factor
+        x = data[against].values * x_axis.scale.factor
+        y = data[variable].values * y_axis.scale.factor
         _draw_line(
             axes,
             x,
@@ -265,7 +262,7 @@ def _curve(
             linestyle=style[1:],
             label=label,
         )
-    axes.set(xlabel=shown_x.head, ylabel=shown.head)
+    axes.set(xlabel=x_axis.head, ylabel=y_axis.head)
     if hysteretic:
         name_legs(axes, [path], "C0" if len(series) == 1 else "0.4")
         if axes.get_legend_handles_labels()[1]:

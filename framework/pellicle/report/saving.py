@@ -15,12 +15,15 @@ from .style import FigureStyle, label_log_axes, lay_out
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+SIZE = 5.4, 4.2
+"""Width and height of a figure [inch], unless it needs more."""
+
 
 def save_figure(
     draw: Callable[[Figure], None],
     stem: Path,
     formats: Iterable[str],
-    size: tuple[float, float] = (5.4, 4.2),
+    size: tuple[float, float] = SIZE,
     style: FigureStyle | None = None,
 ) -> tuple[Path, ...]:
     """Let ``draw`` fill a figure of ``size`` [inch], and write it as ``stem.format``.
@@ -62,7 +65,7 @@ def save_pages(
     return path
 
 
-def svg(draw: Callable[[Figure], None], size: tuple[float, float] = (5.4, 4.2)) -> bytes:
+def svg(draw: Callable[[Figure], None], size: tuple[float, float] = SIZE) -> bytes:
     """Let ``draw`` fill a figure of ``size`` [inch], and return it as reproducible SVG."""
     import matplotlib as mpl
 

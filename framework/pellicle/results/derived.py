@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from pellicle.errors import ConfigError
 from pellicle.model.expression import evaluate, names_in
 from pellicle.model.paths import walk
+from pellicle.units import one, si_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,10 +51,14 @@ def names(data: xr.Dataset) -> dict[str, Any]:
     return {**fixed, **numeric, **truths}
 
 
-def derive(table: xr.Dataset, expressions: Mapping[str, str]) -> xr.Dataset:
+def derive(
+    table: xr.Dataset, expressions: Mapping[str, str], units: Mapping[str, str]
+) -> xr.Dataset:
     """Return the table of a study with derived columns, which may use earlier ones.
 
     A column has a value for each step, or one for each run if it uses variables of the path only.
+    Its unit follows from those of its variables and of the fields of the configuration, which
+    ``units`` has by dotted path; it has none where they do not agree.
 
     Raises
     ------
@@ -68,8 +75,23 @@ def derive(table: xr.Dataset, expressions: Mapping[str, str]) -> xr.Dataset:
         if names_in(text) & per_run:
             like = like.isel(step=0, drop=True)
         table = table.assign({name: 0.0 * like + evaluate(text, names(table))})
-        table[name].attrs = {"long_name": text}
+        table[name].attrs = {"long_name": text, "units": _unit_of(text, table, units)}
     return table
+
+
+def _unit_of(text: str, table: xr.Dataset, units: Mapping[str, str]) -> str:
+    """Return the SI unit of an expression over a table; ``"1"`` also where there is none."""
+    of_table = {str(name): v.attrs.get("units", "1") for name, v in table.variables.items()}
+    known = {**units, **of_table}
+    quantities = {}
+    try:
+        for name in names_in(text):
+            # An exponent that varies, so that a power has no unit, is NaN here.
+            quantities[name] = math.nan * one(known.get(name, "1").replace("m2", "m**2"))
+        return si_unit(evaluate(text, quantities))
+    except (ConfigError, ValueError):
+        # Units that differ, or that of a stranger's variable that pint does not know.
+        return "1"
 
 
 def constants(configuration: object) -> dict[str, float]:

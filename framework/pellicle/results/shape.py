@@ -1,34 +1,50 @@
-"""Which measures of the shape of a contact mean something."""
+"""Which measures of a contact mean something."""
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from .derived import FIRST_RUN
+from .variables import CORRECTED_FRACTION
+
 if TYPE_CHECKING:
     import xarray as xr
 
-_OF_ONE_PART: Final = {"contact_radius", "semi_major_axis", "semi_minor_axis", "major_axis_angle"}
+_AXES: Final = {"semi_major_axis", "semi_minor_axis", "major_axis_angle"}
+_OF_ONE_PART: Final = {"contact_radius", *_AXES}
+_OF_A_PERIOD: Final = {"contact_fraction", "mean_pressure"}
 _ROUND: Final = 1e-9
 
 
 def has_one_shape(data: xr.Dataset) -> bool:
-    """Whether the contact is never in several parts, so that its radius and ellipse describe it."""
+    """Return whether the contact is always in one part, which a radius and an ellipse describe."""
     return "patches" in data and not bool((data["patches"] > 1).any())
 
 
-def describes_shape(data: xr.Dataset, name: str) -> bool:
-    """Whether a variable has a meaning for the contacts of a result or of a study.
+def is_periodic(data: xr.Dataset) -> bool:
+    """Return whether the domain of a result, or of some run of a study, repeats."""
+    configuration = json.loads(data.attrs.get(FIRST_RUN) or data.attrs.get("configuration", "{}"))
+    varied = [axis for axis in ("grid", "grid.boundary", "grid_boundary") if axis in data.coords]
+    return bool(varied) or configuration.get("grid", {}).get("boundary") == "periodic"
 
-    A contact in several parts has neither radius nor ellipse, and a round one no major axis.
+
+def means_something(data: xr.Dataset, name: str) -> bool:
+    """Return whether a variable has a meaning for the contacts of a result or of a study.
+
+    A contact in several parts has neither radius nor ellipse, and a round one no axes besides its
+    radius. On a free domain the area of the domain is arbitrary, and so is a share of it.
     """
     if name in _OF_ONE_PART and not has_one_shape(data):
         return False
-    return name != "major_axis_angle" or not _is_round(data)
+    if name in _OF_A_PERIOD or name.startswith(CORRECTED_FRACTION):
+        return is_periodic(data)
+    return name not in _AXES or not _is_round(data)
 
 
 def _is_round(data: xr.Dataset) -> bool:
-    """Whether the axes of the ellipse are equal up to round-off wherever there is contact."""
+    """Return whether the axes of the ellipse are equal up to round-off in all steps in contact."""
     major, minor = data["semi_major_axis"].values, data["semi_minor_axis"].values
     return not bool(np.any(major - minor > _ROUND * major))

@@ -73,12 +73,12 @@ class Status(Enum):
         "tolerance {tolerance:.1e}; {remedy}"
     )
     PULLED_OFF = (
-        "no contact carries a force of {force:.4g} N: that of the step before is lost between "
-        "{carried:.4g} and {lost:.4g} N; a softer holder follows it further: prescribe depth, or "
+        "no contact carries a force of {force}: that of the step before is lost between "
+        "{carried} and {lost}; a softer holder follows it further: prescribe depth, or "
         "base_displacement with a spring_constant"
     )
     NOTHING_TO_PULL = (
-        "there is no contact that could carry a force of {force:.4g} N; press before you pull"
+        "there is no contact that could carry a force of {force}; press before you pull"
     )
     STIFFNESS = (
         "the contact stiffness is not known: its displacement misses by {measure:.1e}, over the "

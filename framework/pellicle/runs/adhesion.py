@@ -89,7 +89,7 @@ def greatest_pull(
 
 
 def asperity_jumped(before: State | None, equilibrium: Equilibrium) -> bool:
-    """Whether a patch of contact and zone has come or gone as a whole since the state ``before``.
+    """Return whether a whole patch of contact and zone has come or gone since the state ``before``.
 
     Without a range of its own, adhesion holds a contact down to a finite radius, at which it jumps
     off (Johnson, Kendall & Roberts 1971), and a contact that begins jumps to a finite radius. A law
@@ -122,7 +122,7 @@ def jump_energy(before: xr.Dataset | None, equilibrium: Equilibrium) -> float:
 
 
 def leaves_path(before: PathPoint, equilibrium: Equilibrium) -> bool:
-    """Whether an equilibrium is not the continuous continuation of the step ``before``.
+    """Return whether an equilibrium is not the continuous continuation of the step ``before``.
 
     A patch has come or gone, or the energy changed by more or less than the work of the step.
     """

@@ -71,7 +71,7 @@ class ProgressReporter:
         return _monitor(index, self._steps, self._say)
 
 
-class _Shown(ABC):
+class _BarContext(ABC):
     """A context with a bar, if there is a terminal, that defers Ctrl-C."""
 
     def __init__(self, bar: rich.progress.Progress | None) -> None:
@@ -102,7 +102,7 @@ class _Shown(ABC):
             self._interrupt.check()
 
 
-class Progress(_Shown):
+class Progress(_BarContext):
     """Shows a bar on a terminal or in a notebook; elsewhere, or if not ``enabled``, nothing.
 
     The bar shows the step, the iteration, the residual and the time left. Ctrl-C takes effect at
@@ -139,7 +139,7 @@ class Progress(_Shown):
             )
 
 
-class StudyProgress(_Shown):
+class StudyProgress(_BarContext):
     """Shows a bar for a study and one for each running run, on a terminal or in a notebook.
 
     Elsewhere there is a line for each finished run. Ctrl-C takes effect at the next report of a
@@ -171,12 +171,12 @@ class StudyProgress(_Shown):
         if self._bar is None:
             return
         if task.name not in self._running:
-            shown = self._bar.add_task(f"  {task.name}", total=float(message.steps), message="")
-            self._running[task.name] = shown, 0.0
-        shown, _ = self._running[task.name]
-        self._running[task.name] = shown, message.done / message.steps
+            task_id = self._bar.add_task(f"  {task.name}", total=float(message.steps), message="")
+            self._running[task.name] = task_id, 0.0
+        task_id, _ = self._running[task.name]
+        self._running[task.name] = task_id, message.done / message.steps
         where = f"step {message.step + 1}/{message.steps} iteration {message.iteration}"
-        self._bar.update(shown, completed=message.done, message=where)
+        self._bar.update(task_id, completed=message.done, message=where)
         self._advance()
 
     def finished(self, task: Task, verdict: str, failed: bool) -> None:
@@ -184,9 +184,9 @@ class StudyProgress(_Shown):
         self._done += 1
         self._failed += failed
         if self._bar is not None:
-            shown, _ = self._running.pop(task.name, (None, 0.0))
-            if shown is not None:
-                self._bar.remove_task(shown)
+            task_id, _ = self._running.pop(task.name, (None, 0.0))
+            if task_id is not None:
+                self._bar.remove_task(task_id)
             self._advance()
         elif self._console is not None:
             line = f"[{self._done}/{self._total}] {task.name}: {verdict}"

@@ -43,13 +43,13 @@ def solve_steps(
     origin = provenance(run)
     solid = Relaxation.of(run)
     for index in range(len(steps), len(run.loading.values)):
-        of_step, others = replace(setting, state=steps.state, path=steps.path), 0
+        of_step, applications = replace(setting, state=steps.state, path=steps.path), 0
         if solid:
             of_step = solid.setting(of_step, steps.field("pressure"), steps.field("displacement"))
-            others = solid.applications
+            applications = solid.applications
         # Without a name for the solved step, only its copy in ``steps`` outlives the solve.
         yield steps.append(
-            _solved_step(run, of_step, steps, bar.step(index), others).assign_attrs(origin)
+            _solved_step(run, of_step, steps, bar.step(index), applications).assign_attrs(origin)
         )
 
 

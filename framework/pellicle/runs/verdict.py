@@ -7,7 +7,7 @@ import numpy as np
 from pellicle.analysis.steepness import rim_slope, steepest
 from pellicle.arrays import Mask
 from pellicle.components import Interaction
-from pellicle.components.prescription import Search, in_unit
+from pellicle.components.prescription import Search
 from pellicle.config.run import Run
 from pellicle.numerics.problem import Equilibrium, Stiffness
 from pellicle.numerics.solution import Stop
@@ -56,8 +56,11 @@ def _failure(
     if step.stop is Stop.PULLED_OFF:
         carried, lost = step.between
         status = Status.NOTHING_TO_PULL if carried == lost else Status.PULLED_OFF
-        force = equilibrium.problem.control.value
-        return status, status.value.format(force=force, carried=carried, lost=lost)
+        return status, status.value.format(
+            force=readable(equilibrium.problem.control.value, "N", DIGITS),
+            carried=readable(carried, "N", DIGITS),
+            lost=readable(lost, "N", DIGITS),
+        )
     if (lowest := float(equilibrium.wall.min())) < 0:
         share = -lowest / float(np.abs(equilibrium.wall).max())
         return Status.NEGATIVE_PRESSURE, Status.NEGATIVE_PRESSURE.value.format(measure=share)
@@ -77,12 +80,11 @@ def _failure(
     if run.indenter.footprint == "unbounded" and _touches_edge(
         run, equilibrium.contact | equilibrium.zone
     ):
-        nx, ny = run.grid.size
         loading = run.loading
         return Status.CONTACT_AT_EDGE, Status.CONTACT_AT_EDGE.value.format(
-            size=f"{nx:g} × {ny:g} m",
+            size=" × ".join(readable(edge, "m", DIGITS) for edge in run.grid.size),
             prescribed=f"loading.{loading.prescribed} = "
-            f"{in_unit(loading.values[index], loading.prescription.unit)}",
+            f"{readable(loading.values[index], loading.prescription.unit, DIGITS)}",
         )
     return None
 
@@ -151,8 +153,8 @@ def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
         "quantity": search.quantity,
         "measure": step.missed,
         "tolerance": _NEAR,
-        "below": in_unit(below, search.unit),
-        "above": in_unit(above, search.unit),
+        "below": readable(below, search.unit, DIGITS),
+        "above": readable(above, search.unit, DIGITS),
     }
     if step.how == "nearest" and step.missed <= _NEAR:
         return near, near.value.format(**words)
@@ -168,7 +170,7 @@ def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
 
 
 def _touches_edge(run: Run, contact: Mask) -> bool:
-    """Whether a cell at the border is in contact.
+    """Return whether a cell at the border is in contact.
 
     A period one cell wide has no border in that direction: the problem is plane there.
     """

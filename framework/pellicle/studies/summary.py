@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pellicle.results.shape import means_something
 from pellicle.results.status import Status
 from pellicle.results.variables import names_of
 from pellicle.results.wording import wording
@@ -34,7 +35,8 @@ _WORST_FIRST = "failed", "not run", "NOT CONVERGED"
 def columns(table: xr.Dataset, *, si: bool = False) -> Columns:
     """Return head and cells of the table of runs: parameters, main numbers and verdict."""
     derived = json.loads(table.attrs["configuration"])["study"].get("derived", {})
-    names = [n for n in (*names_of("main"), *derived) if n in table and "step" in table[n].dims]
+    main = [n for n in names_of("main") if means_something(table, n)]
+    names = [n for n in (*main, *derived) if n in table and "step" in table[n].dims]
     runs = list(runs_of(table))
     progress = [progress_of(run) for run in runs]
     last: Columns = []

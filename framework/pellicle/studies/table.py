@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pellicle.config.coordinates import units_of
 from pellicle.config.provenance import now_with
 from pellicle.config.study import Study
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
-from pellicle.results.axes import with_python_names
 from pellicle.results.derived import FIRST_RUN, derive
+from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.results.status import Status
 from pellicle.results.variables import VARIABLES, header
@@ -92,7 +93,9 @@ class StudyTable:
             {"long_name": "load step, counted from 1"},
         )
         table = with_path(xr.Dataset(variables, coordinates, self._attributes))
-        return derive(table, self._study.derived) if self._numbers else table
+        if not self._numbers:
+            return table
+        return derive(table, self._study.derived, units_of(self._study.points[0].run))
 
 
 def _whole(values: np.ndarray[Any, np.dtype[Any]], name: str) -> np.ndarray[Any, np.dtype[Any]]:

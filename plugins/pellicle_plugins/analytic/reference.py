@@ -115,14 +115,15 @@ def exact(runs: Runs) -> Runs:
     derived = json.loads(table.attrs["configuration"]).get("study", {}).get("derived", {})
     for name, text in derived.items():
         with suppress(ConfigError):
-            table = derive(table, {name: text})
+            table = derive(table, {name: text}, {})
+            table[name].attrs = runs.table[name].attrs
     return Runs(table, no_fields)
 
 
 def _numbers(
     solution: AxisymmetricContact | None, domain: float, simulated: xr.Dataset
 ) -> dict[str, float]:
-    """Return what the equation gives of the variables of a result; ``domain`` is in m².
+    """Return the variables of a result that the equation gives; ``domain`` is in m².
 
     Corrected areas and fractions are those of ``simulated``: on a continuous surface none differs.
     """

@@ -5,6 +5,8 @@ from __future__ import annotations
 import hashlib
 import io as streams
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from math import inf
 from pathlib import Path
@@ -86,7 +88,6 @@ def _read(
     size: tuple[float, float] | None,
 ) -> Scan:
     """Return the scan as `read_scan` does; a file that has changed is read again."""
-    io = library().IO
     try:
         file = path.open("rb")
     except OSError as error:
@@ -105,47 +106,59 @@ def _read(
         file.seek(0)
         digest = hashlib.file_digest(file, "sha256").hexdigest()
         file.seek(0)
-        try:
-            reader = io.open_topography(_with_blanks(file) if text else file)
+        with _errors_of_readers(path):
+            reader = library().IO.open_topography(_with_blanks(file) if text else file)
             if reader.format() == "hgt" and path.suffix.lower() != ".hgt":
                 # Any file of 2n² bytes passes as this format of n² integers without a header.
-                raise io.CannotDetectFileFormat
+                raise library().IO.CannotDetectFileFormat
             data = _channel(reader, path, channel)
             scale = _scale(data, path, unit)
             edges = _size(data, path, scale, size)
-            nx, ny = data.nb_grid_pts
-            require_content(nx * ny, path)
-            require_memory(
-                8.0 * _ARRAYS * nx * ny,
-                f"{path} with its {nx} × {ny} points",
-                "export a part of it",
-                "path",
-            )
-            # The heights do not depend on the size, but the reader requires one.
-            dummy = None if data.physical_sizes is not None else (1.0, 1.0)
-            raw = data.topography(physical_sizes=dummy).heights()
-            heights = np.ma.filled(np.ma.asarray(raw, dtype=np.float64), np.nan)
-            if _is_coordinates(reader, data):
-                heights = _on_grid(heights, edges, path)
-        except ConfigError:
-            raise
-        except io.CannotDetectFileFormat:
-            raise ConfigError(
-                f"{path} is damaged or in an unknown format; give a file that SurfaceTopography "
-                "reads (gwy, opd, sdf, sur, x3p, …), text with a row of numbers, separated by "
-                "blanks, commas or semicolons, on each line, or an array as type = 'heights'",
-                "path",
-            ) from None
-        except np.exceptions.ComplexWarning:
-            raise ConfigError(f"{path} holds complex values; give real numbers", "path") from None
-        except Exception as error:
-            raise ConfigError(
-                f"{path} is damaged or incomplete ({_reason(error)}); export it again", "path"
-            ) from None
+            heights = _heights(reader, data, edges, path)
         values = heights * scale
     values[~np.isfinite(values)] = np.nan
     values.setflags(write=False)
     return Scan(values, edges, digest)
+
+
+@contextmanager
+def _errors_of_readers(path: Path) -> Iterator[None]:
+    """Raise ConfigError with the remedy for anything that a reader raises."""
+    io = library().IO
+    try:
+        yield
+    except ConfigError:
+        raise
+    except io.CannotDetectFileFormat:
+        raise ConfigError(
+            f"{path} is damaged or in an unknown format; give a file that SurfaceTopography "
+            "reads (gwy, opd, sdf, sur, x3p, …), text with a row of numbers, separated by "
+            "blanks, commas or semicolons, on each line, or an array as type = 'heights'",
+            "path",
+        ) from None
+    except np.exceptions.ComplexWarning:
+        raise ConfigError(f"{path} holds complex values; give real numbers", "path") from None
+    except Exception as error:
+        raise ConfigError(
+            f"{path} is damaged or incomplete ({_reason(error)}); export it again", "path"
+        ) from None
+
+
+def _heights(reader: Any, data: Any, edges: tuple[float, float], path: Path) -> Array:
+    """Return the heights of a channel in the unit of the file, NaN where there are none."""
+    nx, ny = data.nb_grid_pts
+    require_content(nx * ny, path)
+    require_memory(
+        8.0 * _ARRAYS * nx * ny,
+        f"{path} with its {nx} × {ny} points",
+        "export a part of it",
+        "path",
+    )
+    # The heights do not depend on the size, but the reader requires one.
+    dummy = None if data.physical_sizes is not None else (1.0, 1.0)
+    raw = data.topography(physical_sizes=dummy).heights()
+    heights = np.ma.filled(np.ma.asarray(raw, dtype=np.float64), np.nan)
+    return _on_grid(heights, edges, path) if _is_coordinates(reader, data) else heights
 
 
 def _with_blanks(file: BinaryIO) -> BinaryIO:
@@ -221,7 +234,7 @@ def _irregular(path: Path) -> ConfigError:
 
 
 def _is_coordinates(reader: Any, channel: Any) -> bool:
-    """Whether a matrix of three columns is a list of points x, y, z."""
+    """Return whether a matrix of three columns is a list of points x, y, z."""
     return bool(reader.format() == "asc" and channel.nb_grid_pts[0] == 3)
 
 

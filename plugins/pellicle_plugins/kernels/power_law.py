@@ -55,11 +55,11 @@ def power_law_series(exponent: float, span: float) -> PronySeries:
         float(np.abs(matrix @ fit.x - 1).max()),
         float(np.abs(_relative_terms(middle, times, exponent) @ fit.x - 1).max()),
     )
-    used = np.flatnonzero(fit.x[:-1] > 0)
+    active = np.flatnonzero(fit.x[:-1] > 0)
     return PronySeries(
         float(fit.x[-1]),
-        tuple(fit.x[used].tolist()),
-        tuple(times[used].tolist()),
+        tuple(fit.x[active].tolist()),
+        tuple(times[active].tolist()),
         error,
     )
 

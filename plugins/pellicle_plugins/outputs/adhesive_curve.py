@@ -15,7 +15,6 @@ from pydantic import Field
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError, StorageError
-from pellicle.report.saving import save_figure
 from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
 from pellicle.units import Quantity, axis_unit
@@ -104,11 +103,9 @@ class AdhesiveCurve(TableFigure):
             self._drawn(name, colour(number, len(paths), ordered=self.is_ordered(runs)), run)
             for number, (name, run) in enumerate(paths)
         ]
-        files = save_figure(
+        files = self.save(
             lambda figure: self._fill(figure.add_subplot(), drawn),
             stem,
-            self.formats,
-            style=self.style,
         )
         summary = stem.with_name(f"{stem.name}-summary")
         return (
@@ -249,8 +246,8 @@ def _zoom(axes: Axes, curves: list[analysis.AdhesiveCurve], length: float, newto
     strongest = -min((curve.force.min() for curve in curves), default=0.0)
     if strongest <= 0:
         return
-    shown = [curve.depth[curve.force <= strongest] for curve in curves]
-    left, right = min(map(np.min, shown)) * length, max(map(np.max, shown)) * length
+    parts = [curve.depth[curve.force <= strongest] for curve in curves]
+    left, right = min(map(np.min, parts)) * length, max(map(np.max, parts)) * length
     margin = 0.05 * (right - left)
     axes.set_xlim(left - margin, right + margin)
     axes.set_ylim(-1.1 * strongest * newton, 1.1 * strongest * newton)

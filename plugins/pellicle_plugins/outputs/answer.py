@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.config.describe import inputs
+from pellicle.components import Prescription
+from pellicle.config.describe import Input, inputs
 from pellicle.config.loading import prescribed_in
 from pellicle.errors import ConfigError
 from pellicle.loading import OPTIONS
+from pellicle.model.legs import number_of_steps
+from pellicle.plugins import registry
 from pellicle.results.path import has_interaction, has_times, label_of_step, prescribed_variable
 from pellicle.results.shape import has_one_shape
-from pellicle.results.variables import VARIABLES
+from pellicle.results.variables import VARIABLES, words_of_name
 from pellicle.results.wording import wording
-from pellicle.units import DIGITS, readable
+from pellicle.units import DIGITS, axis_unit, readable
 from pellicle.version import CITATION
 
 if TYPE_CHECKING:
@@ -174,6 +177,40 @@ def methods(configuration: Mapping[str, Any], versions: str, varied: tuple[str, 
         "Normal contact of a rigid indenter with a linear solid was solved by a boundary element "
         f"method with fast Fourier transforms{cells}{domain} with {grid['boundary']} boundaries. "
         f"{'; '.join(described)[:1].upper()}{'; '.join(described)[1:]}. "
-        f"{changes}Solver: {solver}{ending}. "
+        f"{_loading(configuration, known, varied)}{changes}Solver: {solver}{ending}. "
         f"Computed with {versions}. To cite: {CITATION}."
     )
+
+
+def _loading(
+    configuration: Mapping[str, Any], known: Mapping[str, Input], varied: tuple[str, ...]
+) -> str:
+    """Return a sentence on what the load steps prescribe; empty if that is not installed."""
+    name = prescribed_of(configuration)
+    if not name:
+        return ""
+    loading, texts = configuration["loading"], [words_of_name(name)]
+    if not any(axis.startswith(f"loading.{name}") for axis in varied):
+        prescription = cast(type[Prescription], registry().find("prescription", name))
+        texts[0] += f" {_values_of_steps(loading[name], prescription.unit)}"
+    texts += [
+        f"{known[path].words} {known[path].value}"
+        for key in loading
+        for path in (f"loading.{key}",)
+        if key not in OPTIONS and path in known and key != name and path not in varied
+    ]
+    return f"Prescribed: {', '.join(texts)}. "
+
+
+def _values_of_steps(values: Sequence[Any], unit: str) -> str:
+    """Return the values of load steps as words, such as "from 1 to 5 nN in 12 load steps"."""
+    count = f"{number_of_steps(values)} load steps"
+    if any(isinstance(value, Mapping) for value in values):
+        return f"in {len(values)} legs of {count} in all"
+    if len(values) <= _FEW:
+        return readable(values, unit, DIGITS)
+    scale = axis_unit(values, unit)
+    first, last = values[0], values[-1]
+    furthest = max(values, key=lambda value: abs(value - first))
+    ends = f"from {scale.number(first)} to {scale.text(furthest if last == first else last)}"
+    return f"{ends}{' and back' * (last == first)} in {count}"

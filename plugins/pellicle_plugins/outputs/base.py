@@ -6,7 +6,7 @@ import csv
 import json
 import re
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
 
@@ -21,7 +21,7 @@ from pellicle.files import storage_errors
 from pellicle.model.expression import evaluate, formula
 from pellicle.model.messages import nearest
 from pellicle.report.fields import without_round_off
-from pellicle.report.saving import save_figure
+from pellicle.report.saving import SIZE, save_figure
 from pellicle.report.style import FigureStyle, is_ordered
 from pellicle.results.derived import FIRST_RUN, names
 from pellicle.results.result import Result
@@ -32,6 +32,7 @@ from pellicle.units import DIGITS, readable
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::(\.\d+[fg]))?\}")
 
@@ -79,6 +80,12 @@ class TableFigure(Output):
         """Suffixes of the figure and of its numbers."""
         return tuple(f".{kind}" for kind in (*self.formats, *["csv"] * self.numbers))
 
+    def save(
+        self, draw: Callable[[Figure], None], stem: Path, size: tuple[float, float] = SIZE
+    ) -> tuple[Path, ...]:
+        """Let ``draw`` fill a figure of ``size`` [inch], and write it in each format."""
+        return save_figure(draw, stem, self.formats, size, self.style)
+
     def picked(self, table: xr.Dataset) -> Iterator[tuple[Label, xr.Dataset]]:
         """Yield the name of each curve or panel and the point of the table that it shows.
 
@@ -91,7 +98,7 @@ class TableFigure(Output):
             yield label(self.label, point, self.by, table), point
 
     def is_ordered(self, runs: Runs) -> bool:
-        """Whether the curves belong to numbers to compare."""
+        """Return whether the curves belong to numbers to compare."""
         return is_ordered(runs.table, self.by)
 
     def steps(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset]]:
@@ -119,11 +126,9 @@ class XYFigure(TableFigure):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
         rows: list[dict[str, object]] = []
-        files = save_figure(
+        files = self.save(
             lambda figure: rows.extend(self.draw(figure.add_subplot(), runs)),
             stem,
-            self.formats,
-            style=self.style,
         )
         return (*files, write_csv(stem, rows))
 

@@ -52,7 +52,7 @@ class Compliance(XYFigure):
             run = Run.from_json(configuration)
             q, cells = of_cells_along_x(run)
             # A grid with a single cell along x has no waves.
-            shown = np.unique(np.geomspace(1, max(1, q.size), _MARKERS).astype(int)) - 1
+            marked = np.unique(np.geomspace(1, max(1, q.size), _MARKERS).astype(int)) - 1
             for values, series, marker in (
                 (cells, "cells", MARKERS[number % len(MARKERS)]),
                 (run.kernel.compliance(q), "symbol", ""),
@@ -67,7 +67,7 @@ class Compliance(XYFigure):
                     markersize=3.5,
                     markerfacecolor="white",
                     linestyle="none" if series == "cells" else "-",
-                    markevery=list(shown) if series == "cells" else None,
+                    markevery=list(marked) if series == "cells" else None,
                     linewidth=1.0,
                     label=(name.words or series) if series == "cells" else None,
                 )

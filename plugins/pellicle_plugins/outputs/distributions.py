@@ -11,7 +11,6 @@ from pydantic import Field
 
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
-from pellicle.report.saving import save_figure
 from pellicle.report.style import LINES, colour
 from pellicle.results.path import has_interaction
 from pellicle.units import axis_unit
@@ -45,12 +44,10 @@ class Distributions(TableFigure):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
         curves = [(name, self._densities(step)) for name, step in self.steps(runs)]
-        files = save_figure(
+        files = self.save(
             lambda figure: self._fill(figure, curves, self.is_ordered(runs)),
             stem,
-            self.formats,
             _SIZE,
-            self.style,
         )
         return (*files, write_csv(stem, list(_rows(curves)), _HEADS))
 
@@ -79,7 +76,7 @@ class Distributions(TableFigure):
             axes.set(xlabel=f"{field} [{name}]", ylabel=f"probability density [1/{name}]")
             set_scales(axes, self.log if any(bins.size > 1 for bins in edges) else ())
             if axes.get_legend_handles_labels()[1]:
-                axes.legend(frameon=False, fontsize="small")
+                axes.legend(frameon=False)
         figure.suptitle(self.title)
 
 

@@ -14,7 +14,6 @@ from pellicle import hookimpl
 from pellicle.components import Output, Runs
 from pellicle.model.expression import names_in
 from pellicle.report.fields import diverging, extent, outline_contact
-from pellicle.report.saving import save_figure
 from pellicle.report.style import NO_CONTACT, add_colour_bar
 from pellicle.results.derived import as_array
 from pellicle.results.path import has_interaction
@@ -63,12 +62,10 @@ class Maps(TableFigure):
         across = min(max(len(panels), 1), _COLUMNS)
         down = ceil(max(len(panels), 1) / across)
         size = (_PANEL * across + 1.2, _PANEL * down + 1.0) if len(panels) > 1 else (5.4, 4.2)
-        return save_figure(
+        return self.save(
             lambda figure: self._fill(figure, panels, down, across),
             stem,
-            self.formats,
             size,
-            self.style,
         )
 
     def _fill(
@@ -105,12 +102,12 @@ class Maps(TableFigure):
             colours = diverging(values)
         for axes, (title, run, field) in zip(all_axes, panels, strict=False):
             length, unit = axis_unit(np.append(run["x"].values, run["y"].values), "m")
-            shown = field.transpose("y", "x").values * factor
+            values_shown = field.transpose("y", "x").values * factor
             if blank:
-                shown = np.ma.masked_where(shown == 0, shown)
+                values_shown = np.ma.masked_where(values_shown == 0, values_shown)
                 axes.set_facecolor(NO_CONTACT)
             image = axes.imshow(
-                shown,
+                values_shown,
                 origin="lower",
                 extent=extent(run["x"].values * length, run["y"].values * length),
                 **colours,

@@ -12,7 +12,6 @@ from pydantic import Field
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
 from pellicle.report.fields import extent
-from pellicle.report.saving import save_figure
 from pellicle.report.style import MARKERS, NO_CONTACT, colour
 from pellicle.results.result import Result
 from pellicle.units import axis_unit
@@ -50,12 +49,10 @@ class Patches(TableFigure):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
         curves = [(name, step, self._patches(step)) for name, step in self.steps(runs)]
-        files = save_figure(
+        files = self.save(
             lambda figure: self._fill(figure, curves, self.is_ordered(runs)),
             stem,
-            self.formats,
             _SIZE,
-            self.style,
         )
         rows = [row for curve in curves for row in _rows(*curve)]
         return (*files, write_csv(stem, rows, _HEADS))
@@ -90,7 +87,7 @@ class Patches(TableFigure):
             right.set(xscale="log", yscale="log")
         right.grid(alpha=0.3)
         if right.get_legend_handles_labels()[1]:
-            right.legend(frameon=False, fontsize="small")
+            right.legend(frameon=False)
         figure.suptitle(self.title)
 
 

@@ -153,8 +153,8 @@ def _named(name: str, inputs_by_name: Mapping[str, Input], varied: tuple[str, ..
 
 
 def _text(x: float, y: float, text: str, anchor: str = "middle") -> str:
-    shown = escape(for_document(text))
-    return f'<text x="{x:.0f}" y="{y:.0f}" text-anchor="{anchor}">{shown}</text>'
+    markup = escape(for_document(text))
+    return f'<text x="{x:.0f}" y="{y:.0f}" text-anchor="{anchor}">{markup}</text>'
 
 
 def _arrow(x0: float, y0: float, x1: float, y1: float, kind: str = "load") -> str:

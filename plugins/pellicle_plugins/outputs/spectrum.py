@@ -10,7 +10,6 @@ import numpy as np
 
 from pellicle import analysis, hookimpl
 from pellicle.components import Output, Runs
-from pellicle.report.saving import save_figure
 from pellicle.report.style import colour, sparse_marker
 from pellicle.results.result import Result
 
@@ -41,11 +40,9 @@ class Spectrum(TableFigure):
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure and its numbers."""
         curves = [(name, _spectra(step)) for name, step in self.steps(runs)]
-        files = save_figure(
+        files = self.save(
             lambda figure: self._fill(figure.add_subplot(), curves, self.is_ordered(runs)),
             stem,
-            self.formats,
-            style=self.style,
         )
         return (*files, write_csv(stem, list(_rows(curves)), _HEADS))
 
@@ -56,10 +53,10 @@ class Spectrum(TableFigure):
         )
         for number, (name, spectra) in enumerate(curves):
             for surface, spectrum in spectra.items():
-                shown = spectrum.density > _ROUND_OFF * highest
+                visible = spectrum.density > _ROUND_OFF * highest
                 axes.plot(
-                    spectrum.wavenumber[shown],
-                    spectrum.density[shown],
+                    spectrum.wavenumber[visible],
+                    spectrum.density[visible],
                     _STYLES[surface],
                     color=colour(number, len(curves), ordered=ordered),
                     linewidth=1.2,

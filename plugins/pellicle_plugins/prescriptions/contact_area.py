@@ -10,10 +10,10 @@ import numpy as np
 
 from pellicle import hookimpl
 from pellicle.components import Depth, Force, Prescription, Search, Setting
-from pellicle.components.prescription import in_unit
 from pellicle.errors import ConfigError
 from pellicle.numerics.problem import Equilibrium
 from pellicle.results.variables import Variable
+from pellicle.units import readable
 
 RESIDUAL = Variable(
     "residual_area", "1", "relative error of the prescribed contact area or radius", "residual"
@@ -31,7 +31,7 @@ class ContactArea(Prescription):
     def check(self, setting: Setting, value: float) -> None:
         """Refuse an area that the indenter cannot have on this grid."""
         if problem := unreachable(setting, value):
-            raise ConfigError(f"{in_unit(value, self.unit)} is {problem}")
+            raise ConfigError(f"{readable(value, self.unit)} is {problem}")
 
     def target(self, setting: Setting, value: float) -> Force | Search:
         """Return a search for the force with this contact area; no force for an area of 0."""
@@ -47,16 +47,17 @@ def unreachable(setting: Setting, area: float) -> str:
     first = int(np.count_nonzero(profile == profile.max()))
     if area > (covered + 0.5) * cell:
         owner = "the domain" if covered == profile.size else "the indenter"
-        return f"more than {owner} has, {covered * cell:g} m²; give less"
+        return f"more than {owner} has, {readable(covered * cell, 'm**2')}; give less"
     if area > 0 and first == covered:
         return (
-            f"not within reach: the indenter is flat, and all its {covered * cell:g} m² touch at "
-            "once, under any load; prescribe depth or force"
+            f"not within reach: the indenter is flat, and all its "
+            f"{readable(covered * cell, 'm**2')} touch at once, under any load; prescribe depth "
+            "or force"
         )
     if 0 < area < (first - 0.5) * cell:
         return (
-            f"less than the {first} cells of {cell:g} m² that touch first, all at once; give "
-            "more, or use more points"
+            f"less than the {first} cells of {readable(cell, 'm**2')} that touch first, all at "
+            "once; give more, or use more points"
         )
     return ""
 

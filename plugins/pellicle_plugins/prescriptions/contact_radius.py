@@ -11,6 +11,7 @@ from pellicle import hookimpl
 from pellicle.components import Force, Prescription, Search, Setting
 from pellicle.errors import ConfigError
 from pellicle.results.variables import Variable
+from pellicle.units import readable
 
 from .contact_area import RESIDUAL, area_search, unreachable
 
@@ -26,7 +27,7 @@ class ContactRadius(Prescription):
     def check(self, setting: Setting, value: float) -> None:
         """Refuse a radius that the contact cannot have on this grid."""
         if problem := unreachable(setting, np.pi * value**2):
-            raise ConfigError(f"{value:g} m is {problem}")
+            raise ConfigError(f"{readable(value, self.unit)} is {problem}")
 
     def target(self, setting: Setting, value: float) -> Force | Search:
         """Return the search for the force with the area of the circle."""

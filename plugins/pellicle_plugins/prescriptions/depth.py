@@ -7,8 +7,8 @@ from typing import ClassVar, Literal
 
 from pellicle import hookimpl
 from pellicle.components import Depth, Prescription, Setting
-from pellicle.components.prescription import in_unit
 from pellicle.errors import ConfigError
+from pellicle.units import readable
 
 
 class IndenterDepth(Prescription):
@@ -43,9 +43,9 @@ def refuse_beyond_full_contact(setting: Setting, depth: float, value: float) -> 
     mean = setting.mean_height
     if depth >= -mean and not setting.operator.has_mean_compliance:
         raise ConfigError(
-            f"{in_unit(value, 'm')} is beyond full contact: on a periodic grid the depth is "
-            f"measured from the mean plane, and this indenter's is {-mean:g} m above its lowest "
-            "point, at any load; give less, or prescribe mean_pressure"
+            f"{readable(value, 'm')} is beyond full contact: on a periodic grid the depth is "
+            f"measured from the mean plane, and this indenter's is {readable(-mean, 'm', 4)} above "
+            "its lowest point, at any load; give less, or prescribe mean_pressure"
         )
 
 

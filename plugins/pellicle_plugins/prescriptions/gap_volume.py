@@ -7,10 +7,10 @@ from typing import ClassVar, Literal
 
 from pellicle import hookimpl
 from pellicle.components import Depth, Force, Prescription, Search, Setting
-from pellicle.components.prescription import in_unit
 from pellicle.errors import ConfigError
 from pellicle.numerics.problem import Equilibrium
 from pellicle.results.variables import Variable
+from pellicle.units import readable
 
 
 class GapVolume(Prescription):
@@ -35,8 +35,8 @@ class GapVolume(Prescription):
             )
         if value > most:
             raise ConfigError(
-                f"{in_unit(value, self.unit)} is before first touch, where the volume is "
-                f"{most:g} m³; give less"
+                f"{readable(value, self.unit)} is before first touch, where the volume is "
+                f"{readable(most, self.unit)}; give less"
             )
 
     def target(self, setting: Setting, value: float) -> Search:

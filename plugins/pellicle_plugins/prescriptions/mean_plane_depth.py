@@ -10,6 +10,7 @@ from pellicle.components import Depth, Prescription, Setting
 from pellicle.errors import ConfigError
 from pellicle.numerics.problem import Equilibrium
 from pellicle.results.variables import Variable
+from pellicle.units import readable
 
 from .depth import refuse_beyond_full_contact
 
@@ -35,8 +36,8 @@ class MeanPlaneDepth(Prescription):
             )
         if value < mean and not setting.law:
             raise ConfigError(
-                f"{value:g} m is before first touch: this indenter's lowest point is {-mean:g} m "
-                f"below its mean plane; give {mean:g} m or more"
+                f"{readable(value, 'm')} is before first touch: this indenter's lowest point is "
+                f"{readable(-mean, 'm')} below its mean plane; give {readable(mean, 'm')} or more"
             )
         refuse_beyond_full_contact(setting, value - mean, value)
 

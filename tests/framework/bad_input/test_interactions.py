@@ -117,11 +117,11 @@ REFUSALS: dict[str, tuple[dict[str, Any], list[str]]] = {
     ),
     "area": (
         {"loading": {"contact_area": [0, "0.01 mm^2"]}},
-        ["loading.contact_area.0: 0 m2 is lost at no certain depth", "prescribe depth"],
+        ["loading.contact_area.0: 0 m² is lost at no certain depth", "prescribe depth"],
     ),
     "depth of full contact": (
         {"grid": PERIODIC, "loading": {"depth": ["1 mm"]}},
-        ["loading.depth.0: 0.001 m is beyond full contact", "prescribe mean_pressure"],
+        ["loading.depth.0: 1 mm is beyond full contact", "prescribe mean_pressure"],
     ),
 }
 
@@ -199,8 +199,8 @@ def test_pull_that_no_contact_carries() -> None:
     codes = ["NOTHING_TO_PULL", "PULLED_OFF", "NOTHING_TO_PULL"]
     assert [*data["status_code"].values[[0, 2, 3]]] == codes
     assert data["converged"].values[[1, 4]].all()
-    says(str(data["status"].values[0]), "no contact", "-1e-05 N; press before you pull")
-    says(str(data["status"].values[2]), "no contact carries a force of -0.0005 N", "softer holder")
+    says(str(data["status"].values[0]), "no contact", "-10 µN; press before you pull")
+    says(str(data["status"].values[2]), "no contact carries a force of -500 µN", "softer holder")
     assert not data["contact"].values[[0, 2, 3]].any()
     np.testing.assert_allclose(data["depth"][4], data["depth"][1], rtol=1e-3)
 

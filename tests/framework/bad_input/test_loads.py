@@ -43,11 +43,11 @@ LOADINGS = {
     ),
     "area over the domain": (
         "loading={contact_area=['0.1 mm**2', '1 mm**2']}",
-        ["loading.contact_area.1: 1e-06 m2 is more than the domain has, 1.9998", "give less"],
+        ["loading.contact_area.1: 1 mm² is more than the domain has, 0.19998", "give less"],
     ),
     "area below what touches first": (
         "loading={contact_radius='1 um'}",
-        ["loading.contact_radius.0: 1e-06 m is less than the 4 cells", "use more points"],
+        ["loading.contact_radius.0: 1 µm is less than the 4 cells", "use more points"],
     ),
     "area in another unit": (
         "loading={contact_area='1 mm'}",
@@ -84,10 +84,10 @@ PUNCH = "indenter={type='flat_punch', radius='0.1 mm'}"
 @pytest.mark.parametrize(
     ("loading", "words"),
     [
-        ("contact_area='0.1 mm**2'", ["contact_area.0: 1e-07 m2 is more than the indenter has"]),
+        ("contact_area='0.1 mm**2'", ["contact_area.0: 0.1 mm² is more than the indenter has"]),
         (
             "contact_radius='0.1 mm'",
-            ["contact_radius.0: 0.0001 m is not", "flat", "prescribe depth"],
+            ["contact_radius.0: 100 µm is not", "flat", "prescribe depth"],
         ),
         ("mean_plane_depth='1 um'", ["mean_plane_depth: is not defined", "prescribe depth"]),
     ],
@@ -100,14 +100,14 @@ def test_loading_of_a_punch(refuse: Callable[..., str], loading: str, words: lis
 def test_depth_before_first_touch(refuse: Callable[..., str]) -> None:
     """The mean plane may be that high, but no higher, for the lowest point to touch."""
     changes = ["grid.boundary='periodic'", "loading={mean_plane_depth=['-10 um', '-1 mm']}"]
-    words = "-0.001 m is before first touch", "give -1.66006e-05 m", "or more"
+    words = "-1 mm is before first touch", "give -16.6006 µm", "or more"
     says(refuse(*changes), "loading.mean_plane_depth.1", *words)
 
 
 def test_depth_beyond_full_contact(refuse: Callable[..., str]) -> None:
     """On a periodic grid, no load reaches a depth below the indenter's mean plane."""
     message = refuse("grid.boundary='periodic'", "loading.depth=['1 um', '1 mm']")
-    says(message, "loading.depth.1: 0.001 m is beyond full contact", "mean plane", "give less")
+    says(message, "loading.depth.1: 1 mm is beyond full contact", "mean plane", "give less")
 
 
 def test_area_of_few_cells(cli: Cli) -> None:
@@ -124,10 +124,10 @@ def test_area_of_few_cells(cli: Cli) -> None:
 @pytest.mark.parametrize(
     ("loading", "boundary", "named"),
     [
-        ("{depth='1 mm'}", "free", "loading.depth = 0.001 m"),
+        ("{depth='1 mm'}", "free", "loading.depth = 1 mm"),
         ("{force='1 N'}", "free", "loading.force = 1 N"),
-        ("{contact_area='0.19 mm**2'}", "free", "loading.contact_area = 1.9e-07 m2"),
-        ("{mean_pressure='1 MPa'}", "periodic", "loading.mean_pressure = 1e+06 Pa"),
+        ("{contact_area='0.19 mm**2'}", "free", "loading.contact_area = 0.19 mm²"),
+        ("{mean_pressure='1 MPa'}", "periodic", "loading.mean_pressure = 1 MPa"),
     ],
 )
 def test_contact_reaches_the_edge(cli: Cli, loading: str, boundary: str, named: str) -> None:
@@ -136,7 +136,7 @@ def test_contact_reaches_the_edge(cli: Cli, loading: str, boundary: str, named: 
     outcome = cli("run", "start.toml", "-o", "out", *changes)
     assert outcome.exit_code == 1
     says(outcome.message, "step 1 did not converge", "reaches the edge", named)
-    says(outcome.message, "enlarge grid.size = 0.0004472 × 0.0004472 m or press in less far")
+    says(outcome.message, "enlarge grid.size = 447.2 µm × 447.2 µm or press in less far")
     kept = pl.load("out/start.h5").dataset
     assert not kept["converged"].item()
     assert "reaches the edge" in kept["status"].item()

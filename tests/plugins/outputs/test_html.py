@@ -164,10 +164,10 @@ def test_every_number_is_there_with_its_unit(ran: tuple[Path, xr.Dataset]) -> No
         row = {**measures[index], **shape[index], **effort[index]}
         assert row["step"] == str(index + 1)
         assert row["status"] == "converged"
-        # A round contact has no major axis.
-        left_out = "residual", "major_axis_angle"
+        # A round contact has no axes, a free domain no area of its own.
+        left_out = "residual", "semi_", "major_axis_angle", "contact_fraction", "mean_pressure"
         exact = [name for name in scalars if not name.startswith(left_out)]
-        assert not any("angle" in head for head in row)
+        assert not any(w in head for head in row for w in ("axis", "fraction", "mean pressure"))
         agree(row, data.isel(step=index), exact)
         residual = float(row["residual of the contact"])
         assert residual == pytest.approx(data["residual_contact"].values[index], rel=0.06)
@@ -369,13 +369,14 @@ def test_methods(ran: tuple[Path, xr.Dataset], studied: tuple[Path, xr.Dataset])
         "24 × 18 cells of 400 µm × 300 µm with free boundaries",
         "Kernel: tensed membrane (reduced modulus 10 kPa, surface tension 100 mN/m)",
         "indenter: paraboloid (radius 1 mm)",
-        f"Solver: active set, to a relative tolerance of {pl.Run(**RUN).solver.tolerance:g}.",
+        "Prescribed: depth 5, 10 µm. Solver: active set, to a relative tolerance of "
+        f"{pl.Run(**RUN).solver.tolerance:g}.",
         f"Computed with {data.attrs['versions']}.",
         CITATION,
     ):
         assert part in text
     (text,) = (text for text in Page(studied[0]).texts["p"] if text.startswith("Normal contact"))
-    assert "indenter: paraboloid. Varied: radius. Solver" in text
+    assert "indenter: paraboloid. Prescribed: depth 5, 10 µm. Varied: radius. Solver" in text
 
 
 def test_study(studied: tuple[Path, xr.Dataset]) -> None:
@@ -388,10 +389,11 @@ def test_study(studied: tuple[Path, xr.Dataset]) -> None:
     for row, run in zip(rows, flat, strict=True):
         assert run["run"].item().startswith(row["file"].removesuffix("…"))
         assert (row["steps"], row["status"]) == ("2/2", "converged")
-        names = ("indenter.radius", "depth", "force", "contact_fraction")
-        agree(row, run, names)
-        # What is derived has no unit that anybody knows.
-        assert float(row["twice"]) == pytest.approx(2 * run["force"].item(), rel=5.1e-4)
+        agree(row, run, ("indenter.radius", "depth", "force", "contact_area"))
+        # Its unit is that of the force.
+        (head,) = (head for head in row if head.startswith("twice"))
+        twice = si(row[head], head.partition("[")[2].rstrip("]"))
+        assert twice == pytest.approx(2 * run["force"].item(), rel=5.1e-4)
     links = [attrs["data-frame"] for tag, attrs in page.tags if "data-frame" in attrs]
     assert links == ["0", "1"]
     assert page.maps["frames"][1]["label"] == "radius 1 mm"

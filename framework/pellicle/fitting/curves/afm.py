@@ -17,7 +17,7 @@ from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
 from .columns import Calibration
-from .curve import Axis, Curve, Site
+from .curve import Axis, Curve, Site, grows
 from .origin import Origin
 
 SUFFIXES = (
@@ -195,8 +195,7 @@ def _time(data: Mapping[str, Any], rows: Any) -> Array | None:
     if "time" not in data:
         return None
     time = np.asarray(data["time"], dtype=float)[rows]
-    steps = np.diff(time)
-    return time if np.isfinite(steps).all() and (steps >= 0).all() and steps.any() else None
+    return time if grows(time) else None
 
 
 def _site(metadata: Mapping[str, Any]) -> Site | None:

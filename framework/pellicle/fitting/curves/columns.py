@@ -13,7 +13,7 @@ from pellicle.errors import ConfigError, shown
 from pellicle.model.base import Model
 from pellicle.units import Quantity
 
-from .curve import Curve
+from .curve import Curve, grows
 from .origin import Origin
 from .roles import EXAMPLE, OF_BASE, POSITIONS, SIGNALS, TIME, ColumnMap, factor, is_voltage
 
@@ -131,10 +131,7 @@ def _time(columns: Mapping[str, Channel], rows: Mask) -> Array | None:
     if TIME not in columns or not columns[TIME].unit:
         return None
     time = columns[TIME].values
-    if time.shape != rows.shape or not rows.any():
-        return None
-    steps = np.diff(time[rows])
-    if not np.isfinite(steps).all() or (steps < 0).any() or not steps.any():
+    if time.shape != rows.shape or not grows(time[rows]):
         return None
     return factor(TIME, columns[TIME].unit) * time
 

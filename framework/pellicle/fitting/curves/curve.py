@@ -152,13 +152,21 @@ def clean(curve: Curve, segment: Segment = "approach") -> Curve:
     return replace(curve, position=z, force=f, time=t, speed=None, messages=tuple(messages))
 
 
+def grows(time: Array) -> bool:
+    """Return whether times are finite, never fall, and are not all the same."""
+    if not np.isfinite(time).all():
+        return False
+    steps = np.diff(time)
+    return bool((steps >= 0).all() and steps.any())
+
+
 def _time(values: Array, rows: Mask) -> Array:
     """Return the time of some rows; an error names what is wrong with it."""
     time = _array(values, "time")
     if time.shape != rows.shape:
         raise ConfigError(f"has {time.size} values; give one for each of {rows.size} rows", "time")
     time = time[rows]
-    if not np.isfinite(time).all() or (np.diff(time) < 0).any() or not np.ptp(time):
+    if not grows(time):
         raise ConfigError(
             "falls, stands still or holds no finite number; give the time of each row [s] in order",
             "time",

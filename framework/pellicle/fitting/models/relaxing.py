@@ -123,7 +123,7 @@ class RelaxingModel(ABC):
         )
 
     def _recent_course(self, point: float, values: Values) -> Course:
-        """Return the response of the solid, kept from the last call if nothing else is asked.
+        """Return the response of the solid, retained from the last call if that was equal.
 
         The balance of a cantilever varies the depths of rows only.
         """
@@ -290,13 +290,13 @@ class RelaxingModel(ABC):
         # ∫ E(t − t′) dδ from the time of equal contact on is 0.
         tail = np.cumsum(loading[:, ::-1], axis=1)[:, ::-1]
         tail = np.concatenate([tail, np.zeros((at.size, 1))], axis=1)
-        wanted = -unloading
-        index = np.sum(tail > wanted[:, None], axis=1) - 1
+        target = -unloading
+        index = np.sum(tail > target[:, None], axis=1) - 1
         rows = np.arange(at.size)
         touching = index >= 0
         cell = np.clip(index, 0, t.size - 2)
         above, below = tail[rows, cell], tail[rows, cell + 1]
-        share = np.where(above > below, (above - wanted) / np.maximum(above - below, 1e-300), 0.0)
+        share = np.where(above > below, (above - target) / np.maximum(above - below, 1e-300), 0.0)
         share = np.where(touching, np.clip(share, 0.0, 1.0), 0.0)
         earlier = np.where(touching, t[cell] + share * (t[cell + 1] - t[cell]), t[0])
         contributions = weights * _rates(t, g)

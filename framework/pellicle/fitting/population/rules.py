@@ -103,13 +103,13 @@ class Rule:
         ConfigError
             It does not, or names something unknown.
         """
-        rule, known = shown(self.text), units()
+        rule, unit_of = shown(self.text), units()
         if len(self._sides) not in (2, 3) or not all(self._sides) or not self.names:
             raise ConfigError(f"{rule} does not compare a number of the fit; {_EXAMPLE}")
         for name in self.names:
-            if name not in known:
-                raise ConfigError(f"{shown(name)} in {rule}: {nearest(name, known)}")
-        ones = {name: one(known[name]) if known[name] != "1" else 1.0 for name in self.names}
+            if name not in unit_of:
+                raise ConfigError(f"{shown(name)} in {rule}: {nearest(name, unit_of)}")
+        ones = {name: one(unit_of[name]) if unit_of[name] != "1" else 1.0 for name in self.names}
         dimensions = {}
         for side in self._sides:
             number = _quantity(side)

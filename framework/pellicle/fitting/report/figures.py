@@ -126,12 +126,17 @@ def save_figure(fit: Fit | PooledFit, path: Path) -> Path:
 
 
 def plot(fit: FitResult) -> Figure:
-    """Return a figure of pyplot with the panels of a fit beside each other."""
+    """Return a figure of pyplot with the panels of a fit beside each other.
+
+    A notebook shows it once, also where it is the last line of a cell.
+    """
     from matplotlib import pyplot
+
+    from .pyplot_figure import PyplotFigure
 
     assert isinstance(fit, (Fit, PooledFit)), "these are all fits that have panels"
     beside = panels(fit)
-    figure = pyplot.figure(figsize=_size(beside), layout="constrained")
+    figure = pyplot.figure(FigureClass=PyplotFigure, figsize=_size(beside), layout="constrained")
     _beside(beside, figure)
     return figure
 

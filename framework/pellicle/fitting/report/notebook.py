@@ -1,4 +1,4 @@
-"""What a notebook shows of a fit and of a population of fits."""
+"""HTML and pictures of a fit and of a population of fits, for a notebook."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from pellicle.fitting.many import ManyFits
 from pellicle.fitting.result import FitResult
-from pellicle.fitting.wording import interval, scale
+from pellicle.fitting.wording import group_scales, interval, scale, words
 from pellicle.model.html import summary
 from pellicle.report.style import FigureStyle
-from pellicle.units import decimal, readable
+from pellicle.units import decimal
 
 from .answer import answer, answer_of_population
 from .figures import SIZE, Panel, panels
@@ -27,8 +27,7 @@ def html_of_fit(fit: Fit | PooledFit) -> str:
     rows = []
     for name, estimate in fit.estimates().items():
         factor, unit = scale(estimate)
-        words = name.replace("_", " ").replace("youngs", "Young's")
-        rows.append([words, decimal(estimate.value * factor, 4), interval(estimate), unit])
+        rows.append([words(name), decimal(estimate.value * factor, 4), interval(estimate), unit])
     count = len(fit.curve_rows())
     title = f"Fit of {count} curves" if count else "Fit of a curve"
     sentence = f"{answer(fit)} {_state(fit)}"
@@ -45,15 +44,19 @@ def _state(fit: FitResult) -> str:
 
 def html_of_population(fits: ManyFits) -> str:
     """Return how many curves were fitted, the quartiles of each group, and their distributions."""
+    parts = fits.summary()
+    scales = group_scales(parts)
     rows = [
         [
-            part.parameter.replace("_", " ").replace("youngs", "Young's"),
+            f"{words(part.parameter)} [{scales[part.parameter].unit}]",
             part.group,
             f"{part.n} of {part.curves}",
-            *(readable(v, part.unit, 4) for v in (part.median, part.lower_quartile)),
-            readable(part.upper_quartile, part.unit, 4),
+            *map(
+                scales[part.parameter].number,
+                (part.median, part.lower_quartile, part.upper_quartile),
+            ),
         ]
-        for part in fits.summary()
+        for part in parts
     ]
     heads = "parameter", "group", "accepted", "median", "lower quartile", "upper quartile"
     title = f"Fits of {len(fits.rows)} curves"

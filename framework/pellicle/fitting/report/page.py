@@ -18,7 +18,7 @@ from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.profile import CONFIDENCE
-from pellicle.fitting.wording import interval, scale, words
+from pellicle.fitting.wording import group_scales, interval, scale, words
 from pellicle.report.page import Block, Cell, Code, Column, Notice, Picture, Section, Table, Text
 from pellicle.report.page import page as render
 from pellicle.report.saving import svg
@@ -34,6 +34,8 @@ _LINES = 200
 """Lines of a list of warnings or failed curves."""
 _PAGES = 6
 """Pages of the contact sheet on the page, which a browser has to load at once."""
+_HASH = 12
+"""Digits of a hash that are shown."""
 _LONGEST = 2_000_000
 """Letters of JSON that the page repeats."""
 _COLUMNS = (
@@ -159,13 +161,15 @@ def _groups(fits: ManyFits) -> Table:
     """Return median and quartiles of each parameter in each group."""
     heads = ["parameter", "group", "accepted", "stand out", "median", "lower quartile"]
     columns = [Column(head, words=head in heads[:2]) for head in [*heads, "upper quartile"]]
-    rows = []
-    for part in fits.summary():
+    rows, parts = [], fits.summary()
+    scales = group_scales(parts)
+    for part in parts:
+        shown = scales[part.parameter]
         values = part.median, part.lower_quartile, part.upper_quartile
-        texts = [readable(value, part.unit, 4) for value in values]
         counts = [f"{part.n} of {part.curves}", str(part.outliers)]
-        words = part.parameter.replace("_", " ").replace("youngs", "Young's")
-        rows.append([words, part.group, *counts, *texts])
+        numbers = map(shown.number, values)
+        name = f"{words(part.parameter)} [{shown.unit}]"
+        rows.append([name, part.group, *counts, *numbers])
     return Table("The accepted curves.", columns, rows)
 
 
@@ -176,7 +180,7 @@ def _sheets(fits: ManyFits) -> list[Block]:
     caption = f"Each curve with its fit. {LEGEND}"
     if len(pages) > len(shown):
         caption += f" The first {len(shown)} of {len(pages)} pages; all are in fits-curves.pdf."
-    return [Picture(svg(draw, PAGE), caption, caption) for draw in shown]
+    return [Picture(svg(draw, PAGE), caption, caption, wide=True) for draw in shown]
 
 
 def _sentence(text: str) -> str:
@@ -196,7 +200,7 @@ def _record(fit: FitResult) -> list[Block]:
     """Return the table of the files that were fitted, and the versions."""
     if fit.record is None:
         return []
-    heads = {
+    heads: dict[str, list[str | Cell]] = {
         "file": [entry["file"] or "numbers given in Python" for entry in fit.record.data],
         "curve": [entry["curve"] or "" for entry in fit.record.data],
         "columns": [
@@ -212,11 +216,20 @@ def _record(fit: FitResult) -> list[Block]:
         },
         "segment": [entry["segment"] for entry in fit.record.data],
         "baseline": [entry["baseline"] for entry in fit.record.data],
-        "SHA-256": [entry["sha256"] or "" for entry in fit.record.data],
+        "SHA-256": [_shortened(entry["sha256"] or "") for entry in fit.record.data],
     }
-    columns = {Column(head, words=True): texts for head, texts in heads.items() if any(texts)}
+    columns = {
+        Column(head, words=True): texts
+        for head, texts in heads.items()
+        if any(text not in ("", Cell("")) for text in texts)
+    }
     versions = ", ".join(f"{name} {number}" for name, number in fit.record.versions.items())
     return [_table("The data, and how they were read.", columns), Text(f"Versions: {versions}.")]
+
+
+def _shortened(digest: str) -> Cell:
+    """Return the beginning of a hash."""
+    return Cell(f"{digest[:_HASH]}…", whole=digest) if digest else Cell("")
 
 
 def _estimates(fit: Fit | PooledFit) -> Table:

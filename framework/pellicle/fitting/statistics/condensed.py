@@ -115,9 +115,9 @@ def _nodes(x: Array, bend: float | None, count: int) -> Rows:
     """Return the indices of nodes among increasing coordinates, the first and last among them."""
     low, high = float(x[0]), float(x[-1])
     if bend is None:
-        wanted = low + (high - low) * np.linspace(0, 1, 2 * count) ** 2
+        targets = low + (high - low) * np.linspace(0, 1, 2 * count) ** 2
     else:
         near = bend + _NEAR * (high - low) * np.linspace(-1, 1, count)
-        wanted = np.concatenate([np.linspace(low, high, count), np.clip(near, low, high)])
-    index = np.clip(np.searchsorted(x, wanted), 0, x.size - 1)
+        targets = np.concatenate([np.linspace(low, high, count), np.clip(near, low, high)])
+    index = np.clip(np.searchsorted(x, targets), 0, x.size - 1)
     return np.unique(np.concatenate([[0], index, [x.size - 1]]))

@@ -147,8 +147,8 @@ def _speed(value: float) -> str:
     return readable(value, "m/s", 2)
 
 
-def _duration(value: float, known: bool) -> str:
-    return readable(value, "s", 2) if known else "the duration of the approach"
+def _duration(value: float, has_time: bool) -> str:
+    return readable(value, "s", 2) if has_time else "the duration of the approach"
 
 
 def _separation(
