@@ -5,8 +5,7 @@ same ratio of a bare scipy.fft.rfft2 and irfft2 of the transform's size in singl
 precision, and the solve's gain over the larger of those. All are timed in turn, in one process;
 each number is a median. The pressures have to be equal to the last bit.
 
-    OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 python tests/benchmarks/threads.py \\
-        --points 32 64 128 256 512 1024 2048
+    OMP_NUM_THREADS=1 python tests/benchmarks/threads.py --points 32 64 128 256 512 1024 2048
 
 The cases are those of cost.py. Run it on an idle machine: the times are those of a clock.
 """
