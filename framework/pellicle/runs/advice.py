@@ -43,7 +43,7 @@ class _Rule(NamedTuple):
     pooled: float = 0.0
     """Factor on the root mean square of the differences of all steps, at equal cells across."""
     least: float = 0.0
-    """Least error of a contact of one cell."""
+    """Least error of a contact of one cell, over the value of the step."""
 
 
 # The order cannot be read off three grids, whose differences vanish now and then. Measured by
@@ -52,9 +52,9 @@ class _Rule(NamedTuple):
 # other steps to pool, force 0.96 and 3.0, depth 1.0 and 4.1, area 0.97 and 3.2. Rough: force 1.0
 # and 3.5, depth 1.0 and 20, area 1.0 and 2.5. Punches: force 1.0 and 3.3, area 0.75 and 2.9.
 _SMOOTH = _Rule(2.0, 1.0, 1.5, 0.3)
-_SMOOTH_DEPTH = _Rule(2.0, 1.0, 1.5, 0.1)
+_SMOOTH_DEPTH = _Rule(2.0, 1.0, 1.5, 0.2)
 _OTHER = _Rule(1.0, 1.0)
-_AREA = _Rule(1.0, 1.0, 1.5, 0.5)
+_AREA = _Rule(1.0, 1.0, 1.5, 0.7)
 
 
 class Expected(NamedTuple):
@@ -209,8 +209,10 @@ def _errors(values: Array, scale: Array, sizes: Array, cells: Array, rule: _Rule
     slopes = np.abs(values[:-1] - values[-1]) / scale / falls[:, None]
     differences = (slopes * cells**rule.order)[:, ~np.isnan(scale)]
     pooled = math.sqrt(np.mean(differences**2)) if differences.size else 0.0
+    least = rule.least * np.abs(values[-1]) / scale
     errors: Array = np.maximum(
-        rule.own * slopes.max(axis=0), max(rule.pooled * pooled, rule.least) / cells**rule.order
+        rule.own * slopes.max(axis=0),
+        np.maximum(rule.pooled * pooled, least) / cells**rule.order,
     )
     return np.where(exact, 0.0 * scale, errors)
 
