@@ -65,7 +65,7 @@ class Leg(Model):
 
     @property
     def described_fields(self) -> Mapping[str, FieldInfo]:
-        """The fields by name, with the unit of what is prescribed."""
+        """The fields by name; those of prescribed values have their unit."""
         return fields_of(type(self), self._unit)
 
 
@@ -176,7 +176,7 @@ _FORMS = (
 
 
 def fields_of(kind: type[Leg], unit: str) -> dict[str, FieldInfo]:
-    """Return the fields of a kind of leg, with the ``unit`` of what is prescribed."""
+    """Return the fields of a kind of leg; those of prescribed values have the ``unit``."""
     fields = dict(kind.model_fields)
     for name in fields.keys() & {"to", "amplitude"}:
         about = FieldInfo(annotation=float, description=fields[name].description)
