@@ -106,7 +106,7 @@ def _host() -> str:
 
 
 def _alive(pid: int) -> bool:
-    """Whether a process of this machine is alive; always true on Windows, where os.kill ends it."""
+    """Return whether a process is alive; always true on Windows, where os.kill ends it."""
     if os.name == "nt":
         return True
     try:

@@ -32,8 +32,8 @@ from pellicle.fitting.parameters import (
 from pellicle.fitting.statistics.checks import fit_single, judged
 from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood, Minimum
 from pellicle.fitting.statistics.pooled_likelihood import Pool
-from pellicle.fitting.statistics.profile import chi_squared_threshold, profiled
-from pellicle.fitting.statistics.rivals import rivals
+from pellicle.fitting.statistics.profile import chi_squared_threshold
+from pellicle.fitting.statistics.rivals import Rival, rivals
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 
@@ -105,8 +105,8 @@ def _joined(pool: Pool, part: Coordinates) -> Coordinates:
     return pool.joined([part] * len(pool.members))
 
 
-def minimum_of(curve: ChiSquared, code: str) -> tuple[ChiSquared, Minimum, float]:
-    """Return χ² of a rival at the noise of its residuals, its minimum, and the threshold."""
+def minimum_of(curve: ChiSquared, code: str) -> tuple[Rival, ChiSquared, Minimum, float]:
+    """Return a rival, χ² at the noise of its residuals, its minimum, and the threshold."""
     members = [member for member, _ in curve.curves(dict.fromkeys(curve.parameters, 0.0))]
     singles = [fit_single(member, {OFFSET: 0.0, SLOPE: 0.0}) for member in members]
     chi: Any = (
@@ -128,13 +128,16 @@ def minimum_of(curve: ChiSquared, code: str) -> tuple[ChiSquared, Minimum, float
     rival, best = pair
     mine = rival.of(chi)
     judgements = [judged(member, part)[0] for member, part in mine.curves(best.parameters)]
-    own = [
+    quiet = [
         replace(member, noise=judgement.noise.deviation)
-        for (member, _), judgement in zip(mine.curves(best.parameters), judgements, strict=True)
+        for (member, _), judgement in zip(
+            chi.curves(dict.fromkeys(chi.parameters, 0.0)), judgements, strict=True
+        )
     ]
-    mine = Pool.of(own) if isinstance(mine, Pool) else own[0]
+    chi = replace(chi, members=tuple(quiet)) if isinstance(chi, Pool) else quiet[0]
     freedom = sum(judgement.noise.freedom for judgement in judgements)
-    return mine, mine.minimise(best.parameters), chi_squared_threshold(freedom)
+    best = rival.of(chi).minimise(best.parameters, rough=True)
+    return rival, chi, best, chi_squared_threshold(freedom)
 
 
 def score_of(name: str, number: int, seed: int) -> dict[str, Any]:
@@ -150,10 +153,10 @@ def score_of(name: str, number: int, seed: int) -> dict[str, Any]:
     else:
         measured, right, truth = relaxing(random, (1.0, 0.1))
         code, own = "tension+power_law", EXPONENT
-    chi, best, threshold = minimum_of(measured, code)
+    rival, chi, best, threshold = minimum_of(measured, code)
     bounds = right.bounds(truth, right.free)
     parameters = MODULUS, TENSION, own
-    best, ends = profiled(chi, best, threshold, parameters)
+    best, ends = rival.intervals(chi, best, threshold, parameters)
     points = chi.force.size if isinstance(chi, Likelihood) else 0
     scores: dict[str, Any] = {"points": points}
     for p in parameters:

@@ -398,7 +398,7 @@ class Outcome(NamedTuple):
     covers: bool
     """Whether the interval of the modulus holds the truth."""
     decided: bool
-    """Whether the interval is said to hold, not to be that of one model among several."""
+    """Whether the interval is that of one model, not of several that are tied."""
     seconds: float
 
     def settled(self, needed: bool) -> bool:
@@ -438,31 +438,26 @@ def outcome(sample: Sample, protocol: str = "approach", *, follow: bool = True) 
     verdict = verdict_of(fit)
     rivals = fit.rivals
     tied = tuple(tie.rival.code for tie in rivals.tied) if rivals is not None else ("none",)
-    covers = any(holds(estimate) for estimate in moduli_of(fit))
+    covers = holds(modulus_of(fit))
     named = rivals.advice if rivals is not None else ""
     second = ""
     if follow and verdict == "undecided" and named:
         second = followed(sample, curves, named)
     right = verdict == "not shown" or any(code in tied for code in sample.truth.codes)
-    decided = verdict != "undecided"
+    decided = rivals is None or rivals.modulus is None
     return Outcome(verdict, named, tied, second, right, covers, decided, seconds)
 
 
-def moduli_of(fit: Any) -> list[pl.Estimate]:
-    """Return the modulus of the fit, or of all explanations that it cannot tell apart."""
-    if fit.rivals is None or fit.rivals.verdict == "not shown":
-        return [fit.reduced_modulus]
-    tied = fit.rivals.tied if fit.rivals.verdict == "undecided" else fit.rivals.fits[:1]
-    return [tie.estimates["reduced_modulus"] for tie in tied]
+def modulus_of(fit: pl.Fit | pl.PooledFit) -> pl.Estimate:
+    """Return the modulus over all explanations that the fit cannot tell apart."""
+    if fit.rivals is not None and fit.rivals.modulus is not None:
+        return fit.rivals.modulus
+    return fit.chosen_estimates()["reduced_modulus"]
 
 
 def holds(estimate: pl.Estimate) -> bool:
-    """Return whether an interval, or 1.96 bounds if none was sought, holds the true modulus."""
-    low, high = estimate.low, estimate.high
-    if low is None and high is None:
-        error = 1.96 * estimate.bound / estimate.value
-        low, high = estimate.value * np.exp(-error), estimate.value * np.exp(error)
-    return (low or 0.0) <= MODULUS_ <= (high or np.inf)
+    """Return whether an interval holds the true modulus."""
+    return (estimate.low or 0.0) <= MODULUS_ <= (estimate.high or np.inf)
 
 
 def followed(sample: Sample, curves: Sequence[Curve], named: str) -> str:
@@ -541,7 +536,7 @@ def main() -> None:
         __doc__, list(KINDS), 20, lambda *curve: outcome_of(*curve)._asdict()
     )
     heads = ["first answer", "with the measurement named", "named", "false", "settled", "right"]
-    heads += ["E* holds", "E* of one of the tied holds", "CPU s"]
+    heads += ["E* of one model holds", "E* over tied models holds", "CPU s"]
     print(f"{curves} curves each | {' | '.join(heads)}")
     print("--- | " * len(heads) + "---")
     for name, values in results.items():

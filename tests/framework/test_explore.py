@@ -289,7 +289,7 @@ def test_a_long_solve_is_abandoned(
             check()
             time.sleep(0.001)
 
-    monkeypatch.setattr(solving, "_PATIENCE", 0.0)
+    monkeypatch.setattr(solving, "_LONGEST_WAIT", 0.0)
     with monkeypatch.context() as slow:
         slow.setattr(solving, "solved", endless)
         page = Page(start)

@@ -21,7 +21,7 @@ from pellicle import files
 from pellicle.cli import app
 from pellicle.components import Monitor
 from pellicle.results import storage
-from pellicle.results.axes import with_paths
+from pellicle.results.dimensions import with_paths
 from pellicle.studies import runner as study_module
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 

@@ -32,7 +32,7 @@ class Oscillation:
     cycle_dissipation: float = nan
     """∮F dδ [J], the energy dissipated in the cycle."""
     cycle_drift: float = nan
-    """What depth or force gains over the cycle, over its amplitude, whichever is more."""
+    """Change of depth or force over the cycle, over the amplitude; the larger of the two."""
 
 
 def oscillations(

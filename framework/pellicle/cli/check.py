@@ -12,6 +12,7 @@ import typer
 from pellicle.errors import ConfigError
 
 from .printing import echo, print_json, print_table
+from .scales import warn_of_scales
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
@@ -39,6 +40,7 @@ def check(
 
     allowed = _allowed(error.strip())
     configuration = from_toml(file, set_ or ())
+    warn_of_scales(configuration)
     if isinstance(configuration, Study):
         _check_study(configuration, allowed, json=json)
     else:
@@ -89,6 +91,21 @@ def _check_run(run: Run, error: float, *, json: bool) -> None:
         echo(f"for {_share(error)} of {of} in every step{on}: grid.points = [{nx}, {ny}]")
 
 
+def _row(name: str, advice: Advice, needed: float, error: float) -> dict[str, str]:
+    """Return the line of a run in the table of a study; ``needed`` is its memory [bytes]."""
+    across = [step.cells for step in advice.steps if not math.isnan(step.error)]
+    nx, ny = advice.points
+    return {
+        "run": name,
+        "steps": str(len(advice.steps)),
+        "fewest cells across": f"{min(across):.0f}" if across else "0",
+        "error": _share(_worst(advice, "error")),
+        "error of area": _share(_worst(advice, "area_error")),
+        f"points for {_share(error)}": f"{nx} × {ny}",
+        "memory": f"{needed / 1e6:.3g} MB",
+    }
+
+
 def _check_study(study: Study, error: float, *, json: bool) -> None:
     """Print the worst of each run, and how many runs exceed the allowed error.
 
@@ -111,21 +128,7 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
             {"runs": [{"run": name, **_data(advice, needed)} for name, advice, needed in checked]}
         )
         return
-    rows = []
-    for name, advice, needed in checked:
-        across = [step.cells for step in advice.steps if not math.isnan(step.error)]
-        nx, ny = advice.points
-        rows.append(
-            {
-                "run": name,
-                "steps": str(len(advice.steps)),
-                "fewest cells across": f"{min(across):.0f}" if across else "0",
-                "error": _share(_worst(advice, "error")),
-                "error of area": _share(_worst(advice, "area_error")),
-                f"points for {_share(error)}": f"{nx} × {ny}",
-                "memory": f"{needed / 1e6:.3g} MB",
-            }
-        )
+    rows = [_row(name, advice, needed, error) for name, advice, needed in checked]
     print_table(list(rows[0]), rows)
     errors = [(w, name) for name, advice, _ in checked if (w := _worst(advice, "error")) == w]
     many = sum(w > error for w, _ in errors)
@@ -169,7 +172,7 @@ def _worst(advice: Advice, of: str) -> float:
 
 
 def _is_unknown(advice: Advice, name: str) -> bool:
-    """Whether a quantity is not prescribed: its error is more than round-off in some step."""
+    """Return whether a quantity has errors beyond round-off in a step: it is not prescribed."""
     return _worst(advice, f"{name}_error") > _ROUND_OFF
 
 

@@ -30,8 +30,9 @@ def print_fit(fit: FitResult, *, si: bool = False) -> None:
     from pellicle.fitting.report.answer import answer
     from pellicle.fitting.wording import column_scale, interval_text
 
-    if fit.chosen is not None:
+    if fit.chosen is not None or fit.range_of_moduli():
         echo(answer(fit, si=si))
+    if fit.chosen is not None:
         echo("An elastic solid under tension instead:")
     rows = []
     for name, estimate in fit.estimates().items():
@@ -59,7 +60,7 @@ def print_notes(fit: FitResult) -> None:
 
 
 def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool = False) -> None:
-    """Print a line for each curve and for each group, and what to know of them.
+    """Print a line for each curve and for each group, and the notes on them.
 
     Of many curves, lines are left out if the table is in the folder.
     """

@@ -167,7 +167,7 @@ def _folded(text: str, width: int) -> list[str]:
 
 
 def _is_number(text: str) -> bool:
-    """Whether a text is empty, a number, or a dash in place of one."""
+    """Return whether a text is empty, a number, or a dash in place of one."""
     try:
         float(text.replace("∞", "inf").replace("–", "nan") or "0")
     except ValueError:

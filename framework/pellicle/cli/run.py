@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from .exits import INTERRUPTED
-from .printing import echo, print_json, print_table, print_warning
+from .printing import echo, print_json, print_table
 from .results import (
     exit_by_convergence,
     exit_by_status,
@@ -17,13 +17,11 @@ from .results import (
     print_steps,
     print_study_json,
 )
+from .scales import warn_of_scales
 
 if TYPE_CHECKING:
     from pellicle.config.run import Run
     from pellicle.config.study import Study
-
-_LARGE = 1.0
-"""Edge of a domain [m] that is more likely a number whose unit was left out."""
 
 
 def run(
@@ -74,35 +72,20 @@ def run(
     from pellicle.config.study import Study, from_toml
 
     configuration = from_toml(file, set_ or ())
-    _warn_of_size(configuration)
+    warn_of_scales(configuration)
     folder = directory or Path(file.stem)
-    shown = _Shown(quiet, si, json)
+    display = _Display(quiet, si, json)
     if dry_run:
         _print_plan(configuration, folder / file.stem, overwrite, json)
     elif isinstance(configuration, Study):
-        _run_study(configuration, folder, shown, threads=threads, overwrite=overwrite)
+        _run_study(configuration, folder, display, threads=threads, overwrite=overwrite)
     else:
         stem = folder / file.stem
-        _run_one(configuration, stem, shown, threads=threads, overwrite=overwrite)
+        _run_one(configuration, stem, display, threads=threads, overwrite=overwrite)
 
 
-def _warn_of_size(configuration: Run | Study) -> None:
-    """Warn of a domain so large that its unit is more likely to be missing."""
-    from pellicle.config.study import Study
-
-    if isinstance(configuration, Study):
-        size = max(max(point.run.grid.size) for point in configuration.points)
-    else:
-        size = max(configuration.grid.size)
-    if size > _LARGE:
-        print_warning(
-            f"grid.size is {size:g} m; a number without a unit is in SI: give one, such as "
-            f"'{size:g} um', if that is not meant"
-        )
-
-
-class _Shown(NamedTuple):
-    """What is printed of a result."""
+class _Display(NamedTuple):
+    """How a result is printed."""
 
     quiet: bool
     si: bool
@@ -147,44 +130,46 @@ def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: b
     )
 
 
-def _run_one(run: Run, stem: Path, shown: _Shown, *, threads: int | None, overwrite: bool) -> None:
+def _run_one(
+    run: Run, stem: Path, display: _Display, *, threads: int | None, overwrite: bool
+) -> None:
     from pellicle.runs.journal import Journal
     from pellicle.runs.progress import Progress
     from pellicle.runs.runner import execute, standard_outputs
 
     steps = len(run.loading.values)
-    journal, bar = Journal(stem, run.identity, overwrite), Progress(steps, not shown.quiet)
+    journal, bar = Journal(stem, run.identity, overwrite), Progress(steps, not display.quiet)
     try:
         executed = execute(run, journal, standard_outputs(run.outputs), bar, threads=threads)
     except KeyboardInterrupt:
         echo(f"interrupted; finished steps are in {stem.parent}", err=True)
         raise typer.Exit(INTERRUPTED) from None
-    if shown.json:
+    if display.json:
         print_result_json(executed.result, executed.files)
-    elif not shown.quiet:
-        print_steps(executed.result, si=shown.si)
+    elif not display.quiet:
+        print_steps(executed.result, si=display.si)
         _print_files(executed.files, executed.resumed, f"{steps} steps")
     exit_by_convergence(executed.result)
 
 
 def _run_study(
-    study: Study, folder: Path, shown: _Shown, *, threads: int | None, overwrite: bool
+    study: Study, folder: Path, display: _Display, *, threads: int | None, overwrite: bool
 ) -> None:
     from pellicle.studies.runner import execute
 
     try:
         result = execute(
-            study, folder, progress=not shown.quiet, overwrite=overwrite, threads=threads
+            study, folder, progress=not display.quiet, overwrite=overwrite, threads=threads
         )
     except KeyboardInterrupt:
         echo(
             f"interrupted; finished runs are in {folder}, and the same command continues", err=True
         )
         raise typer.Exit(INTERRUPTED) from None
-    if shown.json:
+    if display.json:
         print_study_json(result.table, result.files)
-    elif not shown.quiet:
-        print_runs(result.table, si=shown.si)
+    elif not display.quiet:
+        print_runs(result.table, si=display.si)
         _print_files(result.files, result.resumed, f"{len(study.points)} runs")
     exit_by_status(result.table)
 

@@ -60,13 +60,13 @@ def _table(table: Mapping[str, Any], fields: Mapping[str, FieldInfo], path: str)
         info = fields.get(key)
         name = f"{path}{key}"
         if isinstance(value, Mapping):
-            yield from _one(value, info.annotation if info else None, name)
+            yield from _rows_of(value, info.annotation if info else None, name)
         elif isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
             for index, entry in enumerate(value):
                 if info and any(isinstance(m, LoadSteps) for m in info.metadata):
                     yield from _table(entry, fields_of_leg(entry, info), f"{name}.{index}.")
                 else:
-                    yield from _one(entry, info.annotation if info else None, f"{name}.{index}")
+                    yield from _rows_of(entry, info.annotation if info else None, f"{name}.{index}")
         elif value not in ([], ""):
             quantity = quantity_of(info) if info else None
             text = readable(value, quantity.unit if quantity else "1")
@@ -80,7 +80,7 @@ def _worded(description: str, fields: Mapping[str, FieldInfo]) -> str:
     return _SNAKE.sub(lambda match: field_words(match[0], fields.get(match[0])), description)
 
 
-def _one(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[_Row]:
+def _rows_of(table: Mapping[str, Any], annotation: Any, name: str) -> Iterator[_Row]:
     """Yield the values in the table of a component or of another part of the run."""
     model = model_of_table(table, annotation)
     if "type" in table:

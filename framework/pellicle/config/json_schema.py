@@ -102,7 +102,7 @@ def _in_part(schema: Any) -> Any:
 
 
 def _requires_any(choices: Any) -> bool:
-    """Whether these are alternative lists of required fields, as for elastic moduli."""
+    """Return whether these are alternative lists of required fields, as for elastic moduli."""
     return (
         isinstance(choices, list)
         and bool(choices)

@@ -1,4 +1,4 @@
-"""What the explorer shows of a run: depth and force of each load step, and a cut through it."""
+"""Frames of the explorer: depth and force of each load step, and a cut through the contact."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Frame:
     cell_area: float
     """Area of a cell [m²]."""
     remarks: tuple[str, ...] = ()
-    """What the run warns of, and the statuses of its load steps other than converged."""
+    """Warnings of the run, and the statuses of its load steps other than converged."""
     is_preview: bool = False
     """Whether it is solved to fewer digits than the run asks for, without remarks."""
 
@@ -159,7 +159,7 @@ def preview(
     )
     with _LOCK, warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        steps = list(_started(loose, start.states, _Watched(check)))
+        steps = list(_solve_from(loose, start.states, _Watched(check)))
     deepest = max(steps, key=lambda step: step.force)
     return Frame.of(
         run,
@@ -170,15 +170,15 @@ def preview(
     )
 
 
-def _started(run: Run, starts: tuple[State, ...], watched: _Watched) -> Iterator[Equilibrium]:
+def _solve_from(run: Run, starts: tuple[State, ...], watched: _Watched) -> Iterator[Equilibrium]:
     """Solve each load step of a run from a state of its own."""
     setting = compose(run)
     for index, (value, start) in enumerate(zip(run.loading.values, starts, strict=True)):
-        with_state = replace(setting, state=_fitted(run, setting, value, start))
+        with_state = replace(setting, state=_initial_state(run, setting, value, start))
         yield solve_step(run, with_state, value, watched.step(index)).equilibrium
 
 
-def _fitted(run: Run, setting: Setting, value: float, start: State) -> State:
+def _initial_state(run: Run, setting: Setting, value: float, start: State) -> State:
     """Return a state below the indenter, at a depth with the pressure that best closes the gap.
 
     Without it, a modulus or depth changed by 7 % would leave a start so far off that the solver

@@ -15,7 +15,7 @@ ERROR: dict[str, str | None] = {"color": "#b00020"}
 ANSWER: dict[str, str | None] = {"font-size": "1.1rem"}
 """Style of the numbers of a run."""
 REMARK: dict[str, str | None] = {"color": "#6b4e00"}
-"""Style of what a run warns of."""
+"""Style of the warnings of a run."""
 
 
 def escaped(text: str) -> str:

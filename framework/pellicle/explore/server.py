@@ -92,7 +92,7 @@ class _Guarded(BokehTornado):
         return super().get_handler_delegate(request, own, *rest, **more)
 
     def _enters(self, arguments: dict[str, list[bytes]]) -> bool:
-        """Whether the address has the token, or the ticket, which then serves no more."""
+        """Return whether the address has the token, or the ticket, which it uses up."""
         tokens, tickets = arguments.get("token", []), arguments.get("ticket", [])
         if any(secrets.compare_digest(ticket, self._ticket.encode()) for ticket in tickets):
             self._ticket = secrets.token_urlsafe(32)

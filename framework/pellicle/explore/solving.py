@@ -17,7 +17,7 @@ from .frames import Frame, preview, solved
 _REST: Final = 150
 # Time after which a solve is abandoned if another run waits [s]. A typed tension of 1 MN/m may take
 # minutes; but if every solve were abandoned, a contact that sticks would not follow a slider.
-_PATIENCE: Final = 0.5
+_LONGEST_WAIT: Final = 0.5
 
 
 class _AbandonedError(Exception):
@@ -68,10 +68,10 @@ class Solving:
             self._thread.submit(self._solve, configuration, start)
 
     def _solve(self, configuration: Mapping[str, Any], start: Frame | None) -> None:
-        started = time.monotonic()
+        start_time = time.monotonic()
 
         def check() -> None:
-            is_late = self._waiting is not None and time.monotonic() - started > _PATIENCE
+            is_late = self._waiting is not None and time.monotonic() - start_time > _LONGEST_WAIT
             if self._is_closed or is_late:
                 raise _AbandonedError
 

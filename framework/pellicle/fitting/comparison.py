@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import partial, reduce
 from typing import Any, Literal
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.units import decimal, readable
 
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
-from .parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates, Parameter
+from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from .statistics.checks import judged
 from .statistics.experiments import advised
 from .statistics.likelihood import ChiSquared, Likelihood, Minimum
@@ -23,7 +23,7 @@ from .statistics.profile import (
     Estimate,
     curvature_interval,
     estimate_of,
-    profiled,
+    united,
 )
 from .statistics.rivals import NONE, TENSED, Rival, rivals
 from .wording import in_words, words
@@ -32,6 +32,8 @@ MARGIN = 6.0
 """Difference of AIC from which one model is preferred: odds of e³, 20 to 1."""
 _OF_MANY = 12.0
 """Difference of AIC by which the best of many rivals must beat no effect at all."""
+_LIKELIER = 2.0
+"""Difference of AIC that a pair of effects which is not needed exceeds in 5 % of curves."""
 _FIRST_TENSIONS = (0.03, 0.3)
 """Tensions from which a search for one starts, over modulus and depth."""
 _FAR = 100.0
@@ -88,6 +90,8 @@ class Comparison:
     """The explanation whose estimates count, if it is not an elastic solid under tension."""
     pull_off: str = ""
     """The pull-off force of an adhesive contact against its limits, in words."""
+    modulus: Estimate | None = None
+    """E* [Pa] with the least interval that contains those of all `alternatives`, if several."""
 
     @property
     def best(self) -> RivalFit:
@@ -98,6 +102,30 @@ class Comparison:
     def tied(self) -> tuple[RivalFit, ...]:
         """The explanations that the curves cannot tell from the best, the best included."""
         return tuple(fit for fit in self.fits if fit.aic < MARGIN)
+
+    @property
+    def alternatives(self) -> tuple[RivalFit, ...]:
+        """The explanation whose estimates count, and those that are tied with it.
+
+        A pair, which is never far behind one of its effects, counts if both are less likely than
+        it.  Of curves that need no tension only other shapes count, which have no parameter more,
+        and what is better than no effect by the margin.
+        """
+        aic = {fit.rival.code: fit.aic for fit in self.fits}
+
+        def counts(fit: RivalFit) -> bool:
+            if self.verdict == "not shown":
+                return fit.rival.of_shape or fit.aic + MARGIN <= aic[NONE.code]
+            single = fit.rival.code.partition("+")[2]
+            effects = aic[TENSED.code], aic.get(single, np.inf)
+            return not single or fit.aic + _LIKELIER <= min(effects)
+
+        chosen = TENSED.code if self.chosen is None else self.chosen.rival.code
+        return tuple(
+            fit
+            for fit in self.fits
+            if fit.rival.code == chosen or (fit.aic < MARGIN and counts(fit))
+        )
 
     def rows(self, *, si: bool = False) -> list[dict[str, str]]:
         """Return a line of a table for each explanation."""
@@ -126,6 +154,8 @@ class Comparison:
             "margin": MARGIN,
             "chosen": None if self.chosen is None else self.chosen.rival.code,
             "pull_off": self.pull_off,
+            "alternatives": [fit.rival.code for fit in self.alternatives],
+            "reduced_modulus": None if self.modulus is None else self.modulus.to_dict(),
             "models": [fit.to_dict() for fit in self.fits],
         }
 
@@ -189,8 +219,28 @@ def compare(
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
     comparison = _judge(quiet, fits, failed)
-    chosen = comparison.chosen
-    return comparison if chosen is None else _with_intervals(quiet, comparison, chosen, threshold)
+    if comparison.chosen is not None:
+        comparison = _with_intervals(quiet, comparison, comparison.chosen, threshold)
+    return _with_modulus(quiet, comparison, threshold)
+
+
+def _with_modulus(chi_squared: ChiSquared, comparison: Comparison, threshold: float) -> Comparison:
+    """Return the comparison with the interval of the modulus over all tied explanations."""
+    if len(comparison.alternatives) < 2:
+        return comparison
+    moduli = {f.rival.code: _modulus(chi_squared, f, threshold) for f in comparison.alternatives}
+    chosen = TENSED.code if comparison.chosen is None else comparison.chosen.rival.code
+    low, high = reduce(united, ((modulus.low, modulus.high) for modulus in moduli.values()))
+    return replace(comparison, modulus=replace(moduli[chosen], low=low, high=high))
+
+
+def _modulus(chi_squared: ChiSquared, fit: RivalFit, threshold: float) -> Estimate:
+    """Return the modulus of an explanation with its interval."""
+    if fit.intervals == "profile":
+        return fit.estimates[MODULUS.name]
+    minimum = Minimum(fit.parameters, fit.chi_squared)
+    minimum, ends = fit.rival.intervals(chi_squared, minimum, threshold, [MODULUS])
+    return _estimates(fit.rival.of(chi_squared), minimum, ends)[MODULUS.name]
 
 
 def _with_intervals(
@@ -201,7 +251,7 @@ def _with_intervals(
     fits, better = comparison.fits, chosen
     if chosen.intervals != "profile":
         minimum = Minimum(chosen.parameters, chosen.chi_squared)
-        minimum, ends = profiled(mine, minimum, threshold, _reported(mine))
+        minimum, ends = chosen.rival.intervals(chi_squared, minimum, threshold, _reported(mine))
         better = replace(
             chosen,
             chi_squared=minimum.chi_squared,
@@ -294,7 +344,7 @@ def _ranked(
         ends: dict[Parameter, Ends] = {}
         intervals: Intervals = "none"
         if threshold is not None and _aic(mine, start) - first <= _FAR:
-            minimum, ends = profiled(mine, start, threshold, _reported(mine))
+            minimum, ends = rival.intervals(chi_squared, start, threshold, _reported(mine))
             intervals = "profile"
         elif threshold is not None:
             bounds = mine.deviations(start.parameters)

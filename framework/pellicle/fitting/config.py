@@ -328,7 +328,7 @@ class FitConfig(FromFile, Calibration):
         return [source for file in self.files(curves) for source in file.open()]
 
     def force_model(self, fields: Mapping[str, Any]) -> ForceModel | Simulation:
-        """Return the model of the force on the indenter, or what has to be simulated to get one.
+        """Return the model of the force on the indenter, or the simulation that gives one.
 
         ``fields`` are those of the indenter that one curve alone has.
 

@@ -94,7 +94,7 @@ class ManyFits:
     resumed: int = 0
     """Number of fits that an earlier call had finished."""
     notes: list[str] = field(default_factory=list)
-    """What to know of the population: rejected curves, outliers, lists with wrong names."""
+    """Notes on the population: rejected curves, outliers, lists with wrong names."""
     sketches: dict[int, Sketch] = field(default_factory=dict)
     """Some points of each curve, by its row."""
     maps: dict[str, xr.Dataset] = field(default_factory=dict)
@@ -367,6 +367,9 @@ def table(rows: list[Row]) -> xr.Dataset:
     for end in ("value", "low", "high"):
         name = f"chosen_reduced_modulus{'' if end == 'value' else f'_{end}'}"
         columns[name] = numbers((e and e[end] for e in chosen), "Pa")
+    tied = [row.get("rivals", {}).get("reduced_modulus") or {} for row in rows]
+    for end in ("low", "high"):
+        columns[f"tied_reduced_modulus_{end}"] = numbers((e.get(end) for e in tied), "Pa")
     columns["tension_needed"] = numbers(row.get("tension_needed") for row in rows)
     for name in ("delta_chi_squared", "delta_aic"):
         columns[name] = numbers(row.get("without_tension", {}).get(name) for row in rows)

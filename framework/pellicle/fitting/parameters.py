@@ -54,7 +54,7 @@ class Parameter:
 Values = Mapping[Parameter, float]
 """Values of parameters, each in its unit."""
 Coordinates = dict[Parameter, float]
-"""What a fit varies: the value of each parameter, or its natural logarithm if `logarithmic`."""
+"""Values that a fit varies: of each parameter, or its natural logarithm if `logarithmic`."""
 
 CONTACT_POINT = Parameter("contact_point", "m")
 """Position of first touch."""

@@ -19,13 +19,13 @@ from .comparison import compare
 from .config import FitConfig
 from .curves.curve import Note
 from .curves.readers import Curves, Source
-from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
+from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
 from .result import FitResult, thickness_of
 from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
 from .statistics.design import pooled_advice
-from .statistics.likelihood import best_minimum
+from .statistics.likelihood import Likelihood, Minimum, best_minimum
 from .statistics.noise import FailedCheck, doubt_of_tension
 from .statistics.pooled_likelihood import Pool
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
@@ -234,27 +234,9 @@ def _fit_pool(
     profile = profile_likelihood(pool, start, threshold, parameters, without, report)
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = [
-        PooledCurve(
-            name=problem.name,
-            model=member.force_model.description(),
-            contact_point=profile.estimate(point),
-            offset=part[OFFSET],
-            slope=part[SLOPE],
-            noise=member.noise,
-            points=member.force.size,
-            chi_squared=member.chi_squared(part),
-            chi_squared_alone=alone.chi_squared,
-            reduced_modulus_alone=float(np.exp(alone.parameters[MODULUS])),
-            tension_alone=alone.parameters[TENSION],
-            failed_checks=single.failed_checks,
-            messages=(
-                *problem.curve.messages,
-                *single.messages,
-                *check_plausible(member, part),
-            ),
-        )
-        for (member, part), (problem, single), alone, point in zip(
-            pool.curves(profile.best.parameters), singles, own, points, strict=True
+        _curve(*single, *member, alone, profile.estimate(point))
+        for single, member, alone, point in zip(
+            singles, pool.curves(profile.best.parameters), own, points, strict=True
         )
     ]
     _, shapes = check_shape(pool, profile.best)
@@ -291,6 +273,32 @@ def _fit_pool(
         contact_points=contact_points,
         pool=pool,
         thickness=thickness_of(pool.members[0].force_model, profile),
+    )
+
+
+def _curve(
+    problem: FitProblem,
+    single: SingleFit,
+    member: Likelihood,
+    part: Coordinates,
+    alone: Minimum,
+    contact_point: Estimate,
+) -> PooledCurve:
+    """Return a curve at its ``part`` of the pooled parameters, beside its minimum ``alone``."""
+    return PooledCurve(
+        name=problem.name,
+        model=member.force_model.description(),
+        contact_point=contact_point,
+        offset=part[OFFSET],
+        slope=part[SLOPE],
+        noise=member.noise,
+        points=member.force.size,
+        chi_squared=member.chi_squared(part),
+        chi_squared_alone=alone.chi_squared,
+        reduced_modulus_alone=float(np.exp(alone.parameters[MODULUS])),
+        tension_alone=alone.parameters[TENSION],
+        failed_checks=single.failed_checks,
+        messages=(*problem.curve.messages, *single.messages, *check_plausible(member, part)),
     )
 
 

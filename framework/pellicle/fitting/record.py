@@ -63,7 +63,7 @@ class Stopwatch:
 
 
 def data_of(curve: Curve, config: FitConfig) -> dict[str, Any]:
-    """Return what was measured, and which part of it is fitted, as JSON data."""
+    """Return the origin of a curve, and which part of it is fitted, as JSON data."""
     return {
         **curve.origin.to_dict(),
         "spring_constant": curve.stiffness,

@@ -16,6 +16,7 @@ from .models.layer import LayerModel
 from .parameters import THICKNESS, Coordinates
 from .statistics.noise import FailedCheck
 from .statistics.profile import CONFIDENCE, Estimate, ProfileResult
+from .wording import interval, scale
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -125,20 +126,23 @@ class FitResult:
     def sentences(self) -> list[str]:
         """The verdicts of the fit in words."""
         pull_off = "" if self.rivals is None else self.rivals.pull_off
-        return list(filter(None, [self.comparison, pull_off, self.range_of_moduli, self.advice]))
+        return list(filter(None, [self.comparison, pull_off, self.advice]))
 
-    @property
-    def range_of_moduli(self) -> str:
-        """The moduli of all explanations that the curves cannot tell apart, in words."""
-        if self.rivals is None or self.rivals.verdict != "undecided":
+    def range_of_moduli(self, *, si: bool = False) -> str:
+        """Return the modulus over all explanations that the curves cannot tell apart, in words.
+
+        It is Young's where Poisson's ratio is known, and empty if one explanation stands alone.
+        """
+        if self.rivals is None or self.rivals.modulus is None:
             return ""
-        tied = [fit for fit in self.rivals.tied if fit.rival.is_single] or self.rivals.tied
-        moduli = [fit.estimates["reduced_modulus"].value for fit in tied]
+        name, modulus = "the reduced modulus", self.rivals.modulus
+        if self.poissons_ratio is not None:
+            name, modulus = "Young's modulus", modulus.times(1 - self.poissons_ratio**2)
+        text = interval(modulus, si=si)
+        count = len(self.rivals.alternatives)
         return (
-            f"the reduced modulus is {readable(min(moduli), 'Pa', 3)} to "
-            f"{readable(max(moduli), 'Pa', 3)} over the "
-            f"{len(moduli)} models that the data cannot tell apart; the interval above holds for "
-            "one of them"
+            f"over the {count} models that the data cannot tell apart, {name} is "
+            f"{scale(modulus, si=si).with_unit(text) if text != 'open' else 'not determined'}"
         )
 
     @property
@@ -148,12 +152,12 @@ class FitResult:
 
     @property
     def warnings(self) -> list[str]:
-        """What to be careful of."""
+        """Messages that call for care."""
         return [text for text in self.all_messages if not isinstance(text, Note)]
 
     @property
     def notes(self) -> list[str]:
-        """What was done."""
+        """Messages that say what was done."""
         return [text for text in self.all_messages if isinstance(text, Note)]
 
     def estimates(self) -> dict[str, Estimate]:
@@ -196,14 +200,14 @@ class FitResult:
         return result
 
     def _chosen_block(self) -> dict[str, Any]:
-        """Return which model the estimates that count belong to, and what they are."""
+        """Return the code of the chosen model and its estimates as JSON data."""
         if self.chosen is not None:
             model = self.chosen.rival.code
         else:
             model = "none" if self.tension.held and not self.tension.value else "tension"
         return {
             "model": model,
-            "settled": self.rivals is None or self.rivals.verdict != "undecided",
+            "settled": self.rivals is None or self.rivals.modulus is None,
             "parameters": {k: value.to_dict() for k, value in self.chosen_estimates().items()},
         }
 

@@ -12,9 +12,10 @@ from pydantic import Field, PrivateAttr
 from pydantic.fields import FieldInfo
 
 from pellicle.errors import ConfigError, Problem, shown
-from pellicle.units import Quantity, ramp
+from pellicle.units import Quantity
 
 from .base import Model
+from .ranges import ramp
 
 _MOST = 1_000_000
 _LONGEST = 1e100
@@ -64,7 +65,7 @@ class Leg(Model):
 
     @property
     def described_fields(self) -> Mapping[str, FieldInfo]:
-        """The fields by name, with the unit of what is prescribed."""
+        """The fields by name; those of prescribed values have their unit."""
         return fields_of(type(self), self._unit)
 
 
@@ -175,7 +176,7 @@ _FORMS = (
 
 
 def fields_of(kind: type[Leg], unit: str) -> dict[str, FieldInfo]:
-    """Return the fields of a kind of leg, with the ``unit`` of what is prescribed."""
+    """Return the fields of a kind of leg; those of prescribed values have the ``unit``."""
     fields = dict(kind.model_fields)
     for name in fields.keys() & {"to", "amplitude"}:
         about = FieldInfo(annotation=float, description=fields[name].description)

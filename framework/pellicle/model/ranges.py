@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pellicle.errors import ConfigError, Problem, shown
-from pellicle.units import Quantity, ramp, split
+from pellicle.units import Quantity, split
 
 Values = tuple[Any, ...]
 Axes = Mapping[str, Values]
@@ -123,3 +123,15 @@ def _end(table: Mapping[str, Any], end: str) -> tuple[float, str]:
             f"{shown(table[end])} is not allowed; give a finite number, with a unit or without", end
         )
     return parts
+
+
+def ramp(start: float, stop: float, num: int, *, log: bool = False) -> list[float]:
+    """Return ``num`` values from ``start`` to ``stop``, spaced evenly or geometrically."""
+    shares = [i / (num - 1) for i in range(num)]
+    values = (
+        [start * (stop / start) ** share for share in shares]
+        if log
+        else [(start * (num - 1 - i) + stop * i) / (num - 1) for i in range(num)]
+    )
+    # Rounding to fifteen digits gives 3e-05 instead of 3.0000000000000004e-05.
+    return [float(f"{value:.15g}") for value in values]

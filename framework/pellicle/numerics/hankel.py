@@ -82,7 +82,7 @@ class Tabulated:
             )
 
     def covers(self, shortest: float, longest: float) -> bool:
-        """Whether all radii between these two [m] are tabulated."""
+        """Return whether all radii between these two [m] are tabulated."""
         return self.shortest <= shortest and longest <= self.longest
 
     def greens_function(self, r: Array) -> Array:

@@ -35,7 +35,7 @@ def stiffness_after(branches: Sequence[Branch], duration: float) -> float:
 
 @dataclass(frozen=True)
 class TimeStep:
-    """What one step in time makes of the branches of a solid, in their order."""
+    """The response of the branches of a solid, in their order, to one step in time."""
 
     decays: tuple[float, ...]
     """e^(−Δ/τ) of each branch, of a step of duration Δ."""

@@ -44,7 +44,7 @@ def without_round_off(step: xr.Dataset) -> xr.Dataset:
 
 
 def draws_contact(data: xr.Dataset) -> bool:
-    """Whether the last step in contact is drawn: with an interaction or times paths end off it."""
+    """Return whether the last step in contact is drawn: paths with adhesion or times end off it."""
     return has_interaction(data) or has_times(data)
 
 

@@ -125,7 +125,7 @@ def sparse_marker(number: int) -> dict[str, Any]:
 
 
 def is_ordered(table: xr.Dataset, dim: str | None) -> bool:
-    """Whether the values along a dimension are numbers to compare, which seeds are not."""
+    """Return whether the values along a dimension are numbers to compare, which seeds are not."""
     return (
         dim is not None
         and dim in table.coords
@@ -135,7 +135,7 @@ def is_ordered(table: xr.Dataset, dim: str | None) -> bool:
 
 
 def is_log_spaced(values: Array) -> bool:
-    """Whether at least three positive values over half a decade grow by about even factors.
+    """Return whether at least three positive values over half a decade grow by about even factors.
 
     Rounded series such as 1, 2, 5, 10 or 1, 3, 10 count too.
     """

@@ -34,7 +34,7 @@ def writer(path: Path) -> Iterator[XMLGenerator]:
 
 @contextmanager
 def element(xml: XMLGenerator, name: str, **attributes: str) -> Iterator[None]:
-    """Write an element around what is written inside."""
+    """Write an element; its content is written inside the context."""
     xml.startElement(name, AttributesImpl(attributes))
     yield
     xml.endElement(name)

@@ -1,4 +1,4 @@
-"""What of a solved run lies far outside the theory: deeper than its solid, or too steep."""
+"""Solved runs far outside the theory: pressed deeper than the solid, or too steep."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ STEEP = "slopes in contact are far beyond the theory"
 
 
 def beyond_theory(dataset: xr.Dataset, configuration: Mapping[str, Any]) -> dict[str, str]:
-    """Return what lies far outside the theory at the largest contact of a run.
+    """Return the limits of the theory that the largest contact of a run exceeds by far.
 
     The keys are `DEEP` and `STEEP`, the values messages with the step and its numbers. Slopes
     under an interaction are left out: they have a status.

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 
 def has_interaction(data: xr.Dataset) -> bool:
-    """Whether the steps of a result, or of any run in the table of a study, attract."""
+    """Return whether the steps of a result, or of any run in the table of a study, attract."""
     return "zone_area" in data
 
 
 def has_times(data: xr.Dataset) -> bool:
-    """Whether the steps of a result, or of any run in the table of a study, have times."""
+    """Return whether the steps of a result, or of any run in the table of a study, have times."""
     return "time" in data
 
 
@@ -45,12 +45,12 @@ def label_of_step(data: xr.Dataset, index: int, configuration: Mapping[str, Any]
 
 
 def has_path(data: xr.Dataset) -> bool:
-    """Whether a result, or any run in the table of a study, has variables of its whole path."""
+    """Return whether a result, or any run of a study, has variables of its whole path."""
     return has_interaction(data) or has_oscillation(data)
 
 
 def has_oscillation(data: xr.Dataset) -> bool:
-    """Whether a leg of the path of a result, or of any run in the table of a study, oscillates."""
+    """Return whether a leg of a result, or of any run of a study, oscillates."""
     return "cycle" in data
 
 

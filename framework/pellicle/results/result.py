@@ -94,9 +94,9 @@ class Result:
         return self._of([Status.SMALL_DOMAIN])
 
     def beyond_theory(self) -> dict[str, str]:
-        """Return what lies far outside the theory at the largest contact, with a message on each.
+        """Return the limits of the theory that the largest contact exceeds by far, with messages.
 
-        The equations are solved all the same, and the statuses do not tell it.
+        The equations are solved all the same, so the statuses do not show it.
         """
         return beyond_theory(self.dataset, self.configuration)
 

@@ -14,8 +14,8 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.model.expression import evaluate, names_in
 
 from . import storage
-from .axes import with_paths
 from .derived import CELLS, REDUCTIONS, as_array, names
+from .dimensions import with_paths
 from .path import with_path
 from .variables import FIELDS, WALL_PRESSURE
 

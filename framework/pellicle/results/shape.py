@@ -20,19 +20,19 @@ _ROUND: Final = 1e-9
 
 
 def has_one_shape(data: xr.Dataset) -> bool:
-    """Whether the contact is never in several parts, so that its radius and ellipse describe it."""
+    """Return whether the contact is always in one part, which a radius and an ellipse describe."""
     return "patches" in data and not bool((data["patches"] > 1).any())
 
 
 def is_periodic(data: xr.Dataset) -> bool:
-    """Whether the domain of a result, or of some run of a study, repeats."""
+    """Return whether the domain of a result, or of some run of a study, repeats."""
     configuration = json.loads(data.attrs.get(FIRST_RUN) or data.attrs.get("configuration", "{}"))
     varied = [axis for axis in ("grid", "grid.boundary", "grid_boundary") if axis in data.coords]
     return bool(varied) or configuration.get("grid", {}).get("boundary") == "periodic"
 
 
 def means_something(data: xr.Dataset, name: str) -> bool:
-    """Whether a variable has a meaning for the contacts of a result or of a study.
+    """Return whether a variable has a meaning for the contacts of a result or of a study.
 
     A contact in several parts has neither radius nor ellipse, and a round one no axes besides its
     radius. On a free domain the area of the domain is arbitrary, and so is a share of it.
@@ -45,6 +45,6 @@ def means_something(data: xr.Dataset, name: str) -> bool:
 
 
 def _is_round(data: xr.Dataset) -> bool:
-    """Whether the axes of the ellipse are equal up to round-off wherever there is contact."""
+    """Return whether the axes of the ellipse are equal up to round-off in all steps in contact."""
     major, minor = data["semi_major_axis"].values, data["semi_minor_axis"].values
     return not bool(np.any(major - minor > _ROUND * major))

@@ -41,39 +41,17 @@ def step_dataset(
     """
     import xarray as xr
 
-    contact = equilibrium.contact
-    area = np.count_nonzero(contact) * grid.cell_area
-    shape = ellipse(contact, grid)
     fields = {
         "pressure": equilibrium.pressure,
         "displacement": equilibrium.displacement,
         "gap": equilibrium.gap,
-        "contact": contact,
+        "contact": equilibrium.contact,
     }
-    values: dict[str, object] = {
-        "depth": equilibrium.depth,
-        "force": equilibrium.force,
-        "mean_pressure": equilibrium.force / grid.area,
-        "contact_area": area,
-        "contact_fraction": area / grid.area,
-        "mean_contact_pressure": equilibrium.force / area if area else np.nan,
-        "contact_radius": np.sqrt(area / np.pi),
-        "semi_major_axis": shape.semi_major_axis,
-        "semi_minor_axis": shape.semi_minor_axis,
-        "major_axis_angle": shape.angle,
-        "patches": patches(contact, grid).count,
-        "perimeter": perimeter(contact, grid),
-        "residual_contact": equilibrium.residual_contact,
-        "residual_penetration": equilibrium.residual_penetration,
-        "residual_complementarity": equilibrium.residual_complementarity,
-        "residual_load": equilibrium.residual_load,
-        **scalars,
-    }
+    values = {**_numbers(grid, equilibrium), **scalars}
     if equilibrium.problem.law:
         fields["wall_pressure"] = equilibrium.wall
-        zone = np.count_nonzero(equilibrium.zone) * grid.cell_area
         values |= {
-            "zone_area": zone,
+            "zone_area": np.count_nonzero(equilibrium.zone) * grid.cell_area,
             "zone_width": equilibrium.zone_width,
             "energy": equilibrium.energy,
             "residual_traction": equilibrium.residual_traction,
@@ -183,3 +161,28 @@ class Steps:
         fields = {name: field.isel(step=done) for name, field in self._fields.items()}
         scalars = storage.joined(self._scalars)
         return xr.Dataset({**fields, **scalars.data_vars}, scalars.coords, scalars.attrs)
+
+
+def _numbers(grid: Grid, equilibrium: Equilibrium) -> dict[str, object]:
+    """Return the variables of every load step: force, shape of the contact and residuals."""
+    contact = equilibrium.contact
+    area = np.count_nonzero(contact) * grid.cell_area
+    shape = ellipse(contact, grid)
+    return {
+        "depth": equilibrium.depth,
+        "force": equilibrium.force,
+        "mean_pressure": equilibrium.force / grid.area,
+        "contact_area": area,
+        "contact_fraction": area / grid.area,
+        "mean_contact_pressure": equilibrium.force / area if area else np.nan,
+        "contact_radius": np.sqrt(area / np.pi),
+        "semi_major_axis": shape.semi_major_axis,
+        "semi_minor_axis": shape.semi_minor_axis,
+        "major_axis_angle": shape.angle,
+        "patches": patches(contact, grid).count,
+        "perimeter": perimeter(contact, grid),
+        "residual_contact": equilibrium.residual_contact,
+        "residual_penetration": equilibrium.residual_penetration,
+        "residual_complementarity": equilibrium.residual_complementarity,
+        "residual_load": equilibrium.residual_load,
+    }

@@ -71,7 +71,7 @@ class ProgressReporter:
         return _monitor(index, self._steps, self._say)
 
 
-class _Shown(ABC):
+class _BarContext(ABC):
     """A context with a bar, if there is a terminal, that defers Ctrl-C."""
 
     def __init__(self, bar: rich.progress.Progress | None) -> None:
@@ -102,7 +102,7 @@ class _Shown(ABC):
             self._interrupt.check()
 
 
-class Progress(_Shown):
+class Progress(_BarContext):
     """Shows a bar on a terminal or in a notebook; elsewhere, or if not ``enabled``, nothing.
 
     The bar shows the step, the iteration, the residual and the time left. Ctrl-C takes effect at
@@ -139,7 +139,7 @@ class Progress(_Shown):
             )
 
 
-class StudyProgress(_Shown):
+class StudyProgress(_BarContext):
     """Shows a bar for a study and one for each running run, on a terminal or in a notebook.
 
     Elsewhere there is a line for each finished run. Ctrl-C takes effect at the next report of a

@@ -170,7 +170,7 @@ def _not_met(step: Reached, search: Search) -> tuple[Status, str]:
 
 
 def _touches_edge(run: Run, contact: Mask) -> bool:
-    """Whether a cell at the border is in contact.
+    """Return whether a cell at the border is in contact.
 
     A period one cell wide has no border in that direction: the problem is plane there.
     """

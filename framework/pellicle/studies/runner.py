@@ -23,7 +23,7 @@ from pellicle.config.study import Study
 from pellicle.errors import ConfigError, ConvergenceWarning, StorageError
 from pellicle.files import check_writable
 from pellicle.results import storage
-from pellicle.results.axes import with_paths, with_python_names
+from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.status import Status
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
@@ -292,7 +292,7 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
 
 
 def is_table(path: Path) -> bool:
-    """Whether a path is the folder of a study, or its table."""
+    """Return whether a path is the folder of a study, or its table."""
     return path.name == "study.h5" or (path / "study.h5").is_file()
 
 

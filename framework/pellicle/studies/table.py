@@ -14,8 +14,8 @@ from pellicle.config.provenance import now_with
 from pellicle.config.study import Study
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
-from pellicle.results.axes import with_python_names
 from pellicle.results.derived import FIRST_RUN, derive
+from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.results.status import Status
 from pellicle.results.variables import VARIABLES, header
@@ -114,10 +114,10 @@ def damage(table: xr.Dataset) -> str:
         study, axes, run = (
             json.loads(table.attrs[name]) for name in ("configuration", "axes", FIRST_RUN)
         )
-        known = all(isinstance(part, dict) for part in (study["study"], axes, run))
+        is_complete = all(isinstance(part, dict) for part in (study["study"], axes, run))
     except (LookupError, TypeError, ValueError):
-        known = False
-    if not known:
+        is_complete = False
+    if not is_complete:
         return "has no configuration of its study"
     return ""
 

@@ -229,14 +229,14 @@ def _half_space(shape: Shape) -> Interpolant:
 
 @lru_cache(maxsize=16)
 def _layer(shape: Shape, poissons_ratio: float) -> Interpolant:
-    """Return the interpolant over s/h of what a layer changes, of shape (n, a/h, columns)."""
+    """Return the interpolant over s/h of the changes by a layer, of shape (n, a/h, columns)."""
     z = 1 - 2 * np.log1p((1 - 2 * poissons_ratio) / _SPREAD) / np.log1p(1 / _SPREAD)
     change = chebyshev.chebval(z, _table()[f"{shape}_layer"])
     return stretched_spline(LENGTHS, change, LENGTH_SCALE)
 
 
 def _changes(shape: Shape, layer: Layer, confinement: Array) -> tuple[Array, Array, Array]:
-    """Return what a layer changes at each a/h, and the derivatives by s/h and by a/h."""
+    """Return the changes by a layer at each a/h, and their derivatives by s/h and by a/h."""
     length, last = layer.length / layer.thickness, float(LENGTHS[-1])
     change, by_length = _layer(shape, layer.poissons_ratio)(np.array([min(length, last)]))
     # Beyond the last node tension carries nearly all of the force; the change is kept constant.

@@ -123,7 +123,7 @@ def exact(runs: Runs) -> Runs:
 def _numbers(
     solution: AxisymmetricContact | None, domain: float, simulated: xr.Dataset
 ) -> dict[str, float]:
-    """Return what the equation gives of the variables of a result; ``domain`` is in m².
+    """Return the variables of a result that the equation gives; ``domain`` is in m².
 
     Corrected areas and fractions are those of ``simulated``: on a continuous surface none differs.
     """

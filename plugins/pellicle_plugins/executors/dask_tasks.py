@@ -173,7 +173,7 @@ def execute_on_worker(payload: bytes, our_version: str, topic: str, index: int) 
 
 
 def _runs_any(client: Client, prefix: str) -> bool:
-    """Whether a worker still runs a task whose key begins with ``prefix``, withdrawn or not."""
+    """Return whether a worker runs a task whose key begins with ``prefix``, withdrawn or not."""
 
     def runs(dask_worker: Any) -> bool:
         return any(str(key).startswith(prefix) for key in dask_worker.state.tasks)

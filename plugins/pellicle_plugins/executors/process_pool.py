@@ -112,7 +112,7 @@ class ProcessPool(Generic[AnyTask]):
         return Worker(self._environment)
 
     def _fits(self, task: AnyTask, available: float | None) -> bool:
-        """Whether a task fits into the available memory, and beside the running tasks.
+        """Return whether a task fits into the available memory, and beside the running tasks.
 
         Running tasks have already allocated an unknown part of their estimated memory, so the sum
         of the estimates is compared with the memory available when no task was running.

@@ -234,7 +234,7 @@ def _irregular(path: Path) -> ConfigError:
 
 
 def _is_coordinates(reader: Any, channel: Any) -> bool:
-    """Whether a matrix of three columns is a list of points x, y, z."""
+    """Return whether a matrix of three columns is a list of points x, y, z."""
     return bool(reader.format() == "asc" and channel.nb_grid_pts[0] == 3)
 
 

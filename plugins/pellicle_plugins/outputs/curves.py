@@ -137,7 +137,7 @@ class Curves(XYFigure):
         return super(Curves, self.model_copy(update={"by": by})).write(runs, stem)
 
     def _over_steps(self, table: xr.Dataset) -> bool:
-        """Whether the expressions have a value for each step, not just one for each run."""
+        """Return whether the expressions have a value for each step, not just one for each run."""
         if not has_path(table):
             return True
         used = set[str]().union(*(names_in(text) for text in (self.x, *self.y)))
@@ -453,7 +453,7 @@ def _fold(names: Sequence[str]) -> str:
 
 
 def _of_run(variable: xr.DataArray) -> bool:
-    """Whether a variable of a table has one value for all steps of a run."""
+    """Return whether a variable of a table has one value for all steps of a run."""
     return "step" not in variable.dims
 
 

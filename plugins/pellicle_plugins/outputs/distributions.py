@@ -76,7 +76,7 @@ class Distributions(TableFigure):
             axes.set(xlabel=f"{field} [{name}]", ylabel=f"probability density [1/{name}]")
             set_scales(axes, self.log if any(bins.size > 1 for bins in edges) else ())
             if axes.get_legend_handles_labels()[1]:
-                axes.legend(frameon=False, fontsize="small")
+                axes.legend(frameon=False)
         figure.suptitle(self.title)
 
 

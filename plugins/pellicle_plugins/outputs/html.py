@@ -189,14 +189,14 @@ class Html(Output):
             label += "" if step["converged"].item() else ", NOT CONVERGED"
             note = answer_of_step(data, index, grid.boundary, result.configuration)
             frames.append(replace(_frame(label, grid, step, mapped, points), note=note))
-        shown = default_step(data) % steps
-        begin = int(np.searchsorted(chosen, shown, side="right")) - 1
+        step_shown = default_step(data) % steps
+        begin = int(np.searchsorted(chosen, step_shown, side="right")) - 1
         *first, last = [f"{field.name}" for field in mapped.values()]
         names = f"{', '.join(first)} and {last}".capitalize()
         words = wording(data[prescribed_variable(data, result.configuration)]).words
         # Over the range of the last step the first ones would have one colour.
         colours = ", each in colours over its own range" if len(chosen) > 1 else ""
-        shown_steps = _some(len(chosen), steps, "load step")
+        shown_steps = _share_in_words(len(chosen), steps, "load step")
         caption = f"{names} at prescribed {words}, in {shown_steps}{colours}."
         maps = Maps(
             caption,
@@ -220,13 +220,13 @@ class Html(Output):
         points = side(self.points, len(chosen) * len(mapped))
         for index in (solved[number] for number in chosen):
             row = rows[index].isel(step=slice(progress_of(rows[index])[0]))
-            shown = default_step(row) % row.sizes["step"]
-            sticks = has_interaction(row) and bool(np.isfinite(row["zone_area"].values[shown]))
+            step_shown = default_step(row) % row.sizes["step"]
+            sticks = has_interaction(row) and bool(np.isfinite(row["zone_area"].values[step_shown]))
             names = (*RESULT_FIELDS, *[WALL_PRESSURE] * sticks)
             try:
                 # Read only the step that is drawn.
                 attributes, fields = storage.fields(
-                    folder / f"{row['run'].item()}.h5", names, shown
+                    folder / f"{row['run'].item()}.h5", names, step_shown
                 )
             except StorageError:
                 continue
@@ -234,7 +234,7 @@ class Html(Output):
             step = xr.Dataset(
                 {name: (("x", "y"), field) for name, field in zip(names, fields, strict=True)},
                 attrs=attributes,
-            ).assign(depth=row["depth"][shown])
+            ).assign(depth=row["depth"][step_shown])
             if not sticks:
                 step = step.assign({WALL_PRESSURE: step["pressure"]})
             yield index, _frame(names_of_runs[index], grid, without_round_off(step), mapped, points)
@@ -261,20 +261,22 @@ def _frame(
 def _maps_of_runs(table: xr.Dataset, frames: list[Frame], count: int) -> list[Maps]:
     mapped = _mapped(table)
     which = "The last step in contact" if draws_contact(table) else "The last step"
-    caption = f"{which} of {_some(len(frames), count, 'run')}, each in colours over its own range."
+    of_runs = _share_in_words(len(frames), count, "run")
+    caption = f"{which} of {of_runs}, each in colours over its own range."
     maps = Maps(caption, "run", tuple(mapped.values()), frames, shared=False)
     return [maps] if frames else []
 
 
-def _some(shown: int, count: int, what: str) -> str:
-    return f"each {what}" if shown == count else f"{shown} of {count} {what}s"
+def _share_in_words(number: int, count: int, noun: str) -> str:
+    """Return how many are shown in words: "each run", "3 of 8 runs"."""
+    return f"each {noun}" if number == count else f"{number} of {count} {noun}s"
 
 
 def _answer(result: Result, grid: Grid) -> list[Text]:
     """Return the answer of a run in a sentence or two."""
     data = result.dataset
-    shown = default_step(data) % data.sizes["step"]
-    first = answer_of_step(data, shown, grid.boundary, result.configuration)
+    step_shown = default_step(data) % data.sizes["step"]
+    first = answer_of_step(data, step_shown, grid.boundary, result.configuration)
     rest = answer_of_path(data, result.path_summary)
     return [Text(first, lead=True), *([Text(rest)] if rest else [])]
 
@@ -331,10 +333,10 @@ def _column(variable: xr.DataArray) -> tuple[Column, Wording]:
 def _path(result: Result) -> list[Table]:
     """Return the numbers of the whole path, where there is an interaction."""
     rows: list[list[str | Cell]] = [
-        [known.words, readable(value, known.unit, DIGITS), known.meaning]
+        [declared.words, readable(value, declared.unit, DIGITS), declared.meaning]
         for name, value in result.path_summary.items()
         if name in names_of("path")
-        for known in (VARIABLES[name],)
+        for declared in (VARIABLES[name],)
     ]
     columns = [Column(head, words=True) for head in ("path", "value", "meaning")]
     caption = "Events on the path, to a step, and its work."
@@ -383,7 +385,7 @@ def _numbers(data: xr.Dataset) -> list[str]:
 
 
 def _is_shown(data: xr.Dataset, name: str) -> bool:
-    """Whether a variable has a meaning here: it describes the contact, and has finite values.
+    """Return whether a variable describes the contact, and has finite values.
 
     Without a finite force the variables of a step stay in the table.
     """
@@ -493,9 +495,9 @@ def _profiles(result: Result, chosen: list[int]) -> Picture:
 
     # The last step is drawn, and every `count`-th before it.
     drawn = {index: picture(index) for index in chosen[::-1][::count]}
-    frames = [drawn[min(drawn, key=lambda one: abs(one - index))] for index in chosen]
+    frames = [drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - index))] for index in chosen]
     shown = default_step(result.dataset) % result.dataset.sizes["step"]
-    first = drawn[min(drawn, key=lambda one: abs(one - shown))]
+    first = drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - shown))]
     return replace(first, by_frame=frames if len(drawn) > 1 else ())
 
 

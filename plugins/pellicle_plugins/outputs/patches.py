@@ -87,7 +87,7 @@ class Patches(TableFigure):
             right.set(xscale="log", yscale="log")
         right.grid(alpha=0.3)
         if right.get_legend_handles_labels()[1]:
-            right.legend(frameon=False, fontsize="small")
+            right.legend(frameon=False)
         figure.suptitle(self.title)
 
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
+import pellicle as pl
 from pellicle import memory
+from pellicle.config.scales import doubtful_scales
 from tests.framework.bad_input.command_line import Cli, says
 
 KEYS_AND_TYPES = {
@@ -339,3 +342,45 @@ def test_size_without_a_unit(cli: Cli) -> None:
     assert "200 m × 200 m" in outcome.stdout
     says(outcome.message, "warning: grid.size is 200 m", "'200 um'")
     assert cli("run", "start.toml", "--dry-run").message == ""
+
+
+BEAD: dict[str, Any] = {
+    "grid": {"points": 32, "size": "50 um"},
+    "kernel": {"type": "tensed_membrane", "reduced_modulus": "4 kPa", "tension": "5 mN/m"},
+    "indenter": {"type": "sphere", "radius": "20 um"},
+    "loading": {"depth": "1 um"},
+}
+
+
+@pytest.mark.parametrize(
+    ("table", "values", "message"),
+    [
+        ("kernel", {"tension": 50}, "kernel.tension is 50 N/m"),
+        ("kernel", {"reduced_modulus": 4e-3}, "over the modulus 1.25 m"),
+        ("indenter", {"radius": 20}, "indenter.radius is 20 m, on a domain of 50 µm"),
+        ("loading", {"depth": 1}, "loading.depth is 1 m"),
+        ("loading", {"depth": None, "force": 5}, "such as '5 nN'"),
+        ("interaction", {"type": "jkr", "work_of_adhesion": 50}, "is 50 J/m²"),
+    ],
+)
+def test_a_scale_that_lacks_a_unit(table: str, values: dict[str, Any], message: str) -> None:
+    """A value out of scale with the others is doubted by name, and nothing else is."""
+    changed = {**BEAD.get(table, {}), **values}
+    given = {name: value for name, value in changed.items() if value is not None}
+    ((path, text),) = doubtful_scales(pl.Run(**{**BEAD, table: given}))
+    assert path.startswith(f"{table}." if table != "kernel" else "kernel.tension")
+    assert message in text
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-6])
+def test_plausible_scales_are_not_doubted(scale: float) -> None:
+    """Neither are those of a study without dimensions, in which all values are about 1."""
+    run = pl.Run(
+        grid={"points": 32, "size": 4 * scale},
+        kernel={"type": "tensed_membrane", "reduced_modulus": 1, "tension": 2 * scale},
+        indenter={"type": "paraboloid", "radius": 10 * scale},
+        loading={"force": [0.1 * scale**2, scale**2]},
+        interaction={"type": "jkr", "work_of_adhesion": scale},
+    )
+    assert [*doubtful_scales(run)] == []
+    assert [*doubtful_scales(pl.Run(**BEAD))] == []

@@ -207,7 +207,11 @@ def test_tie_names_its_look_alikes_and_what_would_tell() -> None:
     assert not result.tension_needed
     assert result.rivals is not None
     assert {"tension", "power_law"} <= {rival_fit.rival.code for rival_fit in result.rivals.tied}
-    assert "over the 2 models" in result.range_of_moduli
+    assert result.range_of_moduli().startswith("over the 2 models that the data cannot tell apart")
+    over, own = result.rivals.modulus, result.reduced_modulus
+    assert over is not None
+    ends = over.low, own.low, own.high, over.high
+    assert ends == tuple(sorted(end for end in ends if end is not None))
 
 
 def test_tables_and_pools_carry_failed_checks(cli: Callable[..., Result], tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fit_rivals import pink_noise
 
-from pellicle.fitting.statistics.memory import differenced, exponent_of
+from pellicle.fitting.statistics.long_memory import differenced, exponent_of
 
 
 def test_differences_of_order_one_and_their_composition() -> None:

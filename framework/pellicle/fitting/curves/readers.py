@@ -17,7 +17,7 @@ from pellicle.errors import ConfigError, PellicleError, StorageError, shown
 from pellicle.units import Quantity
 
 from . import afm
-from .columns import Calibration, from_columns, is_curve
+from .columns import Calibration, Channel, from_columns, is_curve
 from .curve import Curve, Segment, Site
 from .origin import Stamped, state
 from .roles import EXAMPLE
@@ -281,6 +281,7 @@ def read(
 def _read(
     path: Path, calibration: Calibration, segment: str
 ) -> Mapping[str, Curve | PellicleError]:
+    """Return the curves of a file by their labels, or the error of each that cannot be read."""
     suffix = path.suffix.lower()
     mapped = calibration.columns or {}
     if suffix in _SPREADSHEETS:
@@ -318,14 +319,20 @@ def _read(
             f"{path}: is neither text, nor HDF5, nor a readable file of an instrument{hint}; "
             f"export it as a table with a header such as {EXAMPLE!r}"
         )
-    curves: dict[str, Curve | PellicleError] = {}
-    for label, columns in tables.items():
-        try:
-            curves[label] = from_columns(columns, calibration)
-        except ConfigError as error:
-            where = f"{path}: curve {label}" if label else str(path)
-            curves[label] = ConfigError(f"{where}: {error}{hint}")
-    return curves
+    return {
+        label: _curve(columns, calibration, f"{path}: curve {label}" if label else str(path), hint)
+        for label, columns in tables.items()
+    }
+
+
+def _curve(
+    columns: Mapping[str, Channel], calibration: Calibration, name: str, hint: str
+) -> Curve | PellicleError:
+    """Return the curve of a table; an error has its ``name``, and ends with a ``hint``."""
+    try:
+        return from_columns(columns, calibration)
+    except ConfigError as error:
+        return ConfigError(f"{name}: {error}{hint}")
 
 
 def read_curves(

@@ -30,6 +30,8 @@ _STEP = 1e-4
 """Relative step of numerical derivatives."""
 _PENALTY = 30.0
 """Stiffness by which the branch is continued below its end, over that of the whole curve."""
+_BARRIER = 300.0
+"""The same for rows that the contact has left, where the end of the branch passes them."""
 _SIGNIFICANT = 6.0
 """Standard errors that a jump of the force must exceed to decide which rows touch."""
 _WIDTH = 3
@@ -66,6 +68,9 @@ class AdhesiveModel:
     """1 for a row in contact, −1 for one that is not, 0 where the model decides, of shape (n,)."""
     stiffness: float | None = None
     """Spring constant of the cantilever [N/m]; None if it is infinite or not known."""
+    ended: Mask | None = None
+    """Rows that lie below the end of the branch, of shape (n,); None if a contact may break early,
+    as one that jumps does."""
     parameters: ClassVar[tuple[Parameter, ...]] = (MODULUS, TENSION, WORK_OF_ADHESION)
     coarse: ClassVar[None] = None
     is_sudden: ClassVar[bool] = True
@@ -114,7 +119,18 @@ class AdhesiveModel:
             p: np.where(contact, changes[2 * i + 1] - rate * changes[2 * i], 0.0)
             for i, p in enumerate(self.parameters)
         }
-        return ModelForce(np.where(contact, force, 0.0), np.where(contact, rate, 0.0), by_parameter)
+        force, rate = np.where(contact, force, 0.0), np.where(contact, rate, 0.0)
+        if self.ended is not None:
+            # A row that has no contact pushes the end of the branch above it.
+            passed = self.ended & (beyond > 0)
+            barrier = steepest * _BARRIER / _PENALTY
+            force, rate = (
+                np.where(passed, -barrier * beyond, force),
+                np.where(passed, -barrier, rate),
+            )
+            for p, (end_by, _) in zip(self.parameters, branch.by_parameter, strict=True):
+                by_parameter[p] = np.where(passed, barrier * end_by[0], by_parameter[p])
+        return ModelForce(force, rate, by_parameter)
 
     def end(self, values: Values, deepest: float) -> float:
         """Return the base position over the contact point [m] at which the contact breaks."""

@@ -123,7 +123,7 @@ class RelaxingModel(ABC):
         )
 
     def _recent_course(self, point: float, values: Values) -> Course:
-        """Return the response of the solid, kept from the last call if nothing else is asked.
+        """Return the response of the solid, retained from the last call if that was equal.
 
         The balance of a cantilever varies the depths of rows only.
         """

@@ -1,4 +1,4 @@
-"""Images of what was fitted to the curves of force maps."""
+"""Images of the parameters fitted to the curves of force maps."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _EMPTIEST = 4
 
 
 def force_maps(rows: Sequence[Row]) -> tuple[dict[str, xr.Dataset], list[str]]:
-    """Return the images of each force map by its file, and what to know of them."""
+    """Return the images of each force map by its file, and notes on them."""
     members: dict[str, list[Row]] = {}
     for row in rows:
         if "site" in row:
@@ -81,7 +81,7 @@ def _images(rows: Sequence[Row], axes: tuple[Axis, Axis]) -> tuple[xr.Dataset, l
 
 
 def _numbers(row: Row) -> list[tuple[str, str, float]]:
-    """Return name, unit and value of what the images show of a fit."""
+    """Return name, unit and value of each number of a fit that has an image."""
     numbers = []
     for name, entry in row.items():
         if isinstance(entry, dict) and "low" in entry and not entry["held"]:

@@ -115,7 +115,7 @@ def group_of(pattern: re.Pattern[str] | None, file: str, column: str) -> str:
 def judge(
     rows: Sequence[Row], rules: Sequence[str], accepted: Names | None, rejected: Names | None
 ) -> list[str]:
-    """Set ``accepted``, ``reason`` and ``outlier`` of each row, and return what to tell the user.
+    """Set ``accepted``, ``reason`` and ``outlier`` of each row, and return notes.
 
     A curve is accepted if it was fitted, is not in the list of rejected curves, is in that of
     accepted ones if there is one, and obeys all rules.  Outliers stay accepted.

@@ -22,7 +22,7 @@ def answer(fit: FitResult, *, si: bool = False) -> str:
 
     It has the modulus, tension and contact point of an elastic solid under tension, and the
     parameters of another model if that is chosen.  The modulus is Young's where Poisson's ratio is
-    known.
+    known; its range over other models follows if the curves cannot tell them apart.
     """
     estimates, chosen = fit.chosen_estimates(), fit.chosen
     names = [name for name in _NAMES if name in estimates]
@@ -36,7 +36,8 @@ def answer(fit: FitResult, *, si: bool = False) -> str:
     ]
     text = f"{', '.join(parts[:-1])} and {parts[-1]}" if len(parts) > 1 else parts[0]
     by = "" if chosen is None else f", by {chosen.rival.words}"
-    return f"{text[0].upper()}{text[1:]}, with {100 * CONFIDENCE:.0f} % intervals{by}."
+    text = f"{text[0].upper()}{text[1:]}, with {100 * CONFIDENCE:.0f} % intervals{by}"
+    return f"{'; '.join(filter(None, [text, fit.range_of_moduli(si=si)]))}."
 
 
 def answer_of_population(fits: ManyFits) -> str:

@@ -1,4 +1,4 @@
-"""What a notebook shows of a fit and of a population of fits."""
+"""HTML and pictures of a fit and of a population of fits, for a notebook."""
 
 from __future__ import annotations
 

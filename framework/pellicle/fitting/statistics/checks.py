@@ -18,7 +18,7 @@ from pellicle.units import decimal, readable
 
 from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
-from .memory import exponent_of
+from .long_memory import exponent_of
 from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
 from .pooled_likelihood import Pool
 from .profile import CONFIDENCE

@@ -93,7 +93,7 @@ def _better(now: _Design, others: Sequence[_Design]) -> str:
 
 
 def pooled_advice(modulus: Estimate, tension: Estimate) -> tuple[str, list[str]]:
-    """Return the bounds of what several curves share, and a warning if an interval is open."""
+    """Return the bounds of shared parameters, and a warning if an interval is open."""
     shares = {
         name: estimate.bound / estimate.value
         for name, estimate in (("modulus", modulus), ("tension", tension))

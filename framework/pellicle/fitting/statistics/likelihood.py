@@ -19,7 +19,7 @@ from pellicle.fitting.models.history import History, constant_speed, last_row_of
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates, Parameter
 
 from .condensed import Condensation, Rows
-from .memory import differenced
+from .long_memory import differenced
 
 REACH = np.log(100.0)
 """Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""

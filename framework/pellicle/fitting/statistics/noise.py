@@ -17,7 +17,7 @@ from pellicle.fitting.parameters import OFFSET, SLOPE, Coordinates, Parameter
 from pellicle.units import decimal, readable
 
 from .likelihood import Likelihood
-from .memory import differenced
+from .long_memory import differenced
 
 CHANCE = 3e-3
 """Probability that a check flags a curve without fault."""
@@ -174,11 +174,7 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     slope, change = _slope(measured, line)
     messages: tuple[str, ...] = ()
     if SLOPE in residuals.baseline and ndtr(slope / independent.deviation) < CHANCE:
-        messages = (
-            f"the baseline falls by {readable(-change, 'N', 3)} towards contact: drift does that, "
-            "but so does attraction of long range, which bends a curve as tension does; check "
-            "whether it falls as steeply further out",
-        )
+        messages = (_falling_baseline(-change),)
     depth, window, drop = _deepest_dip(measured, line[:, :1], independent.deviation)
     if abs(slope) > abs(depth) * independent.deviation:
         # A line explains more than a dip, so the dip has to be significant beside the line.
@@ -191,31 +187,14 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
     trend = line
     if depth * independent.deviation < _DEEPEST * noise_of_sums.deviation:
         trend = np.column_stack([line, _last(window, points)])
-        message = (
-            f"the force dips by {readable(drop, 'N', 3)} below its baseline over the last "
-            f"{window} points "
-            "before contact: that is adhesion, which the model does not have, and which bends a "
-            "curve as tension does; measure without attraction, or fit the tension with a "
-            "model of adhesion"
-        )
-        failed.append(FailedCheck("adhesion", message))
+        failed.append(_adhesion(drop, window))
     else:
         far = points
     failed += _drift_or_offset(residuals, force[:far], line[:far], noise_of_sums.deviation)
     if slow is not None:
-        count = max(far / slow.excess(independent), 1)
-        message = (
-            f"the noise before contact is correlated: {far} points carry as much information as "
-            f"{decimal(count, 2)} independent ones, and the intervals are widened accordingly"
-        )
-        failed.append(FailedCheck("slow_noise", message))
+        failed.append(_correlated(far, max(far / slow.excess(independent), 1)))
     if residuals.step > _COARSE * neighbour_noise(force):
-        message = (
-            f"the force comes in steps of {readable(residuals.step, 'N', 3)}, larger than its "
-            "noise, and "
-            "values between them are not known; measure with a finer range of the detector"
-        )
-        failed.append(FailedCheck("steps", message))
+        failed.append(_coarse_steps(residuals.step))
     noise = _scatter(force, trend)
     noise = noise._replace(deviation=max(noise.deviation, residuals.floor))
     if failed:
@@ -225,6 +204,44 @@ def check_baseline(residuals: Residuals) -> NoiseEstimate:
         if sums is not None and sums.deviation > noise.deviation:
             noise = sums
     return NoiseEstimate(noise, tuple(failed), slow, messages)
+
+
+def _falling_baseline(fall: float) -> str:
+    """Return the warning of a baseline that falls by a force [N] towards contact."""
+    return (
+        f"the baseline falls by {readable(fall, 'N', 3)} towards contact: drift does that, "
+        "but so does attraction of long range, which bends a curve as tension does; check "
+        "whether it falls as steeply further out"
+    )
+
+
+def _adhesion(drop: float, window: int) -> FailedCheck:
+    """Return the check of a force that dips by ``drop`` [N] over the last points."""
+    message = (
+        f"the force dips by {readable(drop, 'N', 3)} below its baseline over the last {window} "
+        "points before contact: that is adhesion, which the model does not have, and which bends "
+        "a curve as tension does; measure without attraction, or fit the tension with a model of "
+        "adhesion"
+    )
+    return FailedCheck("adhesion", message)
+
+
+def _correlated(points: int, independent: float) -> FailedCheck:
+    """Return the check of points that carry the information of fewer independent ones."""
+    message = (
+        f"the noise before contact is correlated: {points} points carry as much information as "
+        f"{decimal(independent, 2)} independent ones, and the intervals are widened accordingly"
+    )
+    return FailedCheck("slow_noise", message)
+
+
+def _coarse_steps(step: float) -> FailedCheck:
+    """Return the check of a force that is rounded to steps [N] larger than its noise."""
+    message = (
+        f"the force comes in steps of {readable(step, 'N', 3)}, larger than its noise, and "
+        "values between them are not known; measure with a finer range of the detector"
+    )
+    return FailedCheck("steps", message)
 
 
 def _deepest_dip(force: Array, baseline: Array, noise: float) -> tuple[float, int, float]:

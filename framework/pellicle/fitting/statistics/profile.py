@@ -18,6 +18,8 @@ from .likelihood import REACH, ChiSquared, Minimum, least
 
 Ends = tuple[float | None, float | None]
 """Ends of a confidence interval; None for one that the curve does not determine."""
+OPEN: Ends = (None, None)
+"""An interval that the curve does not determine."""
 
 CONFIDENCE = 0.95
 _ACCURACY = 2e-3
@@ -203,6 +205,35 @@ def profiled(
             known = [improved.minimum] if thin is chi_squared else []
             minimum = least([minimum, again, *known])
     return minimum, {}
+
+
+def united(one: Ends, other: Ends) -> Ends:
+    """Return the least interval that contains two."""
+    lows, highs = zip(one, other, strict=True)
+    return (
+        None if None in lows else min(low for low in lows if low is not None),
+        None if None in highs else max(high for high in highs if high is not None),
+    )
+
+
+def extended(
+    chi_squared: ChiSquared, minimum: Minimum, parameter: Parameter, ends: Ends, highest: float
+) -> Ends:
+    """Return an interval, extended to where the profile of another χ² is below ``highest``."""
+
+    def is_reached(end: float | None) -> bool:
+        """Return whether that profile is at least ``highest`` at an end."""
+        if end is None:
+            return True
+        at = minimum.parameters | {parameter: end}
+        return chi_squared.minimise(at, (parameter,), rough=True).chi_squared >= highest
+
+    value = minimum.parameters[parameter]
+    inside = (ends[0] is None or ends[0] <= value) and (ends[1] is None or value <= ends[1])
+    if inside and all(map(is_reached, ends)):
+        return ends
+    _, own = profiled(chi_squared, minimum, highest - minimum.chi_squared, [parameter])
+    return united(ends, own.get(parameter, OPEN))
 
 
 def curvature_interval(

@@ -34,9 +34,11 @@ from pellicle.fitting.parameters import (
 )
 from pellicle.plugins import registry
 
+from .condensed import Rows
 from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, least
 from .pooled_likelihood import Pool
+from .profile import OPEN, Ends, extended, profiled
 
 _THIN = 200
 """Rows of a curve that is scanned for initial guesses."""
@@ -52,6 +54,10 @@ _SHALLOW = 0.1
 """Depth over radius up to which sphere and paraboloid are one shape."""
 _CONE = np.pi / 4
 """Half angle of a cone in place of a bead, which its modulus cannot be told from."""
+_LOST = 12.0
+"""Δχ² beyond which no more, or fewer, rows of a retraction are taken to touch."""
+_SINGLE = 8
+"""Numbers of rows that are tried one by one, before steps grow by this share."""
 _SHARES = (0.0, 0.1)
 """Values of a parameter that is not logarithmic from which a search starts, over its scale."""
 
@@ -74,6 +80,8 @@ class Rival:
 
     of_shape: bool = False
     """Whether it is another shape, for which a tension can make up in any curve."""
+    others: tuple[tuple[Rival, Minimum], ...] = ()
+    """The same with more or fewer rows of a retraction that touch, and their minima."""
 
     @property
     def is_single(self) -> bool:
@@ -125,50 +133,96 @@ class Rival:
             return self._attached(chi_squared, best)
         return self, mine.minimise(best.parameters, rough=True) if was_thin else best
 
+    def intervals(
+        self,
+        chi_squared: ChiSquared,
+        minimum: Minimum,
+        threshold: float,
+        parameters: Sequence[Parameter],
+    ) -> tuple[Minimum, dict[Parameter, Ends]]:
+        """Return the minimum, which a profile may have improved, and intervals of profiles.
+
+        Where the model decides which rows of a retraction touch, an interval is the union of those
+        of all numbers of rows whose χ² is within ``threshold`` of the least.
+        """
+        minimum, ends = profiled(self.of(chi_squared), minimum, threshold, parameters)
+        highest = minimum.chi_squared + threshold
+        for rival, start in self.others:
+            other = rival.of(chi_squared)
+            near = other.minimise(start.parameters, rough=True)
+            if near.chi_squared < highest:
+                ends = {p: extended(other, near, p, ends.get(p, OPEN), highest) for p in parameters}
+        return minimum, ends
+
     def _attached(self, chi_squared: ChiSquared, best: Minimum) -> tuple[Rival, Minimum]:
         """Return the minimum with fixed rows of a retraction that touch, and the model of these.
 
         As the end of the branch passes a row χ² jumps, and searches and profiles stop there.
         """
-        choices = []
-        for shift in (0, -1, 1):
-            rival = self._with_contact(chi_squared, best, shift)
-            if rival is None:
-                return self, best
-            with suppress(ConvergenceError, PellicleError):
-                minimum = rival.of(chi_squared).minimise(best.parameters, rough=True)
-                choices.append((rival, minimum))
-        return min(choices, key=lambda choice: choice[1].chi_squared, default=(self, best))
+        touching = self._touching(chi_squared, best)
+        if touching is None:
+            return self, best
+        pairs = []
+        rows = sum(member.force.size for member, _ in chi_squared.curves(best.parameters))
+        for sense in (1, -1):
+            shift, near = max(sense, 0) - 1, best
+            while (pair := self._with_rows(chi_squared, near, touching, shift)) is not None:
+                pairs.append(pair)
+                near = pair[1]
+                lowest = min(minimum.chi_squared for _, minimum in pairs)
+                if near.chi_squared > lowest * (1 + _LOST / rows):
+                    break
+                shift += sense * (1 + abs(shift) // _SINGLE)
+        if not pairs:
+            return self, best
+        pairs.sort(key=lambda pair: pair[1].chi_squared)
+        (rival, minimum), *others = pairs
+        return replace(rival, others=tuple(others)), minimum
 
-    def _with_contact(self, chi_squared: ChiSquared, at: Minimum, shift: int) -> Rival | None:
-        """Return the model in which the rows of a retraction that touch at a minimum are fixed.
-
-        They end ``shift`` rows deeper.  None is returned if jumps of the force show all of them.
-        """
-        states: list[tuple[Array, Array]] = []
-        is_open = False
+    def _touching(self, chi_squared: ChiSquared, at: Minimum) -> tuple[int, ...] | None:
+        """Return how many of the undecided rows of each curve touch; None if jumps decide all."""
+        counts, is_undecided = [], False
         for member, part in self.of(chi_squared).curves(at.parameters):
             model = member.force_model
             assert isinstance(model, AdhesiveModel)
-            attached = model.attached.copy()
-            rows = np.flatnonzero(member.moves_out & (attached == 0))
-            deeper = rows[np.argsort(member.base[rows], kind="stable")]
-            depth = member.base[deeper] - part[CONTACT_POINT]
+            depth = member.base[_undecided(model, member)] - part[CONTACT_POINT]
             values = {p: p.value(part[p]) for p in model.parameters}
-            last = int(np.sum(depth < model.end(values, float(depth.max(initial=0.0))))) + shift
-            attached[deeper] = np.where(np.arange(deeper.size) < last, -1.0, 1.0)
-            states.append((member.position, attached))
-            is_open = is_open or bool(rows.size)
+            end = model.end(values, float(depth.max(initial=0.0)))
+            counts.append(int(np.sum(depth >= end)))
+            is_undecided = is_undecided or bool(depth.size)
+        return tuple(counts) if is_undecided else None
+
+    def _with_rows(
+        self, chi_squared: ChiSquared, near: Minimum, touching: tuple[int, ...], more: int
+    ) -> tuple[Rival, Minimum] | None:
+        """Return the model in which the deepest undecided rows touch, and its minimum.
+
+        They are ``more`` than ``touching`` in each curve.  None is returned if a curve has not as
+        many, or if the search does not converge.
+        """
+        models: list[tuple[Array, AdhesiveModel]] = []
+        for (member, _), count in zip(
+            self.of(chi_squared).curves(near.parameters), touching, strict=True
+        ):
+            model = member.force_model
+            assert isinstance(model, AdhesiveModel)
+            rows = _undecided(model, member)
+            if rows.size and not 0 <= count + more <= rows.size:
+                return None
+            attached, ended = model.attached.copy(), np.full(member.force.size, False)
+            first = rows.size - count - more if rows.size else 0
+            attached[rows] = np.where(np.arange(rows.size) < first, -1.0, 1.0)
+            ended[rows[:first]] = True
+            models.append((member.position, replace(model, attached=attached, ended=ended)))
 
         def build(likelihood: Likelihood) -> ForceModel:
-            model = self.build(likelihood)
-            assert isinstance(model, AdhesiveModel)
-            for position, attached in states:
-                if likelihood.position is position:
-                    return replace(model, attached=attached)
-            return model
+            known = (model for position, model in models if likelihood.position is position)
+            return next(known, None) or self.build(likelihood)
 
-        return replace(self, build=build) if is_open else None
+        rival = replace(self, build=build)
+        with suppress(ConvergenceError, PellicleError):
+            return rival, rival.of(chi_squared).minimise(near.parameters, rough=True)
+        return None
 
     def _guesses(self, chi_squared: ChiSquared, start: Coordinates) -> list[Coordinates]:
         members = chi_squared.curves(start)
@@ -211,6 +265,12 @@ def _adhesive_guesses(
     for rank in range(min(map(len, parts))):
         chosen = [best[rank] for best in parts]
         yield chi_squared.joined(chosen) if isinstance(chi_squared, Pool) else chosen[0]
+
+
+def _undecided(model: AdhesiveModel, likelihood: Likelihood) -> Rows:
+    """Return the rows of a retraction of which no jump decides if they touch, deeper and deeper."""
+    rows = np.flatnonzero(likelihood.moves_out & (model.attached == 0))
+    return rows[np.argsort(likelihood.base[rows], kind="stable")]
 
 
 def _same(likelihood: Likelihood) -> ForceModel:

@@ -1,0 +1,250 @@
+"""Field types that accept ``0.01``, ``"10 kPa"`` or a pint quantity and store SI floats.
+
+Inside pellicle every number is in SI; units exist only in texts that are read and shown.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from numbers import Real
+from typing import TYPE_CHECKING, Annotated, Any, get_args
+
+from pydantic_core import core_schema
+
+from pellicle.errors import shown
+
+from .conversion import NOUNS, NUMBER_AND_UNIT, factor_to_si, pint_registry
+from .conversion import one as one
+from .conversion import si_unit as si_unit
+from .conversion import split as split
+from .scales import DIGITS as DIGITS
+from .scales import NOTHING as NOTHING
+from .scales import Scale as Scale
+from .scales import axis_unit as axis_unit
+from .scales import decimal as decimal
+from .scales import printed as printed
+from .scales import readable as readable
+
+if TYPE_CHECKING:
+    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+    from pydantic.fields import FieldInfo
+    from pydantic.json_schema import JsonSchemaValue
+
+_EXAMPLES = {
+    "m": "10 um",
+    "Pa": "10 kPa",
+    "N/m": "50 mN/m",
+    "J/m**2": "50 mJ/m^2",
+    "N*m": "1 pN*m",
+    "Pa/m": "1 kPa/mm",
+    "N": "2 uN",
+    "m**2": "0.01 mm**2",
+    "m**3": "0.001 mm**3",
+    "rad": "70 degree",
+    "s": "1 s",
+    "Hz": "1 Hz",
+}
+
+
+def example(unit: str) -> str:
+    """Return a value in a unit as text, such as ``"10 kPa"``."""
+    return _EXAMPLES.get(unit, f"1 {unit}")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Annotation of a float field: its SI unit and its bounds.
+
+    Parameters
+    ----------
+    unit
+        SI unit, e.g. ``"Pa"``; ``"1"`` for a pure number.
+    above, at_least, below, at_most
+        Bounds in that unit; ``above`` and ``below`` exclude the bound.
+    noun
+        What the values are, with an article, for messages such as "is a force, not a spring
+        constant"; without it, a noun for the unit.
+    """
+
+    unit: str
+    above: float | None = None
+    at_least: float | None = None
+    below: float | None = None
+    at_most: float | None = None
+    noun: str = ""
+
+    def __call__(self, value: object) -> float:
+        """Return ``value`` in SI.
+
+        Raises
+        ------
+        ValueError
+            The value is not a number, lacks a unit, has another dimension, is not finite or is out
+            of bounds.
+        """
+        number = self._magnitude(value)
+        if not math.isfinite(number):
+            raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
+        if not self._within(number):
+            raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}")
+        return number
+
+    def _magnitude(self, value: object) -> float:
+        if isinstance(value, Real) and not isinstance(value, bool):
+            try:
+                return float(value)
+            except OverflowError:
+                return math.inf
+        if isinstance(getattr(value, "magnitude", None), Real) and hasattr(value, "units"):
+            value = f"{float(value.magnitude)!r} {value.units}".removesuffix("dimensionless")  # type: ignore[attr-defined]
+        if not isinstance(value, str):
+            raise ValueError(f"{shown(value)} is not a number; give {self._wanted()}")
+        if value.strip().lower().lstrip("+-") in ("nan", "inf", "infinity"):
+            return float(value)
+        match = NUMBER_AND_UNIT.fullmatch(value.strip())
+        if match is None:
+            raise ValueError(f"{shown(value)} is not a number with a unit; give {self._wanted()}")
+        number, unit = match.groups()
+        if self.unit == "1":
+            if unit:
+                raise ValueError(f"{shown(value)} has a unit; give {self._wanted()}")
+            return float(number)
+        if not unit:
+            raise ValueError(f"{shown(value)} is text without a unit; give {self._with_unit()}")
+        return self._convert(number, unit, value)
+
+    def _convert(self, number: str, unit: str, value: str) -> float:
+        try:
+            factor = factor_to_si(" ".join(unit.split()), self.unit)
+        except ValueError as problem:
+            noun = self.noun or NOUNS.get(self.unit, f"a value in {self.unit}")
+            contrast = f", not {noun}" if str(problem).startswith("is a") else ""
+            raise ValueError(f"{shown(value)} {problem}{contrast}; give {self._wanted()}") from None
+        if not math.isfinite(float(number)) or float(number) == 0:
+            # Its exponent may be beyond the range of a decimal.
+            return float(number)
+        # In decimal "10 um" is 1e-05; in binary it would be 9.999999999999999e-06.
+        return float(Decimal(number) * Decimal(repr(factor)))
+
+    @property
+    def has_known_unit(self) -> bool:
+        """Whether values in other units can be converted to its unit."""
+        if self.unit == "1" or self.unit in _EXAMPLES:
+            return True
+        try:
+            self._convert("1", self.unit, self.unit)
+        except ValueError:
+            return False
+        return True
+
+    def powers(self) -> tuple[int, int]:
+        """Return the powers of Pa and of m in the unit; its power of seconds is ignored."""
+        dimensions: Mapping[str, Any] = pint_registry().Unit(self.unit).dimensionality
+        pressure = int(dimensions.get("[mass]", 0))
+        return pressure, int(dimensions.get("[length]", 0)) + pressure
+
+    def _within(self, number: float) -> bool:
+        return not (
+            (self.above is not None and number <= self.above)
+            or (self.at_least is not None and number < self.at_least)
+            or (self.below is not None and number >= self.below)
+            or (self.at_most is not None and number > self.at_most)
+        )
+
+    @property
+    def bounds(self) -> list[str]:
+        """The bounds as text, e.g. ``["> 0", "≤ 0.5"]``."""
+        all_four = ((">", self.above), ("≥", self.at_least), ("<", self.below), ("≤", self.at_most))
+        return [f"{sign} {bound:g}" for sign, bound in all_four if bound is not None]
+
+    @property
+    def example(self) -> str | float:
+        """A value within the bounds, as text with its unit or as a number."""
+        if self.unit != "1":
+            return example(self.unit)
+        low = self.above if self.above is not None else self.at_least
+        high = self.below if self.below is not None else self.at_most
+        if low is None or high is None:
+            return 1.0 if low is None else low + 1.0
+        return float(f"{low + 0.8 * (high - low):.3g}")
+
+    def _wanted(self) -> str:
+        if self.unit == "1":
+            return f"a plain number{self._range()}"
+        return f"{self._with_unit()}, or a bare number in {self.unit}"
+
+    def _with_unit(self) -> str:
+        example = f", such as {_EXAMPLES[self.unit]!r}" if self.unit in _EXAMPLES else ""
+        return f"a value{self._range()} with its unit{example}"
+
+    def _range(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        bounds = [f"{bound}{unit}" for bound in self.bounds]
+        return f" {' and '.join(bounds)}" if bounds else ""
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(self)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        bounds = {
+            "exclusiveMinimum": self.above,
+            "minimum": self.at_least,
+            "exclusiveMaximum": self.below,
+            "maximum": self.at_most,
+        }
+        number = {"type": "number"} | {k: v for k, v in bounds.items() if v is not None}
+        if self.unit == "1":
+            return number
+        text: dict[str, Any] = {"type": "string", "pattern": r"^\s*[-+]?[0-9.].*[A-Za-zµ°]"}
+        if self.unit in _EXAMPLES:
+            text["examples"] = [_EXAMPLES[self.unit]]
+        return {"anyOf": [number, text], "unit": self.unit}
+
+
+def quantity_of(info: FieldInfo) -> Quantity | None:
+    """Return the quantity of a field of one or several values; None for any other field."""
+    for annotation in (*info.metadata, *_annotations(info.annotation)):
+        quantity = getattr(annotation, "quantity", annotation)
+        if isinstance(quantity, Quantity):
+            return quantity
+    return None
+
+
+def _annotations(annotation: Any) -> Iterator[Any]:
+    """Yield the annotations of the types inside a type."""
+    yield from getattr(annotation, "__metadata__", ())
+    for inner in get_args(annotation):
+        yield from _annotations(inner)
+
+
+Length = Annotated[float, Quantity("m", above=0)]
+"""A length > 0 [m]."""
+Depth = Annotated[float, Quantity("m", at_least=0)]
+"""A depth ≥ 0 [m], positive into the solid."""
+Modulus = Annotated[float, Quantity("Pa", above=0)]
+"""An elastic modulus > 0 [Pa]."""
+Pressure = Annotated[float, Quantity("Pa", at_least=0)]
+"""A pressure ≥ 0 [Pa]."""
+Tension = Annotated[float, Quantity("N/m", at_least=0)]
+"""A surface tension ≥ 0 [N/m]."""
+BendingStiffness = Annotated[float, Quantity("N*m", at_least=0)]
+"""The bending stiffness of a plate ≥ 0 [N*m]."""
+WorkOfAdhesion = Annotated[float, Quantity("J/m**2", above=0)]
+"""An energy per area > 0 [J/m²]."""
+Strength = Annotated[float, Quantity("Pa", above=0)]
+"""A traction > 0 [Pa]."""
+FoundationStiffness = Annotated[float, Quantity("Pa/m", above=0)]
+"""A stiffness per area > 0 [Pa/m]."""
+Force = Annotated[float, Quantity("N", at_least=0)]
+"""A force ≥ 0 [N]."""
+Time = Annotated[float, Quantity("s", above=0)]
+"""A time > 0 [s]."""
+PoissonsRatio = Annotated[float, Quantity("1", above=-1, at_most=0.5)]
+"""Poisson's ratio, above −1 and at most ½."""
