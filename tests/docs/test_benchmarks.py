@@ -16,6 +16,7 @@ SCRIPTS = {
     "fit_rivals.py": (["1", "7", "no tension", "drift"], 2),
     "cost.py": (["--cases", "rough", "punch", "--points", "32"], 2 * 3),
     "kernels.py": (["--cases", "rough", "--points", "32"], 20),
+    "threads.py": (["--points", "32", "--repeats", "1"], 2 * 2),
     "next_step.py": (["--cases", "rough", "--points", "32", "--number", "4"], 3),
 }
 

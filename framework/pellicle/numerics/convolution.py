@@ -8,11 +8,15 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
+from .sharing import blocks, shared
+
 Float = TypeVar("Float", np.float32, np.float64)
 
-# Cells in a block of rows that one thread transforms at once, few enough for the cache.
+# Cells in a block of rows or columns that one thread transforms at once, few enough for the cache.
 _BLOCK: Final = 2**17
-# Points of a transform below which it is done on one thread: sharing it takes longer.
+# Least number of columns in a block: numbers side by side are in one line of the cache.
+_LINE: Final = 16
+# Points of a transform below which it is one block: sharing it takes longer.
 _SHARED: Final = 512**2
 
 
@@ -50,19 +54,28 @@ def convolve(
     precision of ``field``.
     """
     (nx, ny), (px, py) = field.shape, padded
-    workers = None if px * py >= _SHARED else 1
-    threads = scipy.fft.get_workers() if workers is None else 1
     transform = workspace.array((px, py // 2 + 1), np.result_type(field, np.complex64))
-    rows = max(1, threads * _BLOCK // py)
-    blocks = [slice(start, min(start + rows, nx)) for start in range(0, nx, rows)]
-    # Row by row, so that rows of zeros are not transformed along y.
-    for block in blocks:
-        transform[block] = scipy.fft.rfft(field[block], n=py, axis=1, workers=workers)
-    transform[nx:] = 0
-    transform = scipy.fft.fft(transform, axis=0, overwrite_x=True, workers=workers)
-    transform *= symbol
-    transform = scipy.fft.ifft(transform, axis=0, overwrite_x=True, workers=workers)
     result = np.empty_like(field) if out is None else out
-    for block in blocks:
-        result[block] = scipy.fft.irfft(transform[block], n=py, axis=1, workers=workers)[:, :ny]
+
+    # Row by row, so that rows of zeros are not transformed along y.
+    def forward(rows: slice) -> None:
+        transform[rows] = scipy.fft.rfft(field[rows], n=py, axis=1, workers=1)
+
+    def multiplied(columns: slice) -> None:
+        waves = transform[:, columns]
+        waves[nx:] = 0
+        waves = scipy.fft.fft(waves, axis=0, overwrite_x=True, workers=1)
+        waves *= symbol[:, columns]
+        waves = scipy.fft.ifft(waves, axis=0, overwrite_x=True, workers=1)
+        if not np.may_share_memory(waves, transform):
+            transform[:, columns] = waves
+
+    def backward(rows: slice) -> None:
+        result[rows] = scipy.fft.irfft(transform[rows], n=py, axis=1, workers=1)[:, :ny]
+
+    block = max(_BLOCK, px * py if px * py < _SHARED else 0)
+    rows = blocks(nx, max(1, block // py))
+    shared(forward, rows)
+    shared(multiplied, blocks(transform.shape[1], max(_LINE, block // px)))
+    shared(backward, rows)
     return result

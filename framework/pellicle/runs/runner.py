@@ -61,7 +61,8 @@ def run(
     progress
         Show a bar on a terminal or in a notebook.
     threads
-        Threads of the Fourier transforms, a whole number ≥ 1; None for `default_threads`.
+        Threads of the transforms and of passes over large arrays, a whole number ≥ 1; None for
+        `default_threads`.
     overwrite
         Start over and replace any existing result file. Otherwise its steps are not solved again
         if they are of the same run, and the result of another run is refused.
@@ -236,9 +237,9 @@ def standard_outputs(named: Sequence[Output] | None) -> Sequence[Output]:
 def default_threads(grid: Grid) -> int:
     """Return the number of threads that solve fastest: 1 on all but large grids, else all cores.
 
-    Transforms of fewer than 2048² points share badly, and all but the transforms runs on one
-    thread. On two cores, a periodic grid of 512² took 0.26 s on one thread and 0.39 s on two, one
-    of 1024² 1.00 and 1.23 s, one of 2048² 5.5 and 4.4 s. A free boundary transforms arrays of twice
+    Small arrays share badly. With the transforms alone shared, a periodic grid of 512² took 0.26 s
+    on one thread and 0.39 s on two, one of 1024² 1.00 and 1.23 s, one of 2048² 5.5 and 4.4 s. A
+    free boundary transforms arrays of twice
     the points each way, so that a free grid of 1024² is a large one.
     """
     nx, ny = grid.points

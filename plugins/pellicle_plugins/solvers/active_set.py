@@ -11,16 +11,16 @@ import numpy as np
 from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor, Solver
-from pellicle.numerics.gap_law import attraction_slope
+from pellicle.numerics.attraction import attraction
 from pellicle.numerics.grid_transfer import highest
 from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Depth, Problem
+from pellicle.numerics.sharing import row_blocks, shared
 from pellicle.numerics.solution import Progress, Solution, State, Stop
 
 from .adhesion import AdhesionSolver
 from .adhesive_response import with_zone
-from .blocks import blocks
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
 from .nested_grids import coarse_solution, coarser, prolonged
 from .preconditioner import OnContact, Preconditioner
@@ -42,6 +42,9 @@ _DEEPEST: Final = 0.5
 # A local relaxation that leaves a larger error than before, above this share of the height range,
 # is rejected.
 _DIVERGED: Final = 0.5
+# A local relaxation is brief if the misclassified cells have fallen to this share: it then only has
+# to sort out the last of them.
+_FEW: Final = 0.1
 # Outer iterations without progress after which the solve is abandoned.
 _STAGNATION: Final = 30
 # Local relaxation is switched off after this many outer iterations without fewer misclassified
@@ -174,7 +177,8 @@ class ActiveSet(ScaledSolver):
             return _iterate(problem, state.on_contact, inner.pressure, history, state)
         relaxes &= history.returns == 0 and len(history.contacts) <= _RELAXATION_STAGNATION
         if relaxes and inner.pressure.any():
-            contact, forces = relaxed(problem, state.on_contact, inner, goal)
+            brief = inner.misclassified.size <= _FEW * state.history.fewest < np.inf
+            contact, forces = relaxed(problem, state.on_contact, inner, goal, brief=brief)
             on_contact = state.on_contact.preconditioner.on(contact)
             trial = on_contact.transferred(forces)
             if trial.sum() > 0:
@@ -222,8 +226,12 @@ class ActiveSet(ScaledSolver):
         if not problem.law:
             return closing(np.zeros(contact.shape)) * unit
         gap = problem.operator(state.pressure) - problem.profile - state.depth
-        slope = attraction_slope(problem.law, gap, contact, problem.grid.boundary) / unit
-        return with_zone(operator, slope, closing, self.tolerance / 2) * unit
+        acting = attraction(problem.law, problem.heights, gap, contact, problem.grid.boundary)
+
+        def following(opened: Array) -> Array:
+            return acting.change(opened) / unit
+
+        return with_zone(operator, acting.zone, following, closing, self.tolerance / 2) * unit
 
     def _punched(self, punch: Problem, on_contact: OnContact, monitor: Monitor) -> Array:
         """Return the pressure of either sign with which the contact has no gap to `tolerance`."""
@@ -308,8 +316,11 @@ def _iterate(
     pressed = cells[trial.ravel()[cells] != 0]
     inside = displacement.ravel()[pressed] - problem.profile.ravel()[pressed]
     depth = problem.depth(inside)
-    u, f = displacement.ravel(), problem.profile.ravel()
-    lowest = min(float((u[block] - f[block]).min()) for block in blocks(u.size))
+
+    def least(rows: slice) -> float:
+        return float((displacement[rows] - problem.profile[rows]).min())
+
+    lowest = min(shared(least, row_blocks(displacement.shape)))
     error = max(float(np.abs(inside - depth).max(initial=0.0)), depth - lowest)
     scale = problem.height_scale(pressed, depth, float(trial.sum()))
     progress = before.progress if before else Progress()

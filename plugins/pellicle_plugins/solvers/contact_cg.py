@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from pellicle.arrays import Array, Cells
 from pellicle.numerics.initial_guess import dot
 from pellicle.numerics.problem import Problem
+from pellicle.numerics.sharing import blocks, row_blocks, shared
 
-from .blocks import blocks
 from .preconditioner import OnContact
 
 # Sign-certainty factors: the sign of a cell counts as final if its value exceeds this multiple of
@@ -100,20 +100,17 @@ def inner_solve(
         mean = float(direction.mean()) if uniform else 0.0
         varying = direction - mean if uniform else direction
         size = max(float(varying.max()), -float(varying.min())) or 1.0
-        field.fill(0)
-        for block in blocks(cells.size):
-            field.ravel()[cells[block]] = varying[block] / size
+        _scatter(varying, size, cells, field)
         change = problem.operator(field, out=field)
         if uniform:
             change += (mean / size) * uniform.displacement
-        inside = change.ravel()[cells]
+        inside = _gathered(change, cells)
         inside *= size
         curvature = dot(direction, inside)
         if curvature <= 0:
             break
         length = descent / curvature
-        change *= length * size
-        displacement += change
+        _add_multiple(displacement, change, length * size)
         inside *= length
         residual -= inside
         direction *= length
@@ -151,6 +148,41 @@ def inner_solve(
     # A start or a guess may be in Fortran order, of which ravel() would be a copy.
     np.put(pressure, cells, on_contact)
     return InnerSolution(pressure, displacement, error, np.sort(misclassified))
+
+
+def _scatter(values: Array, unit: float, cells: Cells, field: NDArray[Any]) -> None:
+    """Write values over their unit to ``cells`` of a field, and 0 to the others."""
+    flat = field.ravel()
+
+    def fill(rows: slice) -> None:
+        field[rows] = 0
+
+    def write(block: slice) -> None:
+        flat[cells[block]] = values[block] / unit
+
+    shared(fill, row_blocks(field.shape))
+    shared(write, blocks(cells.size))
+
+
+def _gathered(field: NDArray[Any], cells: Cells) -> NDArray[Any]:
+    """Return the values of a field on ``cells``."""
+    flat, values = field.ravel(), np.empty(cells.size, field.dtype)
+
+    def read(block: slice) -> None:
+        values[block] = flat[cells[block]]
+
+    shared(read, blocks(cells.size))
+    return values
+
+
+def _add_multiple(target: NDArray[Any], change: NDArray[Any], factor: float) -> None:
+    """Multiply ``change`` by a factor in its place and add it to ``target``."""
+
+    def add(rows: slice) -> None:
+        change[rows] *= factor
+        target[rows] += change[rows]
+
+    shared(add, row_blocks(target.shape))
 
 
 class _Uniform:
@@ -215,9 +247,12 @@ def _misclassified(
     """
     u, f, contact = displacement.ravel(), problem.profile.ravel(), preconditioner.contact.ravel()
     below = np.empty(u.size, dtype=bool)
-    for block in blocks(u.size):
+
+    def mark(block: slice) -> None:
         np.less(u[block] - f[block], depth - margin, out=below[block])
-    np.greater(below, contact, out=below)
+        np.greater(below[block], contact[block], out=below[block])
+
+    shared(mark, blocks(u.size))
     tensile, penetrating = np.flatnonzero(on_contact < 0), np.flatnonzero(below)
     number = tensile.size + penetrating.size
     if last:
@@ -256,8 +291,12 @@ class _Directions:
         direction = self._preconditioner(residual, self.mean(residual)).astype(np.float64)
         if self._lift is not None:
             total = float(direction.sum())
-            for block in blocks(direction.size):
-                direction[block] -= self._lift[block] * total
+            lift = self._lift
+
+            def subtract(block: slice) -> None:
+                direction[block] -= lift[block] * total
+
+            shared(subtract, blocks(direction.size))
         if self._uniform:
             direction -= self._uniform.share(direction)
         return direction

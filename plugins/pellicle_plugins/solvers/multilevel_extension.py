@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from pellicle.arrays import Mask
+from pellicle.numerics.sharing import blocks, row_blocks, shared
 
 from .circulant_stiffness import Field
 
@@ -108,10 +109,7 @@ class Extension:
         for level, own in zip(reversed(self._levels), reversed(means), strict=True):
             filled = level.fill(filled, own)
             for damping in _DAMPINGS if level.relaxes else ():
-                change = biharmonic(filled, self._stretch)
-                change *= damping
-                change *= level.free
-                filled -= change
+                _subtract_biharmonic(filled, filled, damping, self._stretch, level.free)
         return filled.reshape(self.shape)
 
     def apply_transpose(self, values: Field) -> Field:
@@ -122,15 +120,13 @@ class Extension:
         means = [np.squeeze(values)]
         for level in self._levels:
             for damping in reversed(_DAMPINGS) if level.relaxes else ():
-                change = biharmonic(level.free * means[-1], self._stretch)
-                change *= damping
-                means[-1] = means[-1] - change
+                free = level.free * means[-1]
+                _subtract_biharmonic(means[-1], free, damping, self._stretch)
             means.append(level.transposed_fill(means[-1]))
         result = means.pop()
         for level, own in zip(reversed(self._levels), reversed(means), strict=True):
             result *= level.share
-            for rows, own_rows in _blocks(result.shape):
-                own[own_rows] += _repeat(result[rows])
+            _add_repeated(result, own)
             result = own
         return result.reshape(self.shape)
 
@@ -196,8 +192,24 @@ def _slope(field: Field, axis: int) -> Field:
 
 def _sum_of_block(fine: Field) -> Field:
     """Return the sums over 2 × 2 cells, or over two cells on a line."""
-    rows = fine[0::2] + fine[1::2]
-    return rows if rows.ndim == 1 else rows[:, 0::2] + rows[:, 1::2]
+    coarse = np.empty([n // 2 for n in fine.shape], fine.dtype)
+
+    def add(rows: slice) -> None:
+        block = fine[_fine(rows)]
+        pairs = block[0::2] + block[1::2]
+        coarse[rows] = pairs if pairs.ndim == 1 else pairs[:, 0::2] + pairs[:, 1::2]
+
+    shared(add, _blocks(coarse.shape))
+    return coarse
+
+
+def _add_repeated(coarse: Field, fine: Field) -> None:
+    """Add each value of ``coarse`` to its 2 × 2 cells of ``fine``, or its two on a line."""
+
+    def add(rows: slice) -> None:
+        fine[_fine(rows)] += _repeat(coarse[rows])
+
+    shared(add, _blocks(coarse.shape))
 
 
 def _repeat(coarse: Field) -> Field:
@@ -216,31 +228,43 @@ def _interpolate(coarse: Field, free: Field, own: Field) -> Field:
     The sum is in ``own``.
     """
     wide = _wrapped(coarse)
-    for rows, fine_rows in _blocks(coarse.shape):
+
+    def add(rows: slice) -> None:
         block = wide[rows.start : rows.stop + 2]
         for axis in range(coarse.ndim):
             block = _refined(block, axis)
-        block *= free[fine_rows]
-        own[fine_rows] += block
+        block *= free[_fine(rows)]
+        own[_fine(rows)] += block
+
+    shared(add, _blocks(coarse.shape))
     return own
 
 
 def _transposed_interpolate(fine: Field, free: Field) -> Field:
     """Return the transpose of the map from ``coarse`` in `_interpolate`, applied to ``fine``."""
-    wide = np.zeros([n // 2 + 2 for n in fine.shape], fine.dtype)
-    for rows, fine_rows in _blocks([n - 2 for n in wide.shape]):
-        block = fine[fine_rows] * free[fine_rows]
-        if fine.ndim > 1:
-            block = _transposed_refined(block)
-        # Along the first axis it is added where it belongs, without a block of its own.
+    coarse = np.empty([n // 2 for n in fine.shape], fine.dtype)
+
+    def transposed(rows: slice) -> Field:
+        block = fine[rows] * free[rows]
+        return block if block.ndim == 1 else _transposed_refined(block)
+
+    def gather(rows: slice) -> None:
+        block = transposed(_fine(rows))
         even, odd = block[0::2], block[1::2]
-        wide[rows.start + 1 : rows.stop + 1] += _NEAR * (even + odd)
-        wide[rows.start : rows.stop] += _FAR * even
-        wide[rows.start + 2 : rows.stop + 2] += _FAR * odd
-    for axis in range(fine.ndim):
-        wide[_along(axis, 1, 2)] += wide[_along(axis, -1)]
-        wide[_along(axis, -2, -1)] += wide[_along(axis, 0, 1)]
-    return wide[_INNER[fine.ndim]]
+        result = coarse[rows]
+        np.add(even, odd, out=result)
+        result *= _NEAR
+        result[:-1] += _FAR * even[1:]
+        result[1:] += _FAR * odd[:-1]
+        # Beside the block, on the periodic plane.
+        if len(result) < len(coarse):
+            before, after = (2 * rows.start - 1) % len(fine), 2 * rows.stop % len(fine)
+            odd, even = (transposed(slice(row, row + 1)) for row in (before, after))
+        result[:1] += _FAR * odd[-1:]
+        result[-1:] += _FAR * even[:1]
+
+    shared(gather, _blocks(coarse.shape))
+    return coarse
 
 
 def _refined(wide: Field, axis: int) -> Field:
@@ -253,14 +277,16 @@ def _refined(wide: Field, axis: int) -> Field:
 
 
 def _transposed_refined(fine: Field) -> Field:
-    """Return the transpose of `_refined` along the second axis, applied to ``fine``."""
+    """Return the transpose of a periodic `_refined` along the second axis, applied to ``fine``."""
     even, odd = fine[:, 0::2], fine[:, 1::2]
-    wide = np.zeros((len(fine), even.shape[1] + 2), fine.dtype)
-    np.add(even, odd, out=wide[:, 1:-1])
-    wide *= _NEAR
-    wide[:, :-2] += _FAR * even
-    wide[:, 2:] += _FAR * odd
-    return wide
+    coarse = even + odd
+    coarse *= _NEAR
+    even, odd = _FAR * even, _FAR * odd
+    coarse[:, :-1] += even[:, 1:]
+    coarse[:, -1] += even[:, 0]
+    coarse[:, 1:] += odd[:, :-1]
+    coarse[:, 0] += odd[:, -1]
+    return coarse
 
 
 def _along(axis: int, start: int, stop: int | None = None, step: int = 1) -> tuple[slice, ...]:
@@ -274,23 +300,44 @@ def stretch_of(dx: float, dy: float) -> tuple[float, float]:
     return 2 / (1 + ratio), 2 * ratio / (1 + ratio)
 
 
+def _subtract_biharmonic(
+    target: Field,
+    field: Field,
+    damping: np.float32,
+    stretch: tuple[float, float],
+    weight: Field | None = None,
+) -> None:
+    """Subtract ``damping`` × ``weight`` × h⁴ Δ² of ``field`` from ``target``; see `biharmonic`."""
+    wide = _wrapped(field, 2)
+
+    def subtract(rows: slice) -> None:
+        change = _laplacian(_laplacian(wide[rows.start : rows.stop + 4], stretch), stretch)
+        change *= damping
+        if weight is not None:
+            change *= weight[rows]
+        target[rows] -= change
+
+    shared(subtract, row_blocks(field.shape))
+
+
 def biharmonic(field: Field, stretch: tuple[float, float]) -> Field:
     """Return h⁴ Δ² of a periodic field; its eigenvalues are at most 64.
 
     ``stretch`` is that of the cells, see `stretch_of`; h is the edge of square cells.
     """
-    return _laplacian(_laplacian(field, stretch), stretch)
+    return _laplacian(_laplacian(_wrapped(field, 2), stretch), stretch)
 
 
-def _laplacian(field: Field, stretch: tuple[float, float]) -> Field:
-    wide = _wrapped(field)
-    if field.ndim == 1:
-        change = np.float32(-2) * field
+def _laplacian(wide: Field, stretch: tuple[float, float]) -> Field:
+    """Return h² Δ without the cells at the ends of each axis."""
+    inner = wide[_INNER[wide.ndim]]
+    if wide.ndim == 1:
+        change = np.float32(-2) * inner
         change += wide[:-2]
         change += wide[2:]
         return change
     x, y = stretch
-    change = np.float32(-4 / x) * field
+    change = np.float32(-4 / x) * inner
     change += wide[:-2, 1:-1]
     change += wide[2:, 1:-1]
     if x != y:
@@ -302,19 +349,26 @@ def _laplacian(field: Field, stretch: tuple[float, float]) -> Field:
     return change
 
 
-def _wrapped(field: Field) -> Field:
-    """Return a periodic field padded by one cell at both ends of each axis."""
-    wide = np.empty([n + 2 for n in field.shape], field.dtype)
-    wide[_INNER[field.ndim]] = field
+def _wrapped(field: Field, width: int = 1) -> Field:
+    """Return a periodic field padded by ``width`` cells at both ends of each axis."""
+    wide = np.empty([n + 2 * width for n in field.shape], field.dtype)
+    inner = wide[width:-width] if field.ndim == 1 else wide[width:-width, width:-width]
+
+    def copy(rows: slice) -> None:
+        inner[rows] = field[rows]
+
+    shared(copy, row_blocks(field.shape))
     for axis in range(field.ndim):
-        wide[_along(axis, 0, 1)] = wide[_along(axis, -2, -1)]
-        wide[_along(axis, -1)] = wide[_along(axis, 1, 2)]
+        wide[_along(axis, 0, width)] = wide[_along(axis, -2 * width, -width)]
+        wide[_along(axis, -width)] = wide[_along(axis, width, 2 * width)]
     return wide
 
 
-def _blocks(shape: Sequence[int]) -> Iterator[tuple[slice, slice]]:
-    """Yield slices of the rows of coarse cells and of fine ones, block by block."""
-    rows = max(1, _BLOCK // (4 * math.prod(shape[1:])))
-    for start in range(0, shape[0], rows):
-        stop = min(start + rows, shape[0])
-        yield slice(start, stop), slice(2 * start, 2 * stop)
+def _blocks(shape: Sequence[int]) -> list[slice]:
+    """Return slices of the rows of coarse cells, block by block."""
+    return blocks(shape[0], max(1, _BLOCK // (4 * math.prod(shape[1:]))))
+
+
+def _fine(rows: slice) -> slice:
+    """Return the rows of fine cells in rows of coarse ones."""
+    return slice(2 * rows.start, 2 * rows.stop)

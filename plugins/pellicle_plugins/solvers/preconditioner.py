@@ -60,8 +60,11 @@ class Preconditioner:
     @cached_property
     def grid_stiffness(self) -> Stiffness:
         """K on the grid itself, as if the grid were periodic; see `relaxed`."""
-        fits = self._plane == self._shape
-        return self._stiffness if fits else Stiffness(self._operator, self._shape)
+        return self._stiffness if self._plane == self._shape else self.stiffness(self._shape)
+
+    def stiffness(self, shape: tuple[int, int]) -> Stiffness:
+        """Return K on a periodic plane of as many cells of the grid's size."""
+        return Stiffness(self._operator, shape)
 
     def on(self, contact: Mask) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""

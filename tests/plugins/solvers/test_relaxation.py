@@ -152,3 +152,41 @@ def test_penetration_within_the_margin_is_none() -> None:
         one = inner._replace(pressure=np.abs(inner.pressure), displacement=gap)
         contact, _ = settle(plate(1.0, 1.0), before, one)
         assert contact[12, 6] == joins
+
+
+def a_contact_at(place: tuple[int, int], shape: tuple[int, int]) -> InnerSolution:
+    """Return an inner solution on a disc, with misclassified cells along its edge, moved."""
+    x, y = (np.arange(n) - n // 2 for n in shape)
+    distance = np.hypot(x[:, None], y)
+    random = np.random.default_rng(6)
+    pressure = np.where(distance < 9, random.uniform(-0.2, 1, shape), 0.0)
+    gap = np.where(distance < 9, 0.0, 1e-3 * (distance - 9.5))
+    fields = [np.roll(field, place, (0, 1)) for field in (pressure, gap)]
+    wrong = (fields[0] < 0) | (fields[1] < -MARGIN)
+    return InnerSolution(fields[0], fields[1], 0.0, np.flatnonzero(wrong))
+
+
+def test_a_window_gives_the_contact_of_the_whole_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Around a small contact on a large grid; forces differ by what acts far off the contact."""
+    shape = (256, 240)
+    problem, inner = plate(1.0, 1.0, shape), a_contact_at((0, 0), shape)
+    contact = inner.pressure != 0
+    windowed, forces = settle(problem, contact, inner)
+    monkeypatch.setattr(relaxation, "_WHOLE", 0.0)
+    whole, expected = settle(problem, contact, inner)
+    assert (contact ^ whole).sum() > 30
+    np.testing.assert_array_equal(windowed, whole)
+    np.testing.assert_allclose(forces[whole], expected[whole], atol=0.02 * expected.max())
+
+
+@pytest.mark.parametrize("place", [(128, 0), (0, 120), (125, 118)])
+def test_a_window_reaches_across_the_edges_of_the_grid(place: tuple[int, int]) -> None:
+    """A contact that straddles the edges of the periodic plane settles as it does amid it."""
+    shape = (256, 240)
+    problem = plate(1.0, 1.0, shape)
+    (amid, forces), (across, moved) = (
+        settle(problem, inner.pressure != 0, inner)
+        for inner in (a_contact_at((0, 0), shape), a_contact_at(place, shape))
+    )
+    np.testing.assert_array_equal(across, np.roll(amid, place, (0, 1)))
+    np.testing.assert_allclose(moved, np.roll(forces, place, (0, 1)), atol=2e-3 * forces.max())
