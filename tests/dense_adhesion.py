@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Mask
 from pellicle.numerics.gap_law import GapLaw
@@ -85,26 +87,76 @@ class DenseContact:
         gap: Array = self.matrix @ pressure - self.problem.profile.ravel() - depth
         return gap
 
+    @cached_property
+    def points(self) -> tuple[Array, NDArray[np.int64]]:
+        """The gap of each point at which the law acts per gap of each cell, and the point's cell.
+
+        A law that is averaged acts at the middles of the four quarters of a cell, where the gap is
+        bilinear between the middles of the cells. Beyond the edge of the domain it is that of the
+        last row, and a cell stands for a neighbour beyond a step of four cutoffs.
+        """
+        size = self.problem.profile.size
+        if not (self.problem.law and self.problem.law.averaged):
+            return np.eye(size), np.arange(size)
+        heights = self.problem.heights
+        rows = []
+        for i, j in np.ndindex(heights.shape):
+            for di, dj in ((-1, -1), (-1, 1), (1, -1), (1, 1)):
+                row = np.zeros(heights.shape)
+                for a, b, weight in ((0, 0, 9), (di, 0, 3), (0, dj, 3), (di, dj, 1)):
+                    # At the edge of the domain only one of the two indices may lead beyond it.
+                    at = i + a if self._neighbour(i + a, j) else i
+                    cell = self._neighbour(at, j + b) or self._neighbour(at, j)
+                    assert cell
+                    step = abs(heights[cell] - heights[i, j]) > 4 * self.law.cutoff()
+                    row[(i, j) if step else cell] += weight / 16
+                rows.append(row.ravel())
+        return np.array(rows), np.repeat(np.arange(size), 4)
+
     def exerted(self, gap: Array, contact: Mask) -> Array:
-        """Return the traction that the law exerts [Pa], −(strength) in contact."""
-        reached = gap < self.law.cutoff()
-        within = np.where(contact, 0.0, np.clip(gap, 0.0, self.law.cutoff()))
-        traction = np.where(reached | contact, self.law.traction(within), 0.0)
-        if self.law.needs_contact:
-            traction[~self._joined(contact, contact | reached)] = 0.0
-        return traction
+        """Return the traction that the law exerts [Pa], −(strength) within a contact."""
+        gaps, acts = self._at_points(gap, contact)
+        within = np.clip(gaps, 0.0, self.law.cutoff())
+        acts &= gaps < self.law.cutoff()
+        at_points = np.where(acts, self.law.traction(within), 0.0)
+        weights, cells = self.points
+        exerted: Array = weights.T @ at_points * (gap.size / cells.size)
+        return exerted
 
     def energy(self, wall: Array, traction: Array, depth: float) -> float:
         """Return the energy [J]."""
         pressure = wall + traction
-        # A law that needs contact acts where its traction does, any other on every cell.
-        acts = (traction != 0) | (not self.law.needs_contact)
-        gap = np.clip(self.gap(pressure, depth), 0.0, self.law.cutoff())
+        gaps, acts = self._at_points(self.gap(pressure, depth), wall > 0)
+        bound = self.law.energy(np.clip(gaps, 0.0, self.law.cutoff())[acts])
         elastic = 0.5 * float(pressure @ self.matrix @ pressure)
-        total = elastic + float(self.law.energy(gap[acts]).sum())
+        total = elastic + float(bound.sum()) * (wall.size / gaps.size)
         if self.problem.prescribed == "force":
             total -= self.problem.value * depth / self.problem.grid.cell_area
         return total * self.problem.grid.cell_area
+
+    def _at_points(self, gap: Array, contact: Mask) -> tuple[Array, Mask]:
+        """Return the gap at the points, and where the law acts."""
+        weights, cells = self.points
+        closed = np.where(contact, 0.0, gap)
+        if not self.law.needs_contact:
+            return weights @ closed, np.ones(cells.size, dtype=bool)
+        joined = self._joined(contact, contact | (gap < self.law.cutoff()))
+        if cells.size > gap.size:
+            # The points of cells beside those that are joined have a share of their gap.
+            shape = self.problem.grid.shape
+            mask = joined.reshape(shape)
+            grown = np.zeros(shape, dtype=bool)
+            for i, j in np.ndindex(shape):
+                beside = (self._neighbour(i + a, j + b) for a in (-1, 0, 1) for b in (-1, 0, 1))
+                grown[i, j] = any(mask[cell] for cell in beside if cell)
+            joined = grown.ravel()
+        return weights @ closed, joined[cells]
+
+    def _neighbour(self, i: int, j: int) -> tuple[int, int] | None:
+        nx, ny = self.problem.grid.shape
+        if self.problem.grid.boundary == "periodic":
+            return i % nx, j % ny
+        return (i, j) if 0 <= i < nx and 0 <= j < ny else None
 
     def _joined(self, contact: Mask, reached: Mask) -> Mask:
         """Return the cells of ``reached`` that are joined to a contact along edges."""

@@ -29,8 +29,8 @@ def steepest(profile: Array, contact: Mask, grid: Grid) -> float:
     slopes = [0.0]
     for axis, width in enumerate(grid.spacing):
         both = np.logical_and(*(_shifted(contact, axis, first) for first in (True, False)))
-        one, other = (_shifted(profile, axis, first)[both] for first in (True, False))
-        slopes.append(float(np.abs(one - other).max(initial=0.0)) / width)
+        a, b = (_shifted(profile, axis, first)[both] for first in (True, False))
+        slopes.append(float(np.abs(a - b).max(initial=0.0)) / width)
     return max(slopes)
 
 
@@ -51,7 +51,7 @@ def rim_slope(compliance: Callable[[Array], Array], equilibrium: Equilibrium) ->
     if law is None:
         return 0.0
     q = 1e3 * np.pi / min(equilibrium.problem.grid.spacing) * np.array([1.0, 10.0])
-    one, other = compliance(q) * q**2
-    if not abs(other / one - 1) < _CONSTANT:
+    a, b = compliance(q) * q**2
+    if not abs(b / a - 1) < _CONSTANT:
         return 0.0
-    return float(np.sqrt(2 * law.work_of_adhesion() * other))
+    return float(np.sqrt(2 * law.work_of_adhesion() * b))

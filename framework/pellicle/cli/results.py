@@ -48,9 +48,9 @@ def print_steps(result: Result, *, si: bool = False) -> None:
 
     data = result.dataset
     areas = [str(name) for name in data.data_vars if str(name).startswith("contact_area")]
-    shown = {"time", "depth", "force", *areas, *names_of("other")}
+    printed_names = {"time", "depth", "force", *areas, *names_of("other")}
     loading = [name for name in result.configuration["loading"] if name in data]
-    requested = [name for name in (*loading, "stiffness") if name in {*data} - shown]
+    requested = [name for name in (*loading, "stiffness") if name in {*data} - printed_names]
     requested = [*dict.fromkeys(reversed(requested))][::-1]
     time = ["time"] if "time" in data else []
     names = [*time, "depth", "force", *areas, *requested, "iterations"]
@@ -114,8 +114,8 @@ def print_oscillations(result: Result, *, si: bool = False) -> None:
         columns = []
         for name in names_of("oscillation"):
             values = [getattr(oscillation, name) for oscillation in oscillations]
-            shown = wording_of(name, values, si=si)
-            columns.append((shown.head, [shown.number(value) for value in values]))
+            column = wording_of(name, values, si=si)
+            columns.append((column.head, [column.number(value) for value in values]))
         print_columns(columns, "oscillations")
 
 
@@ -125,8 +125,8 @@ def _columns(data: xr.Dataset, names: Sequence[str], si: bool) -> list[tuple[str
 
     columns = [("step", [str(number) for number in data["step"].values.tolist()])]
     for name in names:
-        shown = wording(data[name], si=si)
-        columns.append((shown.head, [shown.number(v) for v in data[name].values.tolist()]))
+        column = wording(data[name], si=si)
+        columns.append((column.head, [column.number(v) for v in data[name].values.tolist()]))
     return columns
 
 

@@ -43,7 +43,7 @@ def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
         is not a finite number.
     """
 
-    def resolve(grid: Grid) -> GapLaw:
+    def resolve(grid: Grid) -> _CheckedLaw:
         with errors_attributed_to(interaction):
             law = interaction.resolved(kernel, grid)
         return _CheckedLaw(interaction, law)
@@ -69,7 +69,8 @@ def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
             "rounding error of that; give a longer range or, for adhesion of no range, jkr",
             "interaction",
         )
-    return Law(law, resolve)
+    # Laws of packages written before it lack the attribute.
+    return Law(law, resolve, averaged=bool(getattr(law.law, "averaged", False)))
 
 
 def _require_attraction(interaction: Interaction, gaps: Array, traction: Array) -> None:

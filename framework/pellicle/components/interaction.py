@@ -28,6 +28,8 @@ class Interaction(Component):
     family: ClassVar[str] = "interaction"
     needs_contact: ClassVar[bool] = False
     """Whether it acts only on cells that are joined to a contact by cells within the cutoff."""
+    averaged: ClassVar[bool] = False
+    """Whether its traction is averaged over each cell, with the gap interpolated in between."""
     least_cells: ClassVar[float] = 3.0
     """Cells across the zone around a contact below which the cells pin its edge."""
 

@@ -93,8 +93,8 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
     family, _, type_ = name.rpartition(".")
     matches = [
         members[type_]
-        for one, members in families.items()
-        if type_ in members and family.removesuffix("s") in ("", one)
+        for family_name, members in families.items()
+        if type_ in members and family.removesuffix("s") in ("", family_name)
     ]
     if not matches:
         types = {type_ for members in families.values() for type_ in members}
@@ -259,12 +259,12 @@ def example_values(model: type[BaseModel]) -> Iterator[tuple[str, Any]]:
     """
     extra = model.model_config.get("json_schema_extra")
     alternatives = extra if isinstance(extra, dict) else {}
-    wanted: set[str] = set()
+    names_required: set[str] = set()
     for key in ("anyOf", "oneOf"):
         choices: Any = alternatives.get(key, [])
-        wanted |= {name for choice in choices[:1] for name in choice.get("required", ())}
+        names_required |= {name for choice in choices[:1] for name in choice.get("required", ())}
     for name, info in model.model_fields.items():
-        if name != "type" and (info.is_required() or info.examples or name in wanted):
+        if name != "type" and (info.is_required() or info.examples or name in names_required):
             yield name, _example(name, info)
 
 

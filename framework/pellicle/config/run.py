@@ -216,9 +216,9 @@ def _refuse_times(kernel: Kernel, loading: Loading) -> None:
     duration = math.fsum(loading.durations)
     least = min((step for step in loading.durations if step > 0), default=math.inf)
     if least < shortest or duration > longest:
-        what = f"has a step of {least:g} s" if least < shortest else f"lasts {duration:g} s"
+        reason = f"has a step of {least:g} s" if least < shortest else f"lasts {duration:g} s"
         raise ConfigError(
-            f"{what}, and the relaxation of {kernel.type_name!r} holds from {shortest:g} to "
+            f"{reason}, and the relaxation of {kernel.type_name!r} holds from {shortest:g} to "
             f"{longest:g} s; give it a wider span, or other times",
             f"loading.{loading.prescribed if loading.samples else 'time'}",
         )
@@ -239,7 +239,9 @@ def _refuse_range_of_the_grid(interaction: Interaction, kernel: HasRelaxation, g
         return
     q = np.array([np.pi / grid.cell_size])
     with errors_attributed_to(kernel):
-        solid, whole = (one.compliance(q).item() for one in (kernel.without_skin(), kernel))
+        solid, whole = (
+            response.compliance(q).item() for response in (kernel.without_skin(), kernel)
+        )
     cells = (solid / whole - 1) / np.pi
     if cells < _TENSED_CELLS:
         raise ConfigError(

@@ -54,11 +54,11 @@ def interval_text(low: float | None, high: float | None, scale: Scale) -> str:
 
 def interval(estimate: Estimate, *, si: bool = False) -> str:
     """Return an interval in the unit of `scale`; of an open one the end that it has."""
-    shown = scale(estimate, si=si)
+    unit_scale = scale(estimate, si=si)
     if estimate.held:
         return "fixed"
     low, high = (
-        None if end is None else shown.number(end) for end in (estimate.low, estimate.high)
+        None if end is None else unit_scale.number(end) for end in (estimate.low, estimate.high)
     )
     if low is None and high is None:
         return "open"
@@ -72,8 +72,8 @@ def in_words(estimate: Estimate, *, si: bool = False, sought: bool = True) -> st
 
     An open interval that was not ``sought`` is left out.
     """
-    shown = scale(estimate, si=si)
-    value = shown.text(estimate.value)
+    unit_scale = scale(estimate, si=si)
+    value = unit_scale.text(estimate.value)
     if not sought and estimate.low is None and estimate.high is None:
         return value
     if estimate.held:
@@ -82,4 +82,4 @@ def in_words(estimate: Estimate, *, si: bool = False, sought: bool = True) -> st
         return "that this measurement does not determine"
     text = interval(estimate, si=si)
     is_open = None in (estimate.low, estimate.high)
-    return shown.with_unit(text) if is_open else f"{value} ({text})"
+    return unit_scale.with_unit(text) if is_open else f"{value} ({text})"

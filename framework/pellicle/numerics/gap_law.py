@@ -8,14 +8,15 @@ from typing import Protocol
 
 import numpy as np
 
-from pellicle.arrays import Array, Mask
-from pellicle.grid import Boundary, Grid
-
-from .labels import labelled
+from pellicle.arrays import Array
+from pellicle.grid import Grid
 
 
 class GapLaw(Protocol):
-    """An energy per area that depends on the gap."""
+    """An energy per area that depends on the gap.
+
+    Its traction is averaged over each cell if it has an attribute ``averaged`` that is true.
+    """
 
     @property
     def needs_contact(self) -> bool:
@@ -50,6 +51,8 @@ class Law:
     """The law as it is resolved on the grid."""
     resolve: Callable[[Grid], GapLaw]
     """Return the law as it is resolved on another grid."""
+    averaged: bool = False
+    """Whether its traction is averaged over each cell."""
     length: float = 1.0
     """Unit of length [m]."""
     pressure: float = 1.0
@@ -97,23 +100,3 @@ class Law:
     def _si(self, gap: Array) -> Array:
         # Far from the indenter the gap is infinite, for which a formula may have no value.
         return np.clip(gap, 0.0, self.cutoff()) * self.length
-
-
-def attraction_slope(law: Law, gap: Array, contact: Mask, boundary: Boundary) -> Array:
-    """Return dσ/dg of `attracted` on each cell off the contact, 0 in contact."""
-    acts = (attracted(law, gap, contact, boundary) != 0) & ~contact
-    return np.where(acts, law.slope(np.where(acts, gap, 0.0)), 0.0)
-
-
-def attracted(law: Law, gap: Array, contact: Mask, boundary: Boundary) -> Array:
-    """Return the traction σ(gap) on each cell, −(strength) in contact.
-
-    A law that needs contact acts only on patches of cells within its cutoff that hold a contact.
-    """
-    traction = law.traction(np.where(contact, 0.0, gap))
-    if law.needs_contact:
-        labels, number = labelled(contact | (gap < law.cutoff()), boundary, 4)
-        joined = np.zeros(number + 1, dtype=bool)
-        joined[labels[contact]] = True
-        traction[~joined[labels]] = 0.0
-    return traction

@@ -12,7 +12,8 @@ import numpy as np
 from pellicle.arrays import Array, Cells, Mask
 from pellicle.grid import Grid
 
-from .gap_law import Law, attracted, attraction_slope
+from .attraction import Attraction, attraction
+from .gap_law import Law
 from .grid_transfer import restrict
 from .operators import Operator
 from .solution import Solution, State
@@ -286,19 +287,13 @@ class Equilibrium:
         return self._by_pressure - self.problem.profile - self.depth
 
     @cached_property
-    def attraction(self) -> Array:
-        """The traction σ(gap) that the law of the problem exerts [Pa]; 0 without a law."""
-        if not self.problem.law:
-            return np.zeros(self.pressure.shape)
-        return attracted(self.problem.law, self.gap, self.contact, self.problem.grid.boundary)
-
-    @property
-    def attraction_slope(self) -> Array | None:
-        """dσ/dg of the law at the gap of each cell off the contact [Pa/m]; None without a law."""
-        if not self.problem.law:
+    def attraction(self) -> Attraction | None:
+        """What the law of the problem exerts across the gap; None without a law."""
+        problem = self.problem
+        if not problem.law:
             return None
-        return attraction_slope(
-            self.problem.law, self.gap, self.contact, self.problem.grid.boundary
+        return attraction(
+            problem.law, problem.heights, self.gap, self.contact, problem.grid.boundary
         )
 
     @cached_property
@@ -338,10 +333,7 @@ class Equilibrium:
         if self.problem.left is not None:
             return np.nan
         elastic = 0.5 * float((self.pressure * self.displacement).sum())
-        bound = 0.0
-        if self.problem.law:
-            acts = self.contact | (self.pressure != 0)
-            bound = float(self.problem.law.energy(self.gap[acts]).sum())
+        bound = self.attraction.energy if self.attraction else 0.0
         return (elastic + bound) * self.problem.grid.cell_area
 
     @property
@@ -373,9 +365,9 @@ class Equilibrium:
     @property
     def residual_traction(self) -> float:
         """Σ|p − w − σ(gap)| over the greater of Σ|p| and Σ|σ|; 0 without a law."""
-        if not self.problem.law:
+        if not self.attraction:
             return 0.0
-        missed = float(np.abs(self.pressure - self.wall - self.attraction).sum())
+        missed = float(np.abs(self.pressure - self.wall - self.attraction.traction).sum())
         return missed / self._acting if missed else 0.0
 
     @cached_property
@@ -385,9 +377,9 @@ class Equilibrium:
     @cached_property
     def _acting(self) -> float:
         """Σ|p|, or Σ|σ| if that is greater: a law attracts even where the wall bears it all."""
-        if not self.problem.law:
+        if not self.attraction:
             return self._magnitude
-        return max(self._magnitude, float(np.abs(self.attraction).sum()))
+        return max(self._magnitude, float(np.abs(self.attraction.traction).sum()))
 
     @cached_property
     def _base(self) -> float:
@@ -487,7 +479,7 @@ class Stiffness(NamedTuple):
 
 
 def measure_stiffness(
-    problem: Problem, contact: Mask, pressure: Array, slope: Array | None = None
+    problem: Problem, contact: Mask, pressure: Array, attraction: Attraction | None = None
 ) -> Stiffness:
     """Return the contact stiffness from the pressure per depth [Pa/m] of a flat punch.
 
@@ -496,18 +488,19 @@ def measure_stiffness(
     indenters). The operator is applied once. The value is 2 Σq − Σq·Aq times the area of a cell,
     stationary at the solution, so its error is quadratic in that of q.
 
-    With a law of ``slope`` dσ/dg [Pa/m] on each cell off the contact, the traction there follows
-    the gap, q = dσ/dg (A q − 1), and counts towards the force.
+    With an ``attraction`` the traction off the contact follows the gap, q = dσ/dg (A q − 1), and
+    counts towards the force.
     """
     if not contact.any():
         return Stiffness(0.0, 0.0)
-    response = problem.operator.with_spring(0.0)(pressure)
-    acts, yielding = contact, np.zeros_like(pressure)
-    if slope is not None:
-        acts = contact | (slope > 0)
-        np.divide(pressure, slope, out=yielding, where=slope > 0)
-    missed = (1.0 - response + yielding)[acts]
-    total = float(pressure.sum()) + float((pressure[acts] * missed).sum())
+    opened = problem.operator.with_spring(0.0)(pressure) - 1.0
+    missed = -opened[contact]
+    total = float(pressure.sum()) + float((pressure[contact] * missed).sum())
+    if attraction and attraction.zone.any():
+        zone = attraction.zone
+        traction = (attraction.change(opened) - pressure)[zone]
+        total -= float((opened[zone] * traction).sum())
+        missed = np.concatenate([missed, traction / attraction.greatest_slope])
     return Stiffness(
         value=total * problem.grid.cell_area,
         residual=float(np.sqrt((missed**2).mean())),

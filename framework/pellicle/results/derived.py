@@ -82,12 +82,12 @@ def derive(
 def _unit_of(text: str, table: xr.Dataset, units: Mapping[str, str]) -> str:
     """Return the SI unit of an expression over a table; ``"1"`` also where there is none."""
     of_table = {str(name): v.attrs.get("units", "1") for name, v in table.variables.items()}
-    known = {**units, **of_table}
+    all_units = {**units, **of_table}
     quantities = {}
     try:
         for name in names_in(text):
             # An exponent that varies, so that a power has no unit, is NaN here.
-            quantities[name] = math.nan * one(known.get(name, "1").replace("m2", "m**2"))
+            quantities[name] = math.nan * one(all_units.get(name, "1").replace("m2", "m**2"))
         return si_unit(evaluate(text, quantities))
     except (ConfigError, ValueError):
         # Units that differ, or that of a stranger's variable that pint does not know.

@@ -19,9 +19,11 @@ from pellicle.numerics.solution import State, Stop
 if TYPE_CHECKING:
     import xarray as xr
 
-# Widths of two zones over that of the step, for the limit of no width. The place of the edge on the
-# cells changes forces by 0.005 to 0.01 πwR at the width of the step, by 0.002 from 1.5 times on.
+# Widths of two zones over that of the step, for the limit of no width.
 _WIDER: Final = (1.5, 3.0)
+# Weight of the force of the step beside those of wider zones, in which the place of the edge on the
+# cells changes forces by half as much.
+_WEIGHT: Final = 0.5
 # Halvings of the interval of forces in which the contact is lost.
 _HALVINGS: Final = 6
 # Share of |ΔF Δδ|/2 by which the trapezoidal rule may miss the work of a step without a jump. It
@@ -35,11 +37,12 @@ _UNCERTAIN: Final = 0.01
 def force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> tuple[float, float] | None:
     """Return the force [N] for no width of the zone, and the error [N] of that of the step.
 
-    The step is solved again at its depth with two wider zones. Their forces differ from that of no
-    zone in proportion to its width, so that one is extrapolated (Richardson 1911). The error is the
-    difference from it, or that from the extrapolation by the narrower zones if larger, because the
-    widest may reach over half of a small contact. Both are NaN if the contact is lost or no
-    solution is found with a wider zone; the result is None if the interaction has no such limit.
+    The step is solved again at its depth with two wider zones. The forces differ from that of no
+    zone in proportion to its width, so a line through all three gives the limit (Richardson 1911).
+    The error is the larger of those that the two narrower and the two wider zones give: they differ
+    because the edge lies on cells, and because the widest may reach over half of a small contact.
+    Both are NaN if the contact is lost or no solution is found with a wider zone; the result is
+    None if the interaction has no such limit.
     """
     sticky = run.interaction
     laws = [law for factor in _WIDER if (law := sticky.wider(factor))] if sticky else []
@@ -47,7 +50,7 @@ def force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> tuple[f
         return None
     if not equilibrium.contact.any():
         return equilibrium.force, 0.0
-    forces = []
+    forces = [equilibrium.force]
     wider = equilibrium
     for law in laws:
         problem = replace(
@@ -60,10 +63,12 @@ def force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> tuple[f
         if not (wider.contact.any() and wider.residual <= run.solver.tolerance):
             return float("nan"), float("nan")
         forces.append(wider.force)
-    narrow, wide = _WIDER
-    limit = (wide * forces[0] - narrow * forces[1]) / (wide - narrow)
-    error = abs(forces[0] - equilibrium.force) / (narrow - 1)
-    return limit, max(error, abs(limit - equilibrium.force))
+    widths = np.array([1.0, *_WIDER])
+    weights = np.where(widths > 1, 1.0, _WEIGHT)
+    _, limit = np.polyfit(widths, forces, 1, w=weights)
+    slopes = np.diff(forces) / np.diff(widths)
+    limits = forces[:-1] - slopes * widths[:-1]
+    return float(limit), float(np.abs(limits - equilibrium.force).max())
 
 
 def greatest_pull(

@@ -123,4 +123,4 @@ def _stiffness(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> Stiffnes
     if not contact.any():
         return Stiffness(0.0, 0.0)
     response = response_of(run.solver, problem, equilibrium.state, monitor)
-    return measure_stiffness(problem, contact, response, equilibrium.attraction_slope)
+    return measure_stiffness(problem, contact, response, equilibrium.attraction)

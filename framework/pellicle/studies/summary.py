@@ -41,12 +41,12 @@ def columns(table: xr.Dataset, *, si: bool = False) -> Columns:
     progress = [progress_of(run) for run in runs]
     last: Columns = []
     for name in names:
-        shown = wording(table[name], si=si)
+        column = wording(table[name], si=si)
         cells = [
-            shown.number(run[name].values[done - 1].item()) if done else ""
+            column.number(run[name].values[done - 1].item()) if done else ""
             for run, (done, *_) in zip(runs, progress, strict=True)
         ]
-        last.append((shown.head, cells))
+        last.append((column.head, cells))
     return [
         ("run", list(map(str, range(1, len(runs) + 1)))),
         *_parameters(table, si=si),
@@ -62,10 +62,11 @@ def paths(table: xr.Dataset, *, si: bool = False) -> Columns:
     derived = json.loads(table.attrs["configuration"])["study"].get("derived", {})
     per_run = [n for n in derived if n in table and "step" not in table[n].dims]
     names = [n for n in (*_EVENTS, *per_run) if n in table]
-    shown = {name: wording(table[name], si=si) for name in names}
+    wordings = {name: wording(table[name], si=si) for name in names}
     runs = list(runs_of(table))
     numbers = [
-        (shown[name].head, [shown[name].number(run[name].item()) for run in runs]) for name in names
+        (wordings[name].head, [wordings[name].number(run[name].item()) for run in runs])
+        for name in names
     ]
     return [("run", list(map(str, range(1, len(runs) + 1)))), *numbers] if names else []
 
@@ -73,17 +74,18 @@ def paths(table: xr.Dataset, *, si: bool = False) -> Columns:
 def _parameters(table: xr.Dataset, *, si: bool = False) -> Columns:
     """Return the values of each run on the axes of the study."""
     runs = list(runs_of(table))
-    shown = {name: wording(table[name], si=si) for name in table.coords if name != "step"}
+    wordings = {name: wording(table[name], si=si) for name in table.coords if name != "step"}
     return [
-        (axis.head, [axis.number(run[name].item()) for run in runs]) for name, axis in shown.items()
+        (axis.head, [axis.number(run[name].item()) for run in runs])
+        for name, axis in wordings.items()
     ]
 
 
 def run_names(table: xr.Dataset) -> list[str]:
     """Return the values that distinguish each run, such as "surface tension 30 mN/m"."""
-    shown = {name: wording(table[name]) for name in table.coords if name != "step"}
+    wordings = {name: wording(table[name]) for name in table.coords if name != "step"}
     return [
-        ", ".join(axis.text(run[name].item()) for name, axis in shown.items())
+        ", ".join(axis.text(run[name].item()) for name, axis in wordings.items())
         for run in runs_of(table)
     ]
 

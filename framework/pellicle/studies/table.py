@@ -114,10 +114,10 @@ def damage(table: xr.Dataset) -> str:
         study, axes, run = (
             json.loads(table.attrs[name]) for name in ("configuration", "axes", FIRST_RUN)
         )
-        known = all(isinstance(part, dict) for part in (study["study"], axes, run))
+        is_complete = all(isinstance(part, dict) for part in (study["study"], axes, run))
     except (LookupError, TypeError, ValueError):
-        known = False
-    if not known:
+        is_complete = False
+    if not is_complete:
         return "has no configuration of its study"
     return ""
 

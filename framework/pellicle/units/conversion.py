@@ -73,9 +73,9 @@ _MEASURED = {
 """Nouns for values of other dimensions, by a unit of that dimension."""
 
 
-def _root(one: Any) -> str:
+def _root(quantity: Any) -> str:
     """Return the unit to which pint reduces a quantity, such as radian."""
-    return str(one.to_root_units().units)
+    return str(quantity.to_root_units().units)
 
 
 @cache
@@ -124,13 +124,13 @@ def si_unit(value: Any) -> str:
     dimensions: Mapping[str, float] = getattr(value, "dimensionality", {})
     if not dimensions or not all(map(math.isfinite, dimensions.values())):
         return "1"
-    known = next((u for u in [*_MEASURED, *NOUNS] if one(u).dimensionality == dimensions), "")
-    if not known and not dimensions.keys() <= {"[mass]", "[length]", "[time]"}:
+    named_unit = next((u for u in [*_MEASURED, *NOUNS] if one(u).dimensionality == dimensions), "")
+    if not named_unit and not dimensions.keys() <= {"[mass]", "[length]", "[time]"}:
         return "1"
     mass, length, time = (dimensions.get(f"[{name}]", 0) for name in ("mass", "length", "time"))
     powers = {"N": mass, "m": length - mass, "s": time + 2 * mass}
     parts = (f"{n}**{power:g}" if power != 1 else n for n, power in powers.items() if power)
-    return (known or "*".join(parts)).replace("m**2", "m2")
+    return (named_unit or "*".join(parts)).replace("m**2", "m2")
 
 
 # pint takes half a millisecond for a conversion, and a study has thousands of values.
@@ -148,8 +148,8 @@ def factor_to_si(unit: str, si: str) -> float:
         raise ValueError(unknown)
     registry = pint_registry()
     try:
-        one, root = registry.Quantity(1.0, unit), _root(registry.Quantity(1.0, si))
-        factor = float(one.to(si).magnitude)
+        single, root = registry.Quantity(1.0, unit), _root(registry.Quantity(1.0, si))
+        factor = float(single.to(si).magnitude)
         zero = float(registry.Quantity(0.0, unit).to(si).magnitude)
     except Exception as error:
         # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units.
@@ -157,7 +157,7 @@ def factor_to_si(unit: str, si: str) -> float:
             raise ValueError(unknown) from None
         raise ValueError(f"is {_measured(unit)}") from None
     # In pint per cent, decibels and counts have no dimension, and neither have angles.
-    if _root(one) != root:
+    if _root(single) != root:
         raise ValueError(f"is {_measured(unit)}")
     if zero != 0:
         raise ValueError(f"is in a unit whose zero is {zero:.6g} {si}")

@@ -225,8 +225,8 @@ def _require_kind(raw: Any, name: str, field: str) -> None:
 def _checked(raw: Any, name: str, field: str) -> Array:
     """Return heights as a new float64 array; refuse those that are masked or not finite."""
     _require_kind(raw, name, field)
-    given = np.asarray(raw)
-    bad = ~np.isfinite(given)
+    array = np.asarray(raw)
+    bad = ~np.isfinite(array)
     if masked := np.ma.isMaskedArray(raw):
         bad |= np.ma.getmaskarray(raw)
     if count := np.count_nonzero(bad):
@@ -234,7 +234,7 @@ def _checked(raw: Any, name: str, field: str) -> Array:
         raise ConfigError(
             f"{name} holds {count} {kinds} or infinite heights; fill or crop them first", field
         )
-    return np.array(given, dtype=np.float64, order="C")
+    return np.array(array, dtype=np.float64, order="C")
 
 
 @hookimpl

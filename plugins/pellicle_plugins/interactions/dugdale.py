@@ -77,6 +77,7 @@ class Spread:
     """Change of the gap over which the traction drops [m]."""
 
     needs_contact: ClassVar[bool] = False
+    averaged: ClassVar[bool] = True
 
     def energy(self, gap: Array) -> Array:
         """Return γ(g) [J/m²]."""

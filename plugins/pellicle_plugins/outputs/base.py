@@ -198,8 +198,8 @@ def scaled(
     if name not in data.variables:
         return 1.0, in_words(text, data)
     # xarray keeps the unit of one operand, so that only the bare variable has its own.
-    shown = wording(joined(name, values))
-    return shown.scale.factor, shown.head
+    axis_wording = wording(joined(name, values))
+    return axis_wording.scale.factor, axis_wording.head
 
 
 def joined(name: str, arrays: Sequence[xr.DataArray]) -> xr.DataArray:

@@ -333,10 +333,10 @@ def _column(variable: xr.DataArray) -> tuple[Column, Wording]:
 def _path(result: Result) -> list[Table]:
     """Return the numbers of the whole path, where there is an interaction."""
     rows: list[list[str | Cell]] = [
-        [known.words, readable(value, known.unit, DIGITS), known.meaning]
+        [declared.words, readable(value, declared.unit, DIGITS), declared.meaning]
         for name, value in result.path_summary.items()
         if name in names_of("path")
-        for known in (VARIABLES[name],)
+        for declared in (VARIABLES[name],)
     ]
     columns = [Column(head, words=True) for head in ("path", "value", "meaning")]
     caption = "Events on the path, to a step, and its work."
@@ -495,9 +495,9 @@ def _profiles(result: Result, chosen: list[int]) -> Picture:
 
     # The last step is drawn, and every `count`-th before it.
     drawn = {index: picture(index) for index in chosen[::-1][::count]}
-    frames = [drawn[min(drawn, key=lambda one: abs(one - index))] for index in chosen]
+    frames = [drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - index))] for index in chosen]
     shown = default_step(result.dataset) % result.dataset.sizes["step"]
-    first = drawn[min(drawn, key=lambda one: abs(one - shown))]
+    first = drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - shown))]
     return replace(first, by_frame=frames if len(drawn) > 1 else ())
 
 

@@ -48,7 +48,7 @@ class Spectrum(TableFigure):
 
     def _fill(self, axes: Axes, curves: _Curves, ordered: bool) -> None:
         highest = max(
-            (one.density.max(initial=0.0) for _, spectra in curves for one in spectra.values()),
+            (part.density.max(initial=0.0) for _, spectra in curves for part in spectra.values()),
             default=0.0,
         )
         for number, (name, spectra) in enumerate(curves):

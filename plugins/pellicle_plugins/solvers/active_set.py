@@ -11,7 +11,7 @@ import numpy as np
 from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor, Solver
-from pellicle.numerics.gap_law import attraction_slope
+from pellicle.numerics.attraction import attraction
 from pellicle.numerics.grid_transfer import highest
 from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.path import Start
@@ -226,8 +226,12 @@ class ActiveSet(ScaledSolver):
         if not problem.law:
             return closing(np.zeros(contact.shape)) * unit
         gap = problem.operator(state.pressure) - problem.profile - state.depth
-        slope = attraction_slope(problem.law, gap, contact, problem.grid.boundary) / unit
-        return with_zone(operator, slope, closing, self.tolerance / 2) * unit
+        acting = attraction(problem.law, problem.heights, gap, contact, problem.grid.boundary)
+
+        def following(opened: Array) -> Array:
+            return acting.change(opened) / unit
+
+        return with_zone(operator, acting.zone, following, closing, self.tolerance / 2) * unit
 
     def _punched(self, punch: Problem, on_contact: OnContact, monitor: Monitor) -> Array:
         """Return the pressure of either sign with which the contact has no gap to `tolerance`."""

@@ -11,7 +11,7 @@ import scipy.fft
 
 from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
-from pellicle.numerics.gap_law import attracted
+from pellicle.numerics.attraction import Attraction, attraction
 from pellicle.numerics.initial_guess import first_guess
 from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Problem, adhesive_scale
@@ -110,8 +110,8 @@ class _Round:
     """Displacement [m] under the sum of both."""
     gap: Array
     depth: float
-    exerted: Array
-    """Traction that the law exerts at `gap` [Pa]."""
+    attraction: Attraction
+    """What the law exerts across `gap`."""
     settled: bool = True
     """Whether the wall pressure is ≥ 0 and no cell penetrates."""
     history: tuple[tuple[Array, Array, Array], ...] = ()
@@ -125,6 +125,11 @@ class _Round:
     @property
     def contact(self) -> Mask:
         return self.on_contact.contact
+
+    @property
+    def exerted(self) -> Array:
+        """Traction that the law exerts at `gap` [Pa]."""
+        return self.attraction.traction
 
     @cached_property
     def missed(self) -> Array:
@@ -153,8 +158,7 @@ class _Round:
         """Energy over that of closed cells all over, to the digits that show an advance."""
         law = self.problem.law
         assert law
-        acts = self.traction != 0
-        bound = float(law.energy(self.gap[acts]).sum())
+        bound = self.attraction.energy
         elastic = 0.5 * float(((self.wall + self.traction) * self.displacement).sum())
         load = 0.0
         if self.problem.prescribed == "force":
@@ -204,7 +208,7 @@ class AdhesionSolver(ScaledSolver):
         contact = (pressure > 0) | _touching(problem)
         u_minus_f = problem.operator(pressure) - problem.profile
         depth = problem.depth(u_minus_f[contact] if contact.any() else np.zeros(1))
-        traction = attracted(problem.law, u_minus_f - depth, contact, problem.grid.boundary)
+        traction = _attraction(problem, u_minus_f - depth, contact).traction
         wall = np.where(contact, np.maximum(pressure - traction, 0.0), 0.0)
         return self._closed(problem, preconditioner.on(contact), wall, traction)
 
@@ -320,13 +324,12 @@ def _finished(
     before: _Round | None,
     settled: bool = True,
 ) -> _Round:
-    law, contact = problem.law, on_contact.contact
-    assert law
+    contact = on_contact.contact
     gap = displacement - problem.profile
     depth = problem.depth(gap[contact] if contact.any() else np.zeros(1))
     gap -= depth
-    exerted = attracted(law, gap, contact, problem.grid.boundary)
-    state = _Round(problem, on_contact, wall, traction, displacement, gap, depth, exerted, settled)
+    acting = _attraction(problem, gap, contact)
+    state = _Round(problem, on_contact, wall, traction, displacement, gap, depth, acting, settled)
     if before is None:
         return state
     history: tuple[tuple[Array, Array, Array], ...] = ()
@@ -341,6 +344,12 @@ def _finished(
     return replace(
         state, history=history, progress=before.progress.after(state.residual, state.energy)
     )
+
+
+def _attraction(problem: Problem, gap: Array, contact: Mask) -> Attraction:
+    """Return what the law of a problem exerts across ``gap`` [m]."""
+    assert problem.law
+    return attraction(problem.law, problem.heights, gap, contact, problem.grid.boundary)
 
 
 def _is_convex(before: _Round, after: _Round) -> bool:

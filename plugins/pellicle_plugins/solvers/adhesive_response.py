@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from pellicle.arrays import Array
+from pellicle.arrays import Array, Mask
 from pellicle.numerics.operators import Operator
 
 # Iterations between restarts; 7 to 20 suffice for zones of some cells.
@@ -14,24 +14,29 @@ _RESTART = 60
 
 
 def with_zone(
-    operator: Operator, slope: Array, closing: Callable[[Array], Array], tolerance: float
+    operator: Operator,
+    zone: Mask,
+    following: Callable[[Array], Array],
+    closing: Callable[[Array], Array],
+    tolerance: float,
 ) -> Array:
     """Return dp/dδ on contact and zone, with the contact fixed and the zone following its law.
 
-    ``slope`` is dσ/dg on each cell off the contact, ``closing`` returns the pressure on the contact
-    that displaces it by 1, given the displacement by other tractions. The traction of the zone
-    obeys v = dσ/dg (u − 1), u being the displacement by v and by the pressure that keeps the
-    contact closed: a linear system on the zone, solved by GMRES (Saad & Schultz 1986).
+    ``following`` returns the change of the traction on the ``zone`` for one of the gap, ``closing``
+    the pressure on the contact that displaces it by 1, given the displacement by other tractions.
+    The traction of the zone obeys v = dσ/dg (u − 1), u being the displacement by v and by the
+    pressure that keeps the contact closed: a linear system on the zone, solved by GMRES (Saad &
+    Schultz 1986).
     """
     from scipy.sparse.linalg import LinearOperator, gmres
 
-    cells = np.flatnonzero(slope)
-    at_rest = closing(np.zeros(slope.shape))
+    cells = np.flatnonzero(zone)
+    at_rest = closing(np.zeros(zone.shape))
     if not cells.size:
         return at_rest
 
     def traction(values: Array) -> Array:
-        field = np.zeros(slope.shape)
+        field = np.zeros(zone.shape)
         field.ravel()[cells] = values
         return field
 
@@ -39,9 +44,9 @@ def with_zone(
         """Return pressure on contact and zone, and the traction that the law gives the zone."""
         field = traction(values)
         pressure = field + closing(operator(field))
-        return pressure, (slope * (operator(pressure) - 1.0)).ravel()[cells]
+        return pressure, following(operator(pressure) - 1.0).ravel()[cells]
 
-    constant = (slope * (operator(at_rest) - 1.0)).ravel()[cells]
+    constant = following(operator(at_rest) - 1.0).ravel()[cells]
 
     def residual(values: Array) -> Array:
         _, following = responses(values)

@@ -132,10 +132,10 @@ class Rule:
         pairs = zip(sides[:-1], self._signs, sides[1:], strict=True)
         if not any(map(np.isnan, sides)) and all(_COMPARISONS[s](a, b) for a, s, b in pairs):
             return ""
-        known, texts = units(), []
+        units_by_name, texts = units(), []
         for name in self.names:
             number = numbers[name]
-            text = "unknown" if np.isnan(number) else readable(number, known[name], 4)
+            text = "unknown" if np.isnan(number) else readable(number, units_by_name[name], 4)
             texts.append(f"{name} is {text}")
         return f"{', '.join(texts)}, against {self.text}"
 
