@@ -11,6 +11,7 @@ import scipy.fft
 
 from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
+from pellicle.grid import Grid
 from pellicle.numerics.attraction import Attraction, attraction
 from pellicle.numerics.initial_guess import first_guess
 from pellicle.numerics.path import Start
@@ -26,8 +27,10 @@ from .scaling import ScaledSolver
 _CONTACT_SHARE: Final = 0.05
 # Rounds whose tractions are extrapolated.
 _MEMORY: Final = 8
-# A front moves by at most this many cells in a round; beyond, the linear estimate says nothing.
+# A front moves in a round by at most this many cells, or this share of the mean extent of the
+# contact (area over perimeter) if more; beyond, the linear estimate says nothing.
 _MOST_CELLS: Final = 3.0
+_MOST_SHARE: Final = 0.3
 # Shift in cells above which the zone is continued to both sides.
 _EXTENDED: Final = 0.3
 # Energy by which a front of unit length resists a wave of unit wavenumber, over the work of
@@ -37,8 +40,8 @@ _FRONT_STIFFNESS: Final = 1.25
 _LONGEST: Final = 0.5
 # Bounds of the factor on the shift of the fronts, and its growth in a round.
 _LEAST_GAIN: Final = 1 / 16
-_GREATEST_GAIN: Final = 1.5
-_FASTER: Final = 1.5
+_GREATEST_GAIN: Final = 2.0
+_FASTER: Final = 2.0
 # The same where the state is unstable.
 _UNSTABLE_GAIN: Final = 256.0
 # Set changes of a round after which the strict factor of sign certainty applies.
@@ -46,6 +49,8 @@ _LOOSE_CHANGES: Final = 6
 # Set changes after which the next round begins, whose tractions move the contact anyway. With 40 a
 # step on a rough surface takes half as many applications again; with 2 a smooth one does.
 _CHANGES: Final = 3
+# The same if the shift of the fronts has already changed the contact.
+_CHANGES_SHIFTED: Final = 2
 # Least gap on the contact to which a round closes it, over the tolerance.
 _FLOOR: Final = 0.05
 # Rounds without a smaller residual after which the solve is abandoned.
@@ -215,11 +220,14 @@ class AdhesionSolver(ScaledSolver):
     def step(self, problem: Problem, state: _Round) -> _Round:
         """Return the next round."""
         traction, missed, wall = _extrapolated(state)
-        following = _with_shifted_fronts(state, traction + missed, missed)
+        following, contact = _with_shifted_fronts(state, traction + missed, missed)
+        on_contact, changes = state.on_contact, _CHANGES
+        if not np.array_equal(contact, state.contact):
+            on_contact, changes = on_contact.preconditioner.on(contact), _CHANGES_SHIFTED
         # The contact takes up what the change of the tractions lifts.
-        wall = state.on_contact.transferred(wall + traction - following)
-        wall[~state.contact] = 0.0
-        after = self._closed(problem, state.on_contact, wall, following, state)
+        wall = on_contact.transferred(wall + traction - following)
+        wall[~contact] = 0.0
+        after = self._closed(problem, on_contact, wall, following, state, changes)
         extrapolation = state.extrapolation and state.extrapolation.after(
             after.contact, after.residual
         )
@@ -266,8 +274,12 @@ class AdhesionSolver(ScaledSolver):
         wall: Array,
         traction: Array,
         before: _Round | None = None,
+        changes: int = _CHANGES,
     ) -> _Round:
-        """Return the round in which the contact is closed under ``traction``."""
+        """Return the round in which the contact is closed under ``traction``.
+
+        The contact changes ``changes`` times at most.
+        """
         law = problem.law
         assert law
         goal = 0.01 * law.cutoff()
@@ -278,7 +290,7 @@ class AdhesionSolver(ScaledSolver):
         hard = replace(problem, law=None)
         contact = on_contact.contact
         settled = False
-        for change in range(_CHANGES):
+        for change in range(changes):
             transferred = on_contact.transferred(wall)
             balanced = _with_wall_force(problem, contact, transferred, traction)
             if balanced is None:
@@ -428,8 +440,8 @@ def _extrapolated(state: _Round) -> tuple[Array, Array, Array]:
     return (one, two, three) if falls else latest
 
 
-def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> Array:
-    """Return tractions [Pa] after the fronts have moved by what is missed.
+def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> tuple[Array, Mask]:
+    """Return tractions [Pa] and contact after the fronts have moved by what is missed.
 
     A front that moves by v changes the tractions by v times their slope across it. Missed tractions
     r push it with the force per length ∫ (dg/dn) r dn over the width of the zone, which waves κ
@@ -444,7 +456,7 @@ def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> Array
     strength = law.strength()
     border = perimeter(contact, grid)
     if not border:
-        return np.clip(traction, -strength, 0.0)
+        return np.clip(traction, -strength, 0.0), contact
     dx, dy = edges(grid)
     exerted = state.exerted
     zone = ((exerted < 0) | (missed != 0)) & ~contact
@@ -459,7 +471,7 @@ def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> Array
     stiffness = per_wave * (qx**2 + qy**2 + 1 / longest**2)
     push = scipy.fft.rfft2(gap_slope * missed)
     shift = state.gain * scipy.fft.irfft2(push / stiffness, s=grid.shape)
-    limit = _MOST_CELLS * max(dx, dy)
+    limit = max(_MOST_CELLS * max(dx, dy), _MOST_SHARE * extent)
     np.clip(shift, -limit, limit, out=shift)
     following = traction + slope * shift
     greatest = float(np.abs(shift).max(where=zone, initial=0.0))
@@ -473,7 +485,25 @@ def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> Array
             i, j = i[ring], j[ring]
             moved = shift[i, j] + side * distance[ring]
             following[ring] = traction[i, j] + slope[i, j] * moved
-    return np.asarray(np.clip(following, -strength, 0.0))
+        contact = _shifted_contact(contact, shift, 0.5 * max(dx, dy), grid)
+        contact &= np.isfinite(problem.profile)
+    return np.asarray(np.clip(following, -strength, 0.0)), contact
+
+
+def _shifted_contact(contact: Mask, shift: Array, half: float, grid: Grid) -> Mask:
+    """Return the contact after its edge has moved into it by ``shift`` [m], or out of it if < 0.
+
+    The edge lies ``half`` a cell [m] from the cells on both sides. A cell leaves if it has passed
+    the cell by as much, and joins as soon as it is reached: of a cell that joins too late the gap
+    closes, but one that leaves too late is pulled out by its wall pressure.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    inside, outside = (
+        distance_transform_edt(mask, sampling=grid.spacing) for mask in (contact, ~contact)
+    )
+    shifted: Mask = np.where(contact, shift <= inside + half, -shift > outside - half)
+    return shifted
 
 
 def _slope(values: Array, dx: float, dy: float) -> Array:
