@@ -228,7 +228,7 @@ def test_no_gap_is_full_contact(solver: str) -> None:
 @pytest.mark.parametrize(
     ("loading", "words"),
     [
-        ({"gap_volume": "1 mm**3"}, r"loading\.gap_volume\.0: 1e-09 m3 is before first touch"),
+        ({"gap_volume": "1 mm**3"}, r"loading\.gap_volume\.0: 1 mm³ is before first touch"),
         ({"gap_volume": -1e-12}, r"loading\.gap_volume: -1e-12 is not allowed"),
         ({"base_displacement": "1 um"}, r"loading\.spring_constant: is missing; give it: spring"),
         (

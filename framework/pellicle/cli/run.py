@@ -51,7 +51,7 @@ def run(
         typer.Option(
             min=1,
             metavar="N",
-            help="Threads of the Fourier transforms (default: the fastest number).",
+            help="Threads of arrays and transforms (default: the fastest number).",
         ),
     ] = None,
     overwrite: Annotated[

@@ -60,7 +60,9 @@ class Executor(Component):
 
     threads: Annotated[
         Threads | None,
-        Field(description="threads of each run's Fourier transforms; if absent, what is fastest"),
+        Field(
+            description="threads of each run's arrays and transforms; if absent, what is fastest"
+        ),
     ] = None
 
     @abstractmethod

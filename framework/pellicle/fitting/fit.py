@@ -31,7 +31,7 @@ from .statistics.noise import doubt_of_tension
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Fit(FitResult):
     """Modulus, tension and contact point of one curve, with their intervals."""
 

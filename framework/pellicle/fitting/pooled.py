@@ -79,7 +79,7 @@ class PooledCurve:
         }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PooledFit(FitResult):
     """Modulus and tension that several curves of one solid share."""
 

@@ -33,7 +33,7 @@ def thickness_of(model: ForceModel, profile: ProfileResult) -> Estimate | None:
     return profile.estimate(THICKNESS) if THICKNESS in model.parameters else None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FitResult:
     """Modulus and tension, and how well they describe the measured force."""
 
@@ -210,6 +210,12 @@ class FitResult:
             "settled": self.rivals is None or self.rivals.modulus is None,
             "parameters": {k: value.to_dict() for k, value in self.chosen_estimates().items()},
         }
+
+    def __repr__(self) -> str:
+        """Return the answer in two sentences; the arrays of a curve would fill a screen."""
+        from .report.answer import answer
+
+        return f"<{type(self).__name__}: {answer(self)} {self.comparison}>"
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: the answer, the estimates, and the curve with its fit."""

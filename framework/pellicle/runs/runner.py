@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 STANDARD_OUTPUTS = ("csv", "figures")
 """Types of the outputs of a configuration that names none."""
-# Points of a transform above which threads save time.
-_LARGE = 2048**2
+# Points of a transform from which threads save time.
+_LARGE = 1024**2
 Value = TypeVar("Value")
 
 
@@ -237,10 +237,9 @@ def standard_outputs(named: Sequence[Output] | None) -> Sequence[Output]:
 def default_threads(grid: Grid) -> int:
     """Return the number of threads that solve fastest: 1 on all but large grids, else all cores.
 
-    Small arrays share badly. With the transforms alone shared, a periodic grid of 512² took 0.26 s
-    on one thread and 0.39 s on two, one of 1024² 1.00 and 1.23 s, one of 2048² 5.5 and 4.4 s. A
-    free boundary transforms arrays of twice
-    the points each way, so that a free grid of 1024² is a large one.
+    On two threads rough periodic grids of 512² took 0.98 to 1.04, 1024² 0.84 to 0.88 and 2048² 0.72
+    to 0.77 of the time on one, free grids of 256² 1.00 to 1.04, 512² 0.83 to 0.89 and 1024² 0.75 to
+    0.77: a free boundary transforms arrays of twice the points each way.
     """
     nx, ny = grid.points
     transformed = nx * ny * (4 if grid.boundary == "free" else 1)

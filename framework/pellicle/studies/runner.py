@@ -103,7 +103,7 @@ def run_study(
     overwrite
         Start over and replace the files in the folder.
     threads
-        Threads of each run's Fourier transforms, a whole number ≥ 1; those of the executor if None.
+        Threads of each run, a whole number ≥ 1; those of the executor if None.
 
     Returns
     -------

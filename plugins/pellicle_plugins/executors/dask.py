@@ -30,7 +30,9 @@ class Dask(Executor):
             '"processes" on one machine',
         ),
     ]
-    threads: Annotated[Threads, Field(description="threads of each run's Fourier transforms")] = 1
+    threads: Annotated[
+        Threads, Field(description="threads of each run's arrays and transforms")
+    ] = 1
 
     def map(
         self, work: Work[AnyTask, Outcome], tasks: Sequence[AnyTask], report: Report[AnyTask]

@@ -34,7 +34,7 @@ class Processes(Executor):
         Field(description="number of processes; if absent, enough to use all available cores"),
     ] = None
     threads: Annotated[
-        Threads, Field(description="threads of each run's Fourier transforms and linear algebra")
+        Threads, Field(description="threads of each run's arrays, transforms and linear algebra")
     ] = 1
 
     def map(
