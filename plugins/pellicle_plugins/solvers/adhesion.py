@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final, Self
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 import scipy.fft
@@ -101,6 +101,15 @@ class _Extrapolation:
         return None if far or slow else replace(self, rounds=rounds, residual=first)
 
 
+class _Earlier(NamedTuple):
+    """What is kept of an earlier round."""
+
+    traction: Array
+    missed: Array
+    wall: Array
+    contact: Mask
+
+
 @dataclass(frozen=True)
 class _Round:
     """The state after the contact is closed under given tractions across the gap."""
@@ -119,8 +128,8 @@ class _Round:
     """What the law exerts across `gap`."""
     settled: bool = True
     """Whether the wall pressure is ≥ 0 and no cell penetrates."""
-    history: tuple[tuple[Array, Array, Array], ...] = ()
-    """Traction, missed traction and wall pressure of earlier rounds on the same contact."""
+    history: tuple[_Earlier, ...] = ()
+    """Earlier rounds, of which those on the same contact obey the same equations."""
     progress: Progress = field(default_factory=Progress)
     gain: float = 1.0
     """Factor on the estimated shift of the fronts."""
@@ -140,6 +149,11 @@ class _Round:
     def missed(self) -> Array:
         """Traction that the law exerts minus `traction` [Pa]."""
         return self.exerted - self.traction
+
+    @property
+    def on_this_contact(self) -> tuple[_Earlier, ...]:
+        """Earlier rounds on the same contact."""
+        return tuple(r for r in self.history if np.array_equal(r.contact, self.contact))
 
     @cached_property
     def residual(self) -> float:
@@ -344,15 +358,12 @@ def _finished(
     state = _Round(problem, on_contact, wall, traction, displacement, gap, depth, acting, settled)
     if before is None:
         return state
-    history: tuple[tuple[Array, Array, Array], ...] = ()
-    # On another contact, earlier rounds obey other equations.
-    if (
-        settled
-        and before.settled
-        and np.array_equal(contact, before.contact)
-        and _is_convex(before, state)
-    ):
-        history = (*before.history, (before.traction, before.missed, before.wall))[-_MEMORY:]
+    history: tuple[_Earlier, ...] = ()
+    # A cell that just touches may leave the contact and return, where earlier rounds are of use.
+    is_other = not np.array_equal(contact, before.contact)
+    if settled and before.settled and (is_other or _is_convex(before, state)):
+        earlier = _Earlier(before.traction, before.missed, before.wall, before.contact)
+        history = (*before.history, earlier)[-_MEMORY:]
     return replace(
         state, history=history, progress=before.progress.after(state.residual, state.energy)
     )
@@ -380,7 +391,7 @@ def _gain(before: _Round, after: _Round) -> float:
     The missed tractions along the step fall linearly with its length on a smooth front, to 0 at the
     length at which the energy is least.
     """
-    if after.history:
+    if after.on_this_contact:
         return 1.0
     step = after.traction - before.traction
     one, other = (float((step * part.missed).sum()) for part in (before, after))
@@ -423,8 +434,8 @@ def _extrapolated(state: _Round) -> tuple[Array, Array, Array]:
     They are the combination of the rounds on the same contact, whose coefficients sum to 1
     (Anderson 1965).
     """
-    rounds = (*state.history, (state.traction, state.missed, state.wall))
-    latest = rounds[-1]
+    latest = state.traction, state.missed, state.wall
+    rounds = [*(earlier[:3] for earlier in state.on_this_contact), latest]
     if len(rounds) == 1:
         return latest
     cells = np.flatnonzero(np.any([part[1] != 0 for part in rounds], axis=0) & ~state.contact)
