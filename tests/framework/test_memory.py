@@ -157,7 +157,7 @@ def test_estimate_is_the_growth_of_the_peak(kind: str, growths: dict[str, int]) 
     A small contact takes up to a third less, and from scipy 1.18 on a transform along a line needs
     two arrays less than the estimate assumes.
     """
-    most = 1.15 if kind in FULL_CONTACT else 1.35
+    most = 1.15 if kind in FULL_CONTACT else 1.4
     if kind == LINE and Version(scipy.__version__) >= Version("1.18"):
         most = 1.6
     run = pl.Run(**KINDS[kind])
