@@ -85,7 +85,7 @@ class _SparseSweeps:
         self._cells = np.concatenate([self._relaxed, np.flatnonzero(reached)])
         position = np.empty(weight.size, dtype=np.int32)
         position[self._cells] = np.arange(self._cells.size, dtype=np.int32)
-        data = np.outer(weight.ravel()[self._relaxed], np.float32(list(stencil.values())))
+        data = np.outer(weight.ravel()[self._relaxed], np.array(list(stencil.values()), np.float32))
         starts = np.arange(number + 1, dtype=np.int32) * np.int32(len(stencil))
         self._matrix = scipy.sparse.csr_array(
             (data.ravel(), position[neighbours].ravel(), starts), shape=(number, self._cells.size)
