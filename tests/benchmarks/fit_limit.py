@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import fit_rivals
-import matplotlib.pyplot as plt
 import numpy as np
 from fit_rivals import DEPTH, MARGINS, MODULUS_, RADIUS, Array, path
+from matplotlib.figure import Figure
 from scipy.special import ndtr, ndtri
 
 from pellicle.fitting.models.force_model import tension_model
@@ -30,6 +30,7 @@ from pellicle.fitting.parameters import (
 )
 from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
 from pellicle.fitting.statistics.rivals import MARGIN, rivals
+from pellicle.plotting import save_figure
 
 NOISES = 0.003, 0.0055, 0.01
 ERRORS = 3.0, 5.0, 5.0 * np.sqrt(2), 9.0
@@ -132,28 +133,25 @@ def _span(curve: ChiSquared, at: Coordinates) -> Array:
     return basis
 
 
-def drawn(cases: Sequence[Case], file: Path) -> None:
+def draw(figure: Figure, cases: Sequence[Case]) -> None:
     """Draw the distributions at five standard errors, and the share of claims against errors."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(8, 3.2), layout="constrained")
-    colours = {"both": "tab:blue", "speeds": "tab:orange"}
-    names = {"both": "both passes", "speeds": "two speeds"}
-    for protocol, colour in colours.items():
+    left, right = figure.subplots(1, 2)
+    for protocol, name in {"both": "both passes", "speeds": "two speeds"}.items():
         own = [c for c in cases if c.protocol == protocol and c.noise == NOISES[1]]
         (five,) = (c for c in own if c.errors == 5)
-        left.hist(five.draws, 40, histtype="step", color=colour, label=names[protocol])
+        *_, (drawn,) = left.hist(five.draws, 40, histtype="step", label=name)
+        colour = drawn.get_edgecolor()
         left.axvline(five.separation, color=colour, linestyle=":")
         errors = [c.errors for c in own]
         right.plot(errors, [100 * c.needed() for c in own], "o-", color=colour)
         right.plot(errors, [100 * c.most for c in own], "--", color=colour)
     left.axvline(MARGIN, color="k")
-    left.set(
-        xlabel="Δχ² of the nearest adhesion", ylabel="draws", title="tension of 5 standard errors"
-    )
+    left.set(xlabel="Δχ² of the nearest adhesion", ylabel="draws")
+    left.set_title("tension of 5 standard errors")
     left.legend()
     right.axhline(95, color="0.7")
     right.set(xlabel="tension [standard errors]", ylabel="tension is needed [%]", ylim=(0, 102))
     right.set_title("fit (solid), best possible test (dashed)")
-    figure.savefig(file, dpi=150)
 
 
 def main() -> None:
@@ -185,7 +183,8 @@ def main() -> None:
             )
         )
     if options.figure is not None:
-        drawn(cases, options.figure)
+        stem, ending = options.figure.with_suffix(""), options.figure.suffix[1:]
+        save_figure(lambda figure: draw(figure, cases), stem, [ending], (8.0, 3.4))
 
 
 if __name__ == "__main__":
