@@ -270,6 +270,11 @@ def _adhesive_guesses(
         assert isinstance(thin, Likelihood)
         span = max(member.deepest(part), 0.05 * float(np.ptp(member.position)))
         points = part[CONTACT_POINT] + span * np.linspace(-0.3, 0.6, 13)
+        model = thin.force_model
+        assert isinstance(model, AdhesiveModel)
+        # One branch for all contact points: the branch is most of the cost of the force.
+        model = replace(model, reach=float(thin.base.max() - points[0]))
+        thin = replace(thin, force_model=model)
         points = points[points < member.position.max()]
         best = initial_guesses(thin, part, points.tolist())
         if not best:
