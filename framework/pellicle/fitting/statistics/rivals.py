@@ -45,9 +45,9 @@ MARGIN = 4.0
 their χ² differ by S without noise, noise makes the difference normal about S with deviation 2√S,
 and the wrong one is preferred in Φ(−(S + m)/2√S) ≤ Φ(−√m) of curves: at most 2.3 %, whatever S."""
 _CHANGE_POINT = 2
-"""Parameters for which a searched number of rows in contact counts.  Beside tension the search gained
-3.8 in χ² by chance, over 28 curves of both passes; without this price it hid tensions.  For AIC a
-change point counts as three parameters (Ninomiya 2015), since it also costs at the next curve."""
+"""Parameters for which a searched number of rows in contact counts.  Beside a tension the search
+gained 3.8 in χ² by chance, over 28 curves of both passes; without this price it hid tensions.  For
+AIC a change point counts as three (Ninomiya 2015), since it also costs at the next curve."""
 _THIN = 200
 """Rows of a curve that is scanned for initial guesses."""
 _LONG = 3000
