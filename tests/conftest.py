@@ -121,7 +121,8 @@ def start_dask(tmp_path_factory: pytest.TempPathFactory) -> StartDask:
     return start
 
 
-@pytest.fixture(scope="session")
+# An idle cluster takes a fortieth of a core, which over a session is more than its start.
+@pytest.fixture(scope="module")
 def dask_address(start_dask: StartDask) -> Iterator[str]:
     """Return the address of a scheduler with two workers, which gives a task up at its first death.
 
