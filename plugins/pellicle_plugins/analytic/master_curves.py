@@ -55,7 +55,7 @@ def _one_variable(name: str) -> Interpolant:
 
 @cache
 def _sphere_coefficients() -> tuple[float, Any]:
-    """Return the last t, and Chebyshev coefficients of values, slopes in δ/R, and d/dt of values."""
+    """Return the last t; Chebyshev coefficients of values, slopes in δ/R and d/dt of values."""
     from scipy.interpolate import PPoly
 
     nodes = _table()["sphere"]
