@@ -87,7 +87,7 @@ def test_too_many_cells_are_left_to_others() -> None:
 def test_it_takes_fewer_applications_and_gives_the_same(
     boundary: Literal["free", "periodic"], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A plate that touches with few cells takes a handful of applications, to the same tractions."""
+    """A plate on few cells takes a handful of applications, to the same tractions."""
     results, applications = [], []
     for most in (few_cells.MOST_CELLS, 0):
         monkeypatch.setattr(active_set, "MOST_CELLS", most)
