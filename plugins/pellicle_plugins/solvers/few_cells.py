@@ -100,7 +100,8 @@ class _System:
         """Return the displacement of some cells by the pressure of others."""
         i = np.abs(self._i[rows][:, None] - self._i[columns])
         j = np.abs(self._j[rows][:, None] - self._j[columns])
-        return self._column[i, j]
+        matrix: Array = self._column[i, j]
+        return matrix
 
     def displacement(self, joined: NDArray[np.int64], values: Array) -> Array:
         """Return the displacement of all cells under the pressure on those ``joined``."""
@@ -120,7 +121,7 @@ class _System:
             matrix[number, number] = 0
             right = np.append(right, self._total)
         try:
-            solution = np.linalg.solve(matrix, right)
+            solution = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
         except np.linalg.LinAlgError:
             return None
         if not np.isfinite(solution).all():
