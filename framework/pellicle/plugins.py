@@ -173,9 +173,12 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
             broken.append(registration)
             continue
         components, its_suites = registration
-        suites.extend(its_suites)
+        suites.extend(suite for suite in its_suites if suite not in suites)
         for registered in components:
-            claims.setdefault((registered.component.family, registered.type), []).append(registered)
+            owners = claims.setdefault((registered.component.family, registered.type), [])
+            # Two entry points of a package may name the same module.
+            if not any(owner.component is registered.component for owner in owners):
+                owners.append(registered)
     registered_by_family: dict[str, dict[str, Registered]] = {f: {} for f in FAMILIES}
     for (family, type_), owners in claims.items():
         if len(owners) == 1:

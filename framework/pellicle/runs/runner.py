@@ -160,6 +160,12 @@ def execute(
     return Executed(result, files, resumed)
 
 
+def memory_of(run: Run) -> float:
+    """Return the estimated peak memory of a run [bytes]."""
+    history, sticks = history_arrays(run), run.interaction is not None
+    return memory.estimate(run.grid, len(run.loading.values), run.solver, history, sticks=sticks)
+
+
 def _hand_over(
     step: xr.Dataset, outputs: Sequence[Output], journal: Journal, *, is_new: bool = False
 ) -> None:
