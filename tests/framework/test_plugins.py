@@ -255,7 +255,7 @@ def test_threads_that_load_plugins_leave_standard_output(
         for plugins in pool.map(lambda entry: load([entry]), entries):
             assert plugins.broken == ()
     os.write(1, b"after\n")
-    print("again")
+    sys.stdout.write("again\n")
     assert capfd.readouterr() == ("after\nagain\n", "")
 
 

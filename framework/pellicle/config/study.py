@@ -142,6 +142,11 @@ class Study(FromFile):
             raise error.within("run") from None
         return self
 
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with the fields of ``update``, and the runs that these describe."""
+        copy = super().model_copy(update=update, deep=deep)
+        return copy._expand() if update else copy
+
     @property
     def points(self) -> tuple[Point, ...]:
         """The runs, with the last dimension varying fastest."""
