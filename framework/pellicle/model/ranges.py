@@ -85,7 +85,7 @@ def ranged(
             "need be"
         )
     num, spacing = table["num"], table.get("spacing", "linear")
-    if not isinstance(num, Integral) or isinstance(num, bool) or not 2 <= num <= _MOST:
+    if not isinstance(num, Integral) or isinstance(num, bool) or not 2 <= int(num) <= _MOST:
         raise ConfigError(
             f"{shown(num)} is not allowed; give a whole number of values, 2 to {_MOST}", "num"
         )
