@@ -131,6 +131,11 @@ class Study(FromFile):
 
     @model_validator(mode="after")
     def _expand(self) -> Self:
+        self._set_points()
+        return self
+
+    def _set_points(self) -> None:
+        """Create the runs, or refuse the study."""
         self._check_axes()
         # Workers may run in another current folder.
         with paths_relative_to(None):
@@ -140,12 +145,13 @@ class Study(FromFile):
             refuse_shared_files(self.points[0].run.outputs or (), of_study=True)
         except ConfigError as error:
             raise error.within("run") from None
-        return self
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return a copy with the fields of ``update``, and the runs that these describe."""
         copy = super().model_copy(update=update, deep=deep)
-        return copy._expand() if update else copy
+        if update:
+            copy._set_points()
+        return copy
 
     @property
     def points(self) -> tuple[Point, ...]:
