@@ -12,6 +12,7 @@ import numpy as np
 from pellicle.components import Depth, Monitor, Search, Setting
 from pellicle.components.base import words_of_type
 from pellicle.components.calls import (
+    branches_of,
     corrected_area,
     report_of,
     response_of,
@@ -97,7 +98,11 @@ def _solved_step(
         "wall_time": time.perf_counter() - started,
     }
     added = (*areas, *map(corrected_fraction, areas), *prescription.variables)
-    return step_dataset(run.grid, index + 1, step.equilibrium, scalars, added)
+    solved = step_dataset(run.grid, index + 1, step.equilibrium, scalars, added)
+    if setting.law and branches_of(run.kernel) and run.loading.durations[index] > 0:
+        # The energy of a solid that has relaxed on its way does not follow from its surface.
+        solved["energy"][:] = np.nan
+    return solved
 
 
 def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Reached:

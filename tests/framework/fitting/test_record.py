@@ -152,6 +152,7 @@ def test_record_of_many(cli: Cli) -> None:
 
 
 @pytest.mark.usefixtures("no_rivals")
+@pytest.mark.usefixtures("no_rivals")
 def test_again(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """The same fit gives the same numbers, from another folder too; a change of file is told."""
     measure(FILE)
