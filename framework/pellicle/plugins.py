@@ -137,6 +137,11 @@ class Registry:
             return component_class(**value)
         except (PellicleError, MemoryError):
             raise
+        except SystemExit as error:
+            raise PluginError(
+                f"{base.family} {value['type']!r} calls sys.exit({error.code!r}); it has to raise "
+                "an error that says what is wrong"
+            ) from None
         except Exception as error:
             error.add_note(f"{base.family} {value['type']!r} failed")
             raise

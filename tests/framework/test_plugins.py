@@ -267,7 +267,7 @@ CLOSING = {
 }
 
 
-PRINTING_RUN = """
+SOFT_RUN = """
 grid = { points = 16, size = "0.4 mm" }
 kernel = { type = "soft", scale = 1e-4 }
 indenter = { type = "paraboloid", radius = "1 mm" }
@@ -276,23 +276,45 @@ outputs = []
 """
 
 
-def test_what_a_component_prints_is_not_in_the_json(tmp_path: Path) -> None:
-    """`run --json` prints nothing else on standard output, whatever components print."""
-    metadata = tmp_path / "stranger-1.2.dist-info"
+def _run_with(source: str, folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
+    """Solve a run with the kernel of a stranger in a process of its own."""
+    metadata = folder / "stranger-1.2.dist-info"
     metadata.mkdir()
     (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: stranger\nVersion: 1.2\n")
     (metadata / "entry_points.txt").write_text("[pellicle]\nkernel.soft = stranger\n")
-    source = SOFT.replace("        return", "        print('hello')\n        return")
-    (tmp_path / "stranger.py").write_text(source)
-    (tmp_path / "a.toml").write_text(PRINTING_RUN)
-    done = subprocess.run(
-        [sys.executable, "-m", "pellicle", "run", "a.toml", "--json"],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), *filter(None, sys.path)])},
+    (folder / "stranger.py").write_text(source)
+    (folder / "a.toml").write_text(SOFT_RUN)
+    return subprocess.run(
+        [sys.executable, "-m", "pellicle", "run", "a.toml", *options],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(folder), *filter(None, sys.path)])},
         capture_output=True,
         encoding="utf-8",
         check=False,
     )
+
+
+def test_a_component_cannot_end_a_command_as_a_success(tmp_path: Path) -> None:
+    """sys.exit(0) in the formula of a kernel is an error with its name, not exit code 0."""
+    done = _run_with(SOFT.replace("return self.scale / q", "raise SystemExit(0)"), tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: kernel 'soft' calls sys.exit(0)")
+
+
+def test_a_component_that_ends_the_process_when_it_is_made_is_named(plugin: Plugin) -> None:
+    """sys.exit() in a validator of a plugin is an error that names the component."""
+    ending = SOFT.replace(
+        "    def compliance",
+        "    def model_post_init(self, _): raise SystemExit\n\n    def compliance",
+    )
+    with pytest.raises(PluginError, match=r"kernel 'soft' calls sys.exit\(None\)"):
+        load([plugin(ending)]).make(Kernel, {"type": "soft"})
+
+
+def test_what_a_component_prints_is_not_in_the_json(tmp_path: Path) -> None:
+    """`run --json` prints nothing else on standard output, whatever components print."""
+    source = SOFT.replace("        return", "        print('hello')\n        return")
+    done = _run_with(source, tmp_path, "--json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["converged"] is True
     assert "hello" in done.stderr

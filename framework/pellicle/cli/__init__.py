@@ -107,6 +107,12 @@ class _Group(TyperGroup):
             for line in str(error).splitlines():
                 echo(f"error: {line}", err=True)
             raise typer.Exit(BAD_INPUT) from None
+        except BrokenPipeError:
+            raise typer.Exit(BAD_INPUT) from None
+        except SystemExit as error:
+            # Commands end by typer.Exit. The code of a component could be that of success.
+            echo(f"error: a component calls sys.exit({error.code!r})", err=True)
+            raise typer.Exit(BAD_INPUT) from None
         except Exception as error:
             # A call of a component adds a note that names the component at fault.
             if not (notes := getattr(error, "__notes__", ())):

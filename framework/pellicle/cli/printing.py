@@ -12,7 +12,6 @@ from io import StringIO
 from numbers import Integral, Real
 from typing import Any, NamedTuple
 
-import typer
 from rich.cells import cell_len
 from rich.console import Console
 
@@ -21,7 +20,6 @@ from pellicle.errors import StorageError
 from pellicle.files import for_document
 
 from .encoding import as_printed
-from .exits import BAD_INPUT
 
 _GAP = 2
 _NARROWEST_TEXT = 16
@@ -34,8 +32,8 @@ def echo(text: str = "", err: bool = False) -> None:
     typer would write UTF-8 where the environment wants ASCII.
     """
     stream = sys.stderr if err else sys.stdout
-    # Standard streams that are closed at the start are None.
-    if stream is None:
+    # Standard streams that are closed at the start are None; a component may close them too.
+    if stream is None or stream.closed:
         return
     if stream.isatty():
         width = Console(stderr=err).width
@@ -54,9 +52,11 @@ def _print(text: str) -> None:
     Raises
     ------
     StorageError
-        It cannot be written. If a pipe was closed, as by ``head``, the command ends instead.
+        It cannot be written.
+    BrokenPipeError
+        Nobody reads it any more, as behind ``head``.
     """
-    if sys.stdout is None:
+    if sys.stdout is None or sys.stdout.closed:
         return
     try:
         sys.stdout.write(text)
@@ -65,7 +65,7 @@ def _print(text: str) -> None:
         # Otherwise Python would try again at its end, and exit with 120.
         sys.stdout = StringIO()
         if isinstance(error, BrokenPipeError):
-            raise typer.Exit(BAD_INPUT) from None
+            raise
         raise StorageError(
             f"standard output cannot be written ({error.strerror or error})"
         ) from None
