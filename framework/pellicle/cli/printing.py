@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 from rich.cells import cell_len
 from rich.console import Console
 
-from pellicle.components.foreign_code import diverted_output
 from pellicle.errors import StorageError
 from pellicle.files import for_document
 
@@ -232,6 +231,7 @@ def print_json(value: object) -> None:
 @contextmanager
 def only_json() -> Iterator[None]:
     """Let nothing but JSON reach standard output; what components print goes to standard error."""
+    from pellicle.components.foreign_code import diverted_output
     from pellicle.plugins import registry
 
     # While they are loaded, plugins are judged one by one for what they do to standard output.
