@@ -63,6 +63,13 @@ class Preconditioner:
         """K on the grid itself, as if the grid were periodic; see `relaxed`."""
         return self._stiffness if self._plane == self._shape else self.stiffness(self._shape)
 
+    @cached_property
+    def column(self) -> Array:
+        """Displacement [m] of all cells under 1 Pa on the first one: one operator application."""
+        unit = np.zeros(self._shape)
+        unit[0, 0] = 1
+        return self._operator(unit)
+
     def stiffness(self, shape: tuple[int, int]) -> Stiffness:
         """Return K on a periodic plane of as many cells of the grid's size."""
         return Stiffness(self._operator, shape)
