@@ -182,6 +182,9 @@ class ActiveSet(ScaledSolver):
         )
         history = state.history.after(state.on_contact.contact, inner.misclassified.size)
         if not inner.misclassified.size:
+            if state.bends:
+                # The same contact again, with a smaller gap, is not a cycle.
+                history = History(returns=state.history.returns)
             return _iterate(problem, state.on_contact, inner.pressure, history, state)
         relaxes &= history.returns == 0 and len(history.contacts) <= _RELAXATION_STAGNATION
         if relaxes and inner.pressure.any():
