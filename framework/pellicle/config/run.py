@@ -38,6 +38,7 @@ from pellicle.components import (
 from pellicle.components.calls import branches_of
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
+from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
 from pellicle.model.from_file import FromFile
 from pellicle.model.html import summary
@@ -282,7 +283,7 @@ def _refuse_range_of_the_grid(interaction: Interaction, kernel: HasRelaxation, g
 
 def _digest_of(path: Path) -> str:
     """Return the hash of a file, or the path itself if it is not a file."""
-    if not path.is_file():
+    if not is_file(path):
         return str(path)
     stat = path.stat()
     return _digest(path.absolute(), stat.st_mtime_ns, stat.st_size)

@@ -21,7 +21,7 @@ from pellicle.components.calls import outcomes_of
 from pellicle.config.run import Run
 from pellicle.config.study import Study
 from pellicle.errors import ConfigError, ConvergenceWarning, StorageError
-from pellicle.files import check_writable
+from pellicle.files import check_writable, is_file, is_folder
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.status import Status
@@ -299,7 +299,7 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
     StorageError
         The table does not exist or cannot be read.
     """
-    whole = path / "study.h5" if path.is_dir() else path
+    whole = path / "study.h5" if is_folder(path) else path
     dataset = storage.table(whole)
     if problem := table.damage(dataset):
         raise StorageError(f"{whole}: {problem}, so it is damaged; run the study again")
@@ -311,8 +311,8 @@ def is_table(path: Path) -> bool:
 
     The result of a single run has the name of the table if its run file is called ``study.toml``.
     """
-    whole = path / "study.h5" if path.is_dir() else path
-    if whole.name != "study.h5" or (path.is_dir() and not whole.is_file()):
+    whole = path / "study.h5" if is_folder(path) else path
+    if whole.name != "study.h5" or (whole != path and not is_file(whole)):
         return False
     try:
         storage.attributes(whole)
