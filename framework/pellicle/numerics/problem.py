@@ -204,12 +204,12 @@ class Problem:
     def scaled(self, height: float, pressure: float) -> Problem:
         """Return the problem in units of ``height`` [m] and ``pressure`` [Pa], both powers of two.
 
-        The lengths of the grid remain in m.
+        The lengths of the grid remain in m. The profile is in C order afterwards.
         """
         return replace(
             self,
             operator=self.operator.scaled(pressure / height),
-            profile=self.profile / height,
+            profile=np.divide(self.profile, height, order="C"),
             control=self.control.scaled(height, pressure),
             law=self.law.scaled(height, pressure) if self.law else None,
             left=None if self.left is None else self.left / height,

@@ -138,15 +138,17 @@ class OnContact:
         nx, ny = self.contact.shape
         return self._apply(values)[:nx, :ny]
 
-    def transferred(self, forces: Array) -> Array:
+    def transferred(self, forces: Array, out: Array | None = None) -> Array:
         """Return forces [Pa] after transferring those off the contact onto it by Eᵀ.
+
+        They are in ``out``, an array in C order which may be ``forces``, or in a new one.
 
         Eᵀ K is the inverse of the operator on the contact to second order in the error of E. So
         forces that displace the surface onto the indenter on the contact become nearly the
         pressure that closes the gap there.
         """
         off = np.flatnonzero((forces != 0) & ~self.contact)
-        transferred = forces.copy()
+        transferred = forces.copy() if out is None else out
         if not off.size:
             return transferred
         values = forces.ravel()[off]
