@@ -288,7 +288,9 @@ class _Directions:
     """Preconditioned search directions on a contact, without net force under force control.
 
     The spring of an indenter adds a uniform compliance, which enters the preconditioner by the
-    formula of Sherman & Morrison (1950). Force control is the limit of a soft spring.
+    formula of Sherman & Morrison (1950). Under force control the preconditioner M becomes P M Pᵀ
+    with P = 1 − w 1ᵀ. It is symmetric for every w of sum 1; with w ∝ M 1 it is the limit of a soft
+    spring.
     """
 
     def __init__(
@@ -299,15 +301,19 @@ class _Directions:
         self._keeps_force = problem.prescribed == "force"
         spring = problem.operator.deflection(1.0) * preconditioner.preconditioner.stiffest
         self._lift: Array | None = None
-        if self._keeps_force or spring:
+        if self._keeps_force:
+            self._lift = preconditioner.preconditioner.lift(preconditioner)
+        elif spring:
             self._lift = preconditioner(np.ones(preconditioner.cells.size)).astype(np.float64)
-            total = float(self._lift.sum())
-            self._lift /= total if self._keeps_force else total + 1 / spring
+            self._lift /= float(self._lift.sum()) + 1 / spring
 
     def __call__(self, residual: Array) -> Array:
         """Return the preconditioned residual, made free of net force or conjugate to `_Uniform`."""
-        # The mean would use up digits of single precision.
-        direction = self._preconditioner(residual, self.mean(residual)).astype(np.float64)
+        mean = 0.0
+        if self._keeps_force and self._lift is not None:
+            # The mean would also use up digits of single precision.
+            mean = dot(self._lift, residual)
+        direction = self._preconditioner(residual, mean).astype(np.float64)
         if self._lift is not None:
             total = float(direction.sum())
             lift = self._lift

@@ -311,12 +311,19 @@ def _refine(wide: Field, fine: Field) -> None:
 
 def _transposed_refine(fine: Field) -> Field:
     """Return the transpose of `_refine` on a periodic axis, the last, applied to ``fine``."""
-    even, odd = fine[..., 0::2], fine[..., 1::2]
+    even, odd = fine[..., 0::2].copy(), fine[..., 1::2].copy()
     coarse = even + odd
     coarse *= _THREE
-    coarse[..., :-1] += even[..., 1:]
-    coarse[..., -1] += even[..., 0]
-    coarse[..., 1:] += odd[..., :-1]
+    first, last, number = coarse[..., 0].copy(), coarse[..., -1].copy(), coarse.shape[-1]
+    # In one dimension as in `_refine`; the ends of the axis, which this mixes, are set afterwards.
+    flat = coarse.reshape(-1)
+    flat[:-1] += even.reshape(-1)[1:]
+    flat[1:] += odd.reshape(-1)[:-1]
+    coarse[..., -1] = last + even[..., 0]
+    if number > 1:
+        coarse[..., -1] += odd[..., -2]
+        first += even[..., 1]
+        coarse[..., 0] = first
     coarse[..., 0] += odd[..., -1]
     return coarse
 

@@ -20,6 +20,8 @@ from .multilevel_extension import Extension, bends, stretch_of
 _FREE_MARGIN: Final = 1.25
 # Width across a line of cells, over their length along it, above which strain is plane.
 _SLENDER: Final = 8
+# Share of an earlier lift on the cells of a contact from which on it serves there.
+_RETAINED: Final = 0.9
 # The extension's plane is rounded up to a size that can be halved this many times.
 _HALVINGS: Final = 6
 
@@ -51,6 +53,7 @@ class Preconditioner:
         all_levels = self.bends and grid.boundary == "periodic"
         self._orders = orders[: levels if all_levels else min(levels, _HALVINGS)]
         self._stretch = stretch_of(*edges(grid))
+        self._lift: tuple[Cells, Field] | None = None
 
     @property
     def stiffest(self) -> float:
@@ -61,6 +64,25 @@ class Preconditioner:
     def grid_stiffness(self) -> Stiffness:
         """K on the grid itself, as if the grid were periodic; see `relaxed`."""
         return self._stiffness if self._plane == self._shape else self.stiffness(self._shape)
+
+    def lift(self, on_contact: OnContact) -> Array:
+        """Return a pressure on the cells of a contact, of sum 1, that nearly lifts it uniformly.
+
+        It is the preconditioned uniform displacement. That of an earlier contact serves again while
+        its cells that remain bear nearly all of it.
+        """
+        cells = on_contact.cells
+        if self._lift:
+            field = np.zeros(self._shape, dtype=np.float32)
+            field.ravel()[self._lift[0]] = self._lift[1]
+            lift = field.ravel()[cells].astype(np.float64)
+            if (total := float(lift.sum())) >= _RETAINED:
+                lift /= total
+                return lift
+        lift = on_contact(np.ones(cells.size)).astype(np.float64)
+        lift /= float(lift.sum())
+        self._lift = cells, lift.astype(np.float32)
+        return lift
 
     def stiffness(self, shape: tuple[int, int]) -> Stiffness:
         """Return K on a periodic plane of as many cells of the grid's size."""
