@@ -40,7 +40,7 @@ _EXAMPLES = {
     "J/m**2": "50 mJ/m^2",
     "N*m": "1 pN*m",
     "Pa/m": "1 kPa/mm",
-    "N": "2 uN",
+    "N": "5 nN",
     "m**2": "0.01 mm**2",
     "m**3": "0.001 mm**3",
     "rad": "70 degree",

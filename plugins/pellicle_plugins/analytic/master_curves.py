@@ -69,11 +69,16 @@ def _sphere_coefficients() -> tuple[float, Any, Any]:
 def paraboloid(radius: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a paraboloid of R = ``radius`` [m] at s = ``length`` [m]."""
     touching, d = _touching(depth)
-    x = _ratio(length, np.sqrt(d * radius))
+    return _spread(touching, *_paraboloid(radius, d, length))
+
+
+def _paraboloid(radius: float, d: Array, length: float) -> ForceCurve:
+    """Return P/E* under a paraboloid at depths > 0 [m]."""
+    root = np.sqrt(d * radius)
+    x = _ratio(length, root)
     log, rate = _one_variable("paraboloid")(x)
     force = 4 / 3 * np.sqrt(radius) * d**1.5 * np.exp(log)
-    by_depth = force / d * (1.5 - rate * x / 2)
-    return _spread(touching, force, by_depth, force * rate / np.sqrt(d * radius))
+    return ForceCurve(force, force / d * (1.5 - rate * x / 2), force * rate / root)
 
 
 def cone(half_angle: float, depth: Array, length: float) -> ForceCurve:
@@ -127,7 +132,7 @@ def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
     It is valid up to δ = R; beyond, the contribution of the shape to log P is kept constant.
     """
     touching, d = _touching(depth)
-    flat = paraboloid(radius, d, length)
+    flat = _paraboloid(radius, d, length)
     last, spline, slope = _sphere_coefficients()
     root = np.sqrt(d * radius)
     x = _ratio(length, root)

@@ -13,8 +13,9 @@ from pellicle.arrays import Array, Cells, Mask
 from pellicle.grid import Grid
 from pellicle.numerics.operators import Operator
 
+from .biharmonic import stretch_of
 from .circulant_stiffness import Field, Stiffness
-from .multilevel_extension import Extension, bends, stretch_of
+from .multilevel_extension import Extension, bends
 
 # Without a margin, contact at the edge of a free domain couples to the opposite edge.
 _FREE_MARGIN: Final = 1.25
