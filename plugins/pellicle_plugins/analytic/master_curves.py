@@ -27,7 +27,7 @@ from numpy.polynomial import chebyshev
 from pellicle.arrays import Array, Mask
 from pellicle.components import ContactRadius, ForceCurve
 
-from .stretched_spline import Interpolant, stretched_spline
+from .stretched_spline import Interpolant, stretched_spline, with_slopes
 
 SCALE = 1e-3
 _PUNCH_RADII: tuple[float, float] = 1e-3, 1e8
@@ -54,16 +54,17 @@ def _one_variable(name: str) -> Interpolant:
 
 
 @cache
-def _sphere_coefficients() -> tuple[float, Any, Any]:
-    """Return the last t, Chebyshev coefficients of values and slopes in δ/R, and d/dt of values."""
-    from scipy.interpolate import make_interp_spline
+def _sphere_coefficients() -> tuple[float, Any]:
+    """Return the last t; Chebyshev coefficients of values, slopes in δ/R and d/dt of values."""
+    from scipy.interpolate import PPoly
 
     nodes = _table()["sphere"]
     t = np.log1p(np.asarray(nodes["x"]) / SCALE)
     values = np.asarray(nodes["coefficients"])
     slopes = 2 * np.asarray(chebyshev.chebder(values, axis=1))
-    both = make_interp_spline(t, np.concatenate([values, slopes], axis=1), 5)
-    return float(t[-1]), both, make_interp_spline(t, values, 5).derivative()
+    both = with_slopes(t, np.concatenate([values, slopes], axis=1))
+    used = 2 * values.shape[1] + slopes.shape[1]
+    return float(t[-1]), PPoly(both.c[..., :used].copy(), both.x)
 
 
 def paraboloid(radius: float, depth: Array, length: float) -> ForceCurve:
@@ -133,17 +134,19 @@ def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
     """
     touching, d = _touching(depth)
     flat = _paraboloid(radius, d, length)
-    last, spline, slope = _sphere_coefficients()
+    last, spline = _sphere_coefficients()
     root = np.sqrt(d * radius)
     x = _ratio(length, root)
     at = np.log1p(x / SCALE)
     inside = np.minimum(at, last)
     ratio = np.minimum(d / radius, 1.0)
-    both, by_t = spline(inside), slope(inside)
-    count = by_t.shape[1]
+    coefficients = spline(inside)
+    count = (coefficients.shape[1] + 1) // 3
+    shapes, by_t = coefficients[:, :count], coefficients[:, -count:]
+    slopes = coefficients[:, count:-count]
     polynomials = chebyshev.chebvander(2 * ratio - 1, count - 1)
-    shape = np.einsum("ij,ij->i", both[:, :count], polynomials)
-    by_ratio = np.einsum("ij,ij->i", both[:, count:], polynomials[:, :-1])
+    shape = np.einsum("ij,ij->i", shapes, polynomials)
+    by_ratio = np.einsum("ij,ij->i", slopes, polynomials[:, :-1])
     by_x = np.where(at < last, np.einsum("ij,ij->i", by_t, polynomials), 0.0) / (x + SCALE)
     factor = np.exp(ratio * shape)
     force = flat.force * factor

@@ -85,6 +85,13 @@ class Preconditioner:
         self._lift = cells, lift.astype(np.float32)
         return lift
 
+    @cached_property
+    def column(self) -> Array:
+        """Displacement [m] of all cells under 1 Pa on the first one: one operator application."""
+        unit = np.zeros(self._shape)
+        unit[0, 0] = 1
+        return self._operator(unit)
+
     def stiffness(self, shape: tuple[int, int]) -> Stiffness:
         """Return K on a periodic plane of as many cells of the grid's size."""
         return Stiffness(self._operator, shape)
