@@ -8,6 +8,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from pellicle.checks import errors_attributed_to
 from pellicle.model.paths import walk
 from pellicle.units import example, printed, quantity_of, readable
 
@@ -34,7 +35,7 @@ def doubtful_scales(run: Run) -> Iterator[tuple[str, str]]:
     # Displacement by a pressure, both over the whole domain, over its size [1/Pa].
     softness = 0.0
     # A kernel that cannot be evaluated is refused when the run is composed.
-    with suppress(Exception), np.errstate(all="ignore"):
+    with suppress(Exception), errors_attributed_to(run.kernel), np.errstate(all="ignore"):
         longest = np.array([2 * math.pi / size])
         softness = float(np.asarray(run.kernel.compliance(longest))[0]) / size
     if size > _LARGE and max(moduli, default=0.0) > _STIFF:

@@ -184,7 +184,7 @@ class Operator:
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] of the kernel at q > 0, `scaled` as the operator is."""
-        return np.asarray(self.kernel.compliance(q) * self._factor, dtype=np.float64)
+        return checked_call(self.kernel, "compliance")(q) * self._factor
 
     def parts(self) -> dict[str, object]:
         """Return the attributes by name, to detect changes by comparison."""

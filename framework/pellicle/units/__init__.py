@@ -90,7 +90,8 @@ class Quantity:
             raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
         if not self._within(number):
             raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}")
-        return number
+        # Of −0, tables would show the sign, and a run would not be the one of 0.
+        return number + 0.0
 
     def _magnitude(self, value: object) -> float:
         if isinstance(value, Real) and not isinstance(value, bool):
