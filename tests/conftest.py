@@ -22,8 +22,34 @@ if TYPE_CHECKING:
     from selenium.webdriver import Chrome
 
 
-def pytest_configure() -> None:
+LONGEST = (
+    "tests/docs/test_blocks.py",
+    "tests/physics/test_adhesion.py",
+    "tests/framework/test_memory.py",
+    "tests/plugins/solvers/test_active_set.py",
+    "tests/contracts/test_kit.py",
+    "tests/framework/fitting/test_checks.py",
+    "tests/docs/test_studies.py",
+    "tests/packaging/test_plugin_packages.py",
+    "tests/docs/test_benchmarks.py",
+    "tests/framework/fitting/test_rivals.py",
+    "tests/framework/test_study.py",
+    "tests/framework/test_study_killed.py",
+    "tests/docs/test_build.py",
+)
+"""Files of more than ten seconds, longest first."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the longest files, so that no process ends with one while the other is idle."""
+    ranks = {file: rank for rank, file in enumerate(LONGEST)}
+    items.sort(key=lambda item: ranks.get(item.nodeid.partition("::")[0], len(ranks)))
+
+
+def pytest_configure(config: pytest.Config) -> None:
     """Stop at once where there are no plugins: hundreds of failures would not say why."""
+    # pytest-xdist would begin with the files of the most tests.
+    config.option.loadscopereorder = False
     owners = {entry.dist.name for entry in entry_points(group="pellicle") if entry.dist}
     if "pellicle" not in owners:
         raise pytest.UsageError(
@@ -121,7 +147,8 @@ def start_dask(tmp_path_factory: pytest.TempPathFactory) -> StartDask:
     return start
 
 
-@pytest.fixture(scope="session")
+# An idle cluster takes a fortieth of a core, which over a session is more than its start.
+@pytest.fixture(scope="module")
 def dask_address(start_dask: StartDask) -> Iterator[str]:
     """Return the address of a scheduler with two workers, which gives a task up at its first death.
 

@@ -39,8 +39,9 @@ class LoadSteps:
         """
         if isinstance(spec, Mapping):
             return self._ramp(spec)
-        # Lists, tuples and arrays have a length; text has one too.
+        # Lists, tuples and arrays have a length; text, and arrays of one number, have one too.
         several = isinstance(spec, Sized) and not isinstance(spec, str)
+        several = several and getattr(spec, "ndim", 1) > 0
         values = list(cast("Iterable[object]", spec)) if several else [spec]
         if not values:
             raise ValueError("is empty; give at least one load step")

@@ -137,6 +137,11 @@ class Registry:
             return component_class(**value)
         except (PellicleError, MemoryError):
             raise
+        except SystemExit as error:
+            raise PluginError(
+                f"{base.family} {value['type']!r} calls sys.exit({error.code!r}); it has to raise "
+                "an error that says what is wrong"
+            ) from None
         except Exception as error:
             error.add_note(f"{base.family} {value['type']!r} failed")
             raise
@@ -173,9 +178,12 @@ def load(entries: Iterable[EntryPoint], disable: str = "") -> Registry:
             broken.append(registration)
             continue
         components, its_suites = registration
-        suites.extend(its_suites)
+        suites.extend(suite for suite in its_suites if suite not in suites)
         for registered in components:
-            claims.setdefault((registered.component.family, registered.type), []).append(registered)
+            owners = claims.setdefault((registered.component.family, registered.type), [])
+            # Two entry points of a package may name the same module.
+            if not any(owner.component is registered.component for owner in owners):
+                owners.append(registered)
     registered_by_family: dict[str, dict[str, Registered]] = {f: {} for f in FAMILIES}
     for (family, type_), owners in claims.items():
         if len(owners) == 1:

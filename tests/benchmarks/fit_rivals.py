@@ -24,6 +24,7 @@ from scipy.special import beta, betainc
 
 import pellicle as pl
 from pellicle.components import HasForceCurve
+from pellicle.fitting.comparison import decision
 from pellicle.fitting.curves import curve as read_curve
 from pellicle.fitting.curves.readers import Source
 from pellicle.fitting.models.force_model import tension_model
@@ -43,6 +44,8 @@ NOISE = 0.003, 0.01
 """Least and greatest noise, over the largest force."""
 DEPTH = 0.08
 """Largest depth over R."""
+MARGINS = 3.0, 4.0, 5.0, 6.0
+"""Differences of AIC at which claims are counted."""
 
 
 class Path(NamedTuple):
@@ -320,10 +323,14 @@ KINDS: dict[str, Callable[[np.random.Generator], Truth]] = {
     "tension, 5 errors of an approach": _five_errors("approach"),
     "tension, 5 errors of both passes": _five_errors("both"),
     "tension, 5 errors of two speeds": _five_errors("speeds"),
+    "both passes, 5 errors of an approach": _five_errors("approach"),
+    "two speeds, 5 errors of an approach": _five_errors("approach"),
 }
 PROTOCOLS = {
     "tension, 5 errors of both passes": "both",
     "tension, 5 errors of two speeds": "speeds",
+    "both passes, 5 errors of an approach": "both",
+    "two speeds, 5 errors of an approach": "speeds",
 }
 """What is measured first, if not an approach."""
 
@@ -384,6 +391,24 @@ def fitted(sample: Sample, curve: Curve, segment: str = "approach", **options: A
     )
 
 
+class Answer(NamedTuple):
+    """What a fit makes of the rivals: enough to judge them anew at another margin."""
+
+    verdict: str
+    aic: dict[str, float]
+    """Akaike's criterion of each rival over the least, by its name."""
+    failed: tuple[str, ...]
+    """Checks that the best rival fails."""
+    correlated: bool
+    """Whether the noise of a curve is correlated."""
+
+    def claims(self, margin: float) -> bool:
+        """Return whether a tension is needed at a margin of AIC."""
+        if not self.aic:
+            return False
+        return decision(self.aic, doubted=bool(self.failed), margin=margin).verdict == "needed"
+
+
 class Outcome(NamedTuple):
     """What the fit of a curve says, and that with the measurement that it names."""
 
@@ -400,6 +425,8 @@ class Outcome(NamedTuple):
     decided: bool
     """Whether the interval is that of one model, not of several that are tied."""
     seconds: float
+    answers: tuple[Answer, ...]
+    """Of the first fit, and of that with the measurement."""
 
     def settled(self, needed: bool) -> bool:
         """Return whether the verdict with the measurement is the right one."""
@@ -440,12 +467,27 @@ def outcome(sample: Sample, protocol: str = "approach", *, follow: bool = True) 
     tied = tuple(tie.rival.code for tie in rivals.tied) if rivals is not None else ("none",)
     covers = holds(modulus_of(fit))
     named = rivals.advice if rivals is not None else ""
-    second = ""
-    if follow and verdict == "undecided" and named:
-        second = followed(sample, curves, named)
+    second, answers = "", [answer_of(fit)]
+    if follow and verdict == "undecided" and named and (more := followed(sample, curves, named)):
+        answers.append(answer_of(more))
+        second = answers[1].verdict
     right = verdict == "not shown" or any(code in tied for code in sample.truth.codes)
     decided = rivals is None or rivals.modulus is None
-    return Outcome(verdict, named, tied, second, right, covers, decided, seconds)
+    return Outcome(verdict, named, tied, second, right, covers, decided, seconds, tuple(answers))
+
+
+def answer_of(fit: pl.Fit | pl.PooledFit) -> Answer:
+    """Return what a fit makes of the rivals."""
+    rivals = fit.rivals
+    if rivals is None:
+        return Answer("not shown", {}, (), "slow_noise" in {c.code for c in fit.failed_checks})
+    failed = rivals.failed_checks
+    return Answer(
+        rivals.verdict,
+        {rival.rival.code: rival.aic for rival in rivals.fits},
+        tuple(check.code for check in failed if check.of_model),
+        "slow_noise" in {check.code for check in failed},
+    )
 
 
 def modulus_of(fit: pl.Fit | pl.PooledFit) -> pl.Estimate:
@@ -460,17 +502,17 @@ def holds(estimate: pl.Estimate) -> bool:
     return (estimate.low or 0.0) <= MODULUS_ <= (estimate.high or np.inf)
 
 
-def followed(sample: Sample, curves: Sequence[Curve], named: str) -> str:
-    """Return the verdict with the measurement that a fit names."""
+def followed(sample: Sample, curves: Sequence[Curve], named: str) -> pl.Fit | pl.PooledFit | None:
+    """Return the fit with the measurement that a fit names; None if it names none."""
     count = int(named.split()[0]) if "curves of this kind" in named else 1
     more = named_path(sample, named)
     if more is None:
-        return "none is named"
+        return None
     if count == 1 and len(curves) == 1 and more.sense.min() <= 0:
         # One measurement has the approach in it.
         curve = sample.measured(more)
-        return verdict_of(fitted(sample, curve, "both"))
-    return verdict_of(pooled(sample, [*curves, *(sample.measured(more) for _ in range(count))]))
+        return fitted(sample, curve, "both")
+    return pooled(sample, [*curves, *(sample.measured(more) for _ in range(count))])
 
 
 def named_path(sample: Sample, named: str) -> Path | None:
@@ -515,7 +557,7 @@ def row(name: str, results: Sequence[Outcome]) -> str:
         Counter(" ".join(result.named.split()[:4]) for result in results if result.named),
     ]
     cells = [", ".join(f"{n} {key}" for key, n in count.items()) for count in columns]
-    second = [r for r in results if r.second not in ("", "none is named")]
+    second = [r for r in results if r.second]
     settled = [result.settled(needed) for result in second]
     claims = [needed or "needed" not in (result.verdict, result.second) for result in results]
     decided = [result.covers for result in results if result.decided]
@@ -526,6 +568,8 @@ def row(name: str, results: Sequence[Outcome]) -> str:
     cells += [f"{share:.0f} %" for share in shares]
     cells += [f"{sum(decided)} of {len(decided)}"]
     cells += [f"{sum(r.covers for r in results if not r.decided)} of {len(results) - len(decided)}"]
+    answers = [Answer(*result.answers[0]) for result in results]
+    cells += [" ".join(str(sum(a.claims(margin) for a in answers)) for margin in MARGINS)]
     cells += [f"{np.median([result.seconds for result in results]):.2f}"]
     return f"{name} | {' | '.join(cells)}"
 
@@ -536,7 +580,8 @@ def main() -> None:
         __doc__, list(KINDS), 20, lambda *curve: outcome_of(*curve)._asdict()
     )
     heads = ["first answer", "with the measurement named", "named", "false", "settled", "right"]
-    heads += ["E* of one model holds", "E* over tied models holds", "CPU s"]
+    heads += ["E* of one model holds", "E* over tied models holds"]
+    heads += [f"needed at a margin of {', '.join(f'{margin:g}' for margin in MARGINS)}", "CPU s"]
     print(f"{curves} curves each | {' | '.join(heads)}")
     print("--- | " * len(heads) + "---")
     for name, values in results.items():

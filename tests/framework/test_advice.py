@@ -157,3 +157,13 @@ def test_a_run_of_a_study_that_cannot_be_checked_is_named(tmp_path: Path) -> Non
     assert done.exit_code == 2
     assert "leave nothing to compare with" in done.output
     assert "(run with number of cells 16)" in done.output
+
+
+def test_memory_is_that_of_the_run(tmp_path: Path) -> None:
+    """`check` and `run --dry-run` tell the same memory, also where an interaction acts."""
+    sticky = run(32, interaction={"type": "dugdale", "work_of_adhesion": 1e-4, "range": 1e-5})
+    path = tmp_path / "sticky.toml"
+    path.write_text(sticky.to_toml(), encoding="utf-8")
+    data = json.loads(CliRunner().invoke(app, ["check", str(path), "--json"]).stdout)
+    planned = json.loads(CliRunner().invoke(app, ["run", str(path), "--dry-run", "--json"]).stdout)
+    assert f"{data['memory'] / 1e6:.3g} MB" == planned["runs"][0]["memory"]

@@ -86,5 +86,19 @@ def test_arguments_that_are_something_else(tmp_path: Path) -> None:
         pl.displacement([[1, 0], [0, 0]], kernel=kernel, grid={"points": 2})  # type: ignore[arg-type]
     with pytest.raises(pl.ConfigError, match="study: makes this a study: use run_study"):
         pl.run(RUN | {"study": {"vary": {"indenter.radius": [1, 2]}}}, progress=False)
+    study: Any = pl.Study(run=RUN, vary={"indenter.radius": [1, 2]})
+    with pytest.raises(pl.ConfigError, match=r"^Study.* is not a Run; give one, a table"):
+        pl.run(study, progress=False)
+    single: Any = study.points[0].run
+    with pytest.raises(pl.ConfigError, match=r"^Run.* is not a Study; give one, a table"):
+        pl.run_study(single, progress=False)
     with pytest.raises(pl.StorageError, match="is a folder that holds no result yet; run it first"):
         pl.load(tmp_path)
+
+
+def test_any_title_makes_a_file_name(tmp_path: Path) -> None:
+    """A title longer than a file name may be is cut, also in letters of several bytes."""
+    pl.run(RUN | {"title": "张力膜" * 80, "outputs": []}, directory=tmp_path, progress=False)
+    (file,) = tmp_path.iterdir()
+    assert pl.load(file).dataset.attrs["title"] == "张力膜" * 80
+    assert file.name == f"{'张力膜' * 13}张.h5"

@@ -87,6 +87,24 @@ def with_heights(tmp_path: Path) -> Path:
     return path
 
 
+def test_copy_with_other_values_has_these() -> None:
+    """A copy forgets what had been computed of the values that it does not have."""
+    loading = pl.Loading(depth=[1e-6, 2e-6])
+    assert loading.values == (1e-6, 2e-6)
+    assert loading.model_copy(update={"depth": (3e-6,)}).values == (3e-6,)
+    assert loading.model_copy() == loading
+
+
+def test_depths_of_numpy() -> None:
+    """Arrays, numbers of numpy and −0 are taken; an array of one number is told that it is none."""
+    assert pl.Loading(depth=np.array([1e-6, -0.0])).values == (1e-6, 0.0)
+    assert str(pl.Loading(depth="-0 m").values[0]) == "0.0"
+    ramp = {"start": np.float64(0), "stop": np.float64(2), "num": np.int64(3)}
+    assert pl.Loading(depth=ramp).values == (0, 1, 2)
+    with pytest.raises(pl.ConfigError, match="is not a number; give a value with its unit"):
+        pl.Loading(depth=np.array(1e-6))
+
+
 def test_json_round_trip(run: pl.Run) -> None:
     """A run written as JSON is read back equal."""
     assert pl.Run.from_json(run.to_json()) == run

@@ -68,6 +68,27 @@ def test_every_prescription_takes_legs(
     assert (reached, max(about) - reached) == pytest.approx(single, rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("name", "first", "second"),
+    [("mean_plane_depth", "-2 um", "-1 um"), ("gap_volume", "2e-12 m^3", "1e-12 m^3")],
+)
+def test_what_is_not_zero_at_rest_begins_with_a_jump(name: str, first: str, second: str) -> None:
+    """On the way from 0 a solid that relaxes would be pressed to full contact first."""
+    solid = {"type": "half_space", "reduced_modulus": "10 kPa"}
+    gel = {
+        "type": "viscoelastic",
+        "solid": solid,
+        "relaxation": [{"fraction": 0.5, "time": "1 s"}],
+    }
+    slow = {"to": second, "time": "1 s", "num": 4}
+    jump = {"to": first, "time": 0, "num": 1}
+    for legs in ([slow], [{**jump, "num": 2}, slow]):
+        with pytest.raises(pl.ConfigError, match=rf"loading\.{name}\.0: begins at 0, which is not"):
+            pl.Run(**{**RUN, "kernel": gel, "loading": {name: legs}})
+        pl.Run(**{**RUN, "kernel": solid, "loading": {name: legs}})
+    pl.Run(**{**RUN, "kernel": gel, "loading": {name: [jump, slow]}})
+
+
 def test_time_of_nought_is_a_jump() -> None:
     """All steps of such a leg have one time."""
     loading = pl.Loading(force=[{"to": 2.0, "time": 0, "num": 2}, {"hold": 1, "num": 1}])

@@ -71,43 +71,42 @@ def _full(points: int) -> dict[str, Any]:
 # Below 1024² the figures themselves take as much as the fields.
 ALL_OUTPUTS: dict[str, Any] = {"outputs": [{"type": name} for name in OUTPUTS]}
 KINDS = {
-    "free": _kind(512, kernel=SKIN),
-    "free, contact over most of the domain": _kind(512, loading={"depth": 2e-4}),
-    "free, tabulated kernel": _kind(512, kernel=LAYER),
-    "free, four steps": _kind(512, loading={"depth": [5e-6, 1e-5, 1.5e-5, 2e-5]}),
-    "free, conjugate_gradient": _kind(512, solver={"type": "conjugate_gradient"}),
+    "free": _kind(384, kernel=SKIN),
+    "free, contact over most of the domain": _kind(384, loading={"depth": 2e-4}),
+    "free, tabulated kernel": _kind(384, kernel=LAYER),
+    "free, four steps": _kind(384, loading={"depth": [5e-6, 1e-5, 1.5e-5, 2e-5]}),
+    "free, conjugate_gradient": _kind(384, solver={"type": "conjugate_gradient"}),
     "free, self-affine down to two cells": _kind(
-        512, indenter=_rough(512, 2.01), loading={"depth": 2e-6}
+        384, indenter=_rough(384, 2.01), loading={"depth": 2e-6}
     ),
-    "free, contact stiffness": _kind(512, loading={"depth": 2e-5, "stiffness": True}),
-    "free, prescribed area": _kind(512, loading={"contact_radius": 1e-4}),
-    "free, many outputs": _kind(1024, **ALL_OUTPUTS),
-    "free, sticks": _kind(384, interaction=JKR, loading={"depth": [2e-5, 1e-5]}),
-    "periodic, sticks": _kind(384, "periodic", interaction=JKR, loading={"depth": [2e-6, 1e-6]}),
-    "periodic, little contact": _kind(512, "periodic"),
-    "periodic, full contact": _kind(512, "periodic", **_full(512)),
-    "periodic, conjugate_gradient": _kind(512, "periodic", solver={"type": "conjugate_gradient"}),
+    "free, contact stiffness": _kind(384, loading={"depth": 2e-5, "stiffness": True}),
+    "periodic, prescribed area": _kind(384, "periodic", loading={"contact_radius": 1e-4}),
+    "free, sticks": _kind(256, interaction=JKR, loading={"depth": [2e-5, 1e-5]}),
+    "periodic, sticks": _kind(256, "periodic", interaction=JKR, loading={"depth": [2e-6, 1e-6]}),
+    "periodic, little contact": _kind(384, "periodic"),
+    "periodic, full contact": _kind(384, "periodic", **_full(384)),
+    "periodic, conjugate_gradient": _kind(384, "periodic", solver={"type": "conjugate_gradient"}),
     "periodic, self-affine down to two cells": _kind(
-        512, "periodic", indenter=_rough(512, 2.01), loading={"depth": 2e-6}
+        384, "periodic", indenter=_rough(384, 2.01), loading={"depth": 2e-6}
     ),
     "periodic, eight steps": _kind(
-        512, "periodic", loading={"depth": [1e-6 * (step + 1) for step in range(8)]}
+        384, "periodic", loading={"depth": [1e-6 * (step + 1) for step in range(8)]}
     ),
     "periodic, full contact, many outputs": _kind(1024, "periodic", **_full(1024), **ALL_OUTPUTS),
     "free, a solid that relaxes": _kind(
-        512, kernel=_relaxing(5), loading={"depth": [2e-5] * 4, "time": [0, 1, 2, 3]}
+        384, kernel=_relaxing(5), loading={"depth": [2e-5] * 4, "time": [0, 1, 2, 3]}
     ),
     "free, a skin on a solid that relaxes": _kind(
-        512, kernel=SKIN_ON_GEL, loading={"depth": [2e-5] * 4, "time": [0, 1, 3, 6]}
+        384, kernel=SKIN_ON_GEL, loading={"depth": [2e-5] * 4, "time": [0, 1, 3, 6]}
     ),
     "periodic, a skin on a solid that relaxes": _kind(
-        512,
+        384,
         "periodic",
         kernel=SKIN_ON_GEL,
         loading={"force": [1e-6] * 4, "time": [0, 1, 3, 6]},
     ),
     LINE: _kind(
-        512,
+        384,
         "periodic",
         grid={"points": [2**19, 1], "size": [SIZE, SIZE / 2**19], "boundary": "periodic"},
     ),

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import Distribution, EntryPoint, entry_points
 from pathlib import Path
 
@@ -245,12 +246,78 @@ def test_what_a_plugin_prints_at_import_is_no_output(
     assert errors.strip() == "hello"
 
 
+def test_threads_that_load_plugins_leave_standard_output(
+    plugin: Plugin, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """What is printed after several threads have loaded plugins goes where it always goes."""
+    entries = [plugin("import time; time.sleep(0.02)\n" + SOFT) for _ in range(4)]
+    with ThreadPoolExecutor(4) as pool:
+        for plugins in pool.map(lambda entry: load([entry]), entries):
+            assert plugins.broken == ()
+    os.write(1, b"after\n")
+    sys.stdout.write("again\n")
+    assert capfd.readouterr() == ("after\nagain\n", "")
+
+
 CLOSING = {
     "sys.stdout.close()": "closes standard output; leave it open",
     "sys.__stdout__.close()": "closes standard output; leave it open",
     "os.close(1)": "closes standard output; leave it open",
     "sys.stdout.close(); raise KeyboardInterrupt": "KeyboardInterrupt",
 }
+
+
+SOFT_RUN = """
+grid = { points = 16, size = "0.4 mm" }
+kernel = { type = "soft", scale = 1e-4 }
+indenter = { type = "paraboloid", radius = "1 mm" }
+loading = { depth = "20 um" }
+outputs = []
+"""
+
+
+def _run_with(source: str, folder: Path, *options: str) -> subprocess.CompletedProcess[str]:
+    """Solve a run with the kernel of a stranger in a process of its own."""
+    metadata = folder / "stranger-1.2.dist-info"
+    metadata.mkdir()
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: stranger\nVersion: 1.2\n")
+    (metadata / "entry_points.txt").write_text("[pellicle]\nkernel.soft = stranger\n")
+    (folder / "stranger.py").write_text(source)
+    (folder / "a.toml").write_text(SOFT_RUN)
+    return subprocess.run(
+        [sys.executable, "-m", "pellicle", "run", "a.toml", *options],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(folder), *filter(None, sys.path)])},
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
+
+
+def test_a_component_cannot_end_a_command_as_a_success(tmp_path: Path) -> None:
+    """sys.exit(0) in the formula of a kernel is an error with its name, not exit code 0."""
+    done = _run_with(SOFT.replace("return self.scale / q", "raise SystemExit(0)"), tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: kernel 'soft' calls sys.exit(0)")
+
+
+def test_a_component_that_ends_the_process_when_it_is_made_is_named(plugin: Plugin) -> None:
+    """sys.exit() in a validator of a plugin is an error that names the component."""
+    ending = SOFT.replace(
+        "    def compliance",
+        "    def model_post_init(self, _): raise SystemExit\n\n    def compliance",
+    )
+    with pytest.raises(PluginError, match=r"kernel 'soft' calls sys.exit\(None\)"):
+        load([plugin(ending)]).make(Kernel, {"type": "soft"})
+
+
+def test_what_a_component_prints_is_not_in_the_json(tmp_path: Path) -> None:
+    """`run --json` prints nothing else on standard output, whatever components print."""
+    source = SOFT.replace("        return", "        print('hello')\n        return")
+    done = _run_with(source, tmp_path, "--json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["converged"] is True
+    assert "hello" in done.stderr
 
 
 @pytest.mark.parametrize("command", [["plugins", "--json"], ["schema"]], ids=" ".join)
@@ -318,6 +385,17 @@ def test_two_owners_of_one_name_are_both_named(plugin: Plugin) -> None:
     for part in ("stranger 1.2", "rival 7", "uninstall", "PELLICLE_DISABLE_PLUGINS"):
         assert part in str(raised.value)
     assert plugins.find("kernel", "half_space").__name__ == "HalfSpace"
+
+
+def test_entry_points_of_one_module_do_not_clash(plugin: Plugin) -> None:
+    """A package may name a module once for each component in it."""
+    first = plugin(SOFT + "@hookimpl\ndef register_validations(register):\n    register(list)\n")
+    second = EntryPoint("indenter.blunt", first.value, GROUP)
+    vars(second).update(dist=first.dist)
+    plugins = load([first, second])
+    assert plugins.clashes == {}
+    assert plugins.find("kernel", "soft").__name__ == "Soft"
+    assert plugins.suites == (list,)
 
 
 def test_a_built_in_cannot_be_replaced_silently(plugin: Plugin) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import json
-from collections.abc import Callable
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,8 +13,9 @@ import pytest
 from pydantic import Field
 
 import pellicle as pl
-from pellicle.components.calls import report_of, target_of
+from pellicle.components.calls import check_value, report_of, target_of
 from pellicle.plugins import checked_type
+from pellicle.results.variables import Variable
 from pellicle.runs.compose import compose
 from pellicle.units import Quantity
 
@@ -91,8 +91,8 @@ def test_not_registered(lie: Any, words: str) -> None:
         checked_type(lie, "prescription")
 
 
-def _returns(**methods: Callable[..., Any]) -> pl.Prescription:
-    return type("Liar", (Twice,), {"__module__": __name__, "__doc__": "Lies.", **methods})()  # type: ignore[no-any-return]
+def _returns(**members: Any) -> pl.Prescription:
+    return type("Liar", (Twice,), {"__module__": __name__, "__doc__": "Lies.", **members})()  # type: ignore[no-any-return]
 
 
 @pytest.mark.parametrize(
@@ -129,6 +129,14 @@ def test_measure_and_report_that_lie() -> None:
         target.measure(SimpleNamespace())  # type: ignore[union-attr, arg-type]
     with pytest.raises(pl.PluginError, match="dict of nothing"):
         report_of(_returns(report=lambda *_: {"extra": 1.0}), setting, SimpleNamespace())  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["force", "pressure", "status", "x", "step", "a/b", ""])
+def test_no_variable_of_a_result_is_replaced(name: str) -> None:
+    """A variable that a prescription adds is neither another number of the step nor unreadable."""
+    liar = _returns(variables=(Variable(name, "m", "meaning"),))
+    with pytest.raises(pl.PluginError, match=rf"'twice': variables has '{name}', which is "):
+        check_value(liar, compose(pl.Run(**BASE, loading={"depth": 0})), 1.0, "loading.twice")
 
 
 def test_what_it_raises_has_its_name() -> None:

@@ -339,7 +339,8 @@ def test_interrupted(
 
 def test_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A run on its own goes on too, to the same fields bit for bit; a finished one does nothing."""
-    run = pl.Run(**RUN | {"solver": Counting(), "outputs": None})
+    outputs = [{"type": "hdf5"}, {"type": "csv"}]
+    run = pl.Run(**RUN | {"solver": Counting(), "outputs": outputs})
     break_at(monkeypatch, 1.0, 1.5e-5)
     with pytest.raises(ZeroDivisionError):
         pl.run(run, directory=tmp_path, progress=False, threads=1)

@@ -18,6 +18,8 @@ import pellicle as pl
 from pellicle import memory
 from pellicle.config.study import Study
 from pellicle.model import replaced
+from pellicle.results.derived import names
+from pellicle.studies.table import StudyTable
 
 RUN: dict[str, Any] = {
     "grid": {"points": 16, "size": "0.4 mm"},
@@ -47,6 +49,14 @@ def refused(vary: object = None, **others: Any) -> str:
     with pytest.raises(pl.ConfigError) as caught:
         study(vary, **others)
     return str(caught.value)
+
+
+def test_copy_with_other_axes_has_their_runs() -> None:
+    """The runs of a copy are those of its axes."""
+    copy = study({TENSION: [1, 2]}).model_copy(update={"vary": {TENSION: (3.0,)}})
+    assert [point.run.to_json() for point in copy.points] == [
+        point.run.to_json() for point in study({TENSION: [3]}).points
+    ]
 
 
 def test_product() -> None:
@@ -148,6 +158,27 @@ def test_derived_replaces_no_column(name: str) -> None:
     """A derived column that would stand in place of another one is refused before any run."""
     with pytest.raises(pl.ConfigError, match=rf"derived\.{name}: '{name}' has a meaning already"):
         Study(run=RUN, vary={TENSION: [0, 1]}, derived={name: "2 * depth"})
+
+
+@pytest.mark.parametrize(
+    ("vary", "number"),
+    [
+        ({"loading.depth.stop": ["8 um", "12 um"]}, "loading.depth.1"),
+        ({"loading.depth": [["8 um"], ["12 um", "20 um"]]}, "loading.depth.0"),
+        ({"kernel": [RUN["kernel"], RUN["kernel"] | {"tension": 2.0}]}, "kernel.tension"),
+        ({"grid.size": ["0.4 mm", "0.5 mm"]}, "grid.size.0"),
+    ],
+)
+def test_derived_takes_no_number_of_the_first_run_for_all(
+    vary: dict[str, Any], number: str
+) -> None:
+    """A number in which the runs differ is refused unless it is an axis, in figures too."""
+    run = RUN | {"loading": {"depth": {"start": "5 um", "stop": "10 um", "num": 2}}}
+    with pytest.raises(pl.ConfigError, match=rf"derived\.a: '{number}' in .*; name an axis"):
+        Study(run=run, vary=vary, derived={"a": f"force / {number}"})
+    known = names(StudyTable(Study(run=run, vary=vary)).dataset())
+    assert number not in known
+    assert known["kernel.reduced_modulus" if "kernel" not in vary else "grid.size.0"] > 0
 
 
 @pytest.mark.parametrize("name", ["", ".", "/", "a/b", "a b", "1st", "a.b"])

@@ -40,6 +40,9 @@ KILLS = 2
 TIMES = {"wall_time"}
 
 
+SERIAL = ["study.executor={type='serial'}"]
+
+
 def _start(folder: Path) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "pellicle", "run", "s.toml", "-o", "out", "--quiet"]
     environment = os.environ | {"OMP_NUM_THREADS": "1"}
@@ -77,10 +80,9 @@ def test_killed_and_restarted(tmp_path: Path) -> None:
             assert count >= steps.get(path.name, 0)
             steps[path.name] = count
     assert 0 < sum(steps.values()) < 36
-    process = _start(tmp_path)
-    assert process.wait() == 0
+    plan = pl.Study.from_toml(tmp_path / "s.toml", SERIAL)
+    pl.run_study(plan, tmp_path / "out", progress=False, threads=1)
     table = xr.load_dataset(tmp_path / "out" / "study.h5", engine="h5netcdf")
-    plan = pl.Study.from_toml(tmp_path / "s.toml", ["study.executor={type='serial'}"])
     undisturbed = pl.run_study(plan, progress=False, threads=1)
     assert table.sizes == undisturbed.sizes
     for name in undisturbed.data_vars:
@@ -88,5 +90,5 @@ def test_killed_and_restarted(tmp_path: Path) -> None:
             xr.testing.assert_equal(table[name], undisturbed[name])
     changed = {path: path.stat().st_mtime_ns for path in runs.iterdir()}
     assert len(changed) == 12, "no half-written file is left"
-    assert _start(tmp_path).wait() == 0
+    pl.run_study(plan, tmp_path / "out", progress=False, threads=1)
     assert {path: path.stat().st_mtime_ns for path in runs.iterdir()} == changed

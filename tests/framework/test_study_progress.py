@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import io
+import sys
 from dataclasses import dataclass
 
 import pytest
@@ -156,3 +158,19 @@ def test_silent_when_not_enabled(screen: Screen) -> None:
         progress.report(ONE, ProgressMessage(0, 1, 1, 1e3, 0.5))
         progress.finished(ONE, "converged", failed=False)
     assert screen.written() == ""
+
+
+@pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "full"), BrokenPipeError(errno.EPIPE, "")])
+def test_a_log_that_cannot_be_written_ends_no_study(
+    error: OSError, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A full disk under the log, or a pipe that nobody reads, only loses the lines."""
+
+    def write(text: str) -> int:
+        raise error
+
+    monkeypatch.setattr(sys, "stderr", log := io.StringIO())
+    monkeypatch.setattr(log, "write", write)
+    with StudyProgress(2, 0, enabled=True) as progress:
+        progress.finished(ONE, "converged", failed=False)
+        progress.finished(TWO, "converged", failed=False)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import json
 import os
 import subprocess
@@ -19,7 +21,7 @@ from typer.testing import CliRunner, Result
 
 import pellicle as pl
 from pellicle.cli import app, new
-from pellicle.cli.exits import CRASHED
+from pellicle.cli.exits import BAD_INPUT, CRASHED
 from pellicle.cli.printing import Column, table_lines
 from pellicle.components import FAMILIES, Case
 from pellicle.config.explain import explanations
@@ -165,6 +167,54 @@ def test_run_prints_json(cli: Cli, folder: Path) -> None:
     assert shown["steps"][0]["mean_contact_pressure"] is None
     planned = json.loads(cli("run", "b.toml", "--dry-run", "--json", "-o", "c").stdout)
     assert [run["state"] for run in planned["runs"]] == ["to do"]
+
+
+def test_a_run_called_study_is_a_run(cli: Cli) -> None:
+    """The result of study.toml has the name of a study's table, and is shown and drawn as it is."""
+    Path("study.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
+    cli("run", "study.toml", "-o", "named", "--quiet", "--threads", "1")
+    for results in ("named", "named/study.h5"):
+        assert "Δ layer" in cli("show", results).stdout
+        drawn = cli("plot", results, "-o", "drawn").stdout
+        assert str(Path("drawn/study-pressure.png")) in drawn
+
+
+class Refusing(io.StringIO):
+    """A stream that cannot be written to."""
+
+    def __init__(self, error: OSError) -> None:
+        super().__init__()
+        self.error = error
+
+    def write(self, text: str) -> int:
+        """Fail."""
+        raise self.error
+
+
+FULL = OSError(errno.ENOSPC, "No space left on device")
+UNREAD = BrokenPipeError(errno.EPIPE, "Broken pipe")
+
+
+@pytest.mark.parametrize("json", [[], ["--json"]], ids=["table", "json"])
+@pytest.mark.parametrize(
+    ("error", "message"),
+    [(FULL, f"error: standard output cannot be written ({FULL.strerror})\n"), (UNREAD, "")],
+    ids=["full", "unread"],
+)
+def test_what_cannot_be_printed_is_neither_a_fault_nor_a_verdict(
+    folder: Path,
+    error: OSError,
+    message: str,
+    json: list[str],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """A full disk is told in a line; `show | head` has not the code of steps that failed."""
+    monkeypatch.setattr(sys, "stdout", Refusing(error))
+    with pytest.raises(SystemExit) as ended:
+        app(["show", str(folder / "a.h5"), *json], prog_name="pellicle")
+    assert ended.value.code == BAD_INPUT
+    assert capsys.readouterr().err == message
 
 
 def test_equal_statuses_are_one_line(cli: Cli) -> None:

@@ -263,3 +263,28 @@ def test_a_paraboloid_on_a_thin_incompressible_layer_is_on_a_film() -> None:
     assert (4 * ratios[0] - ratios[1]) / 3 == pytest.approx(1, abs=0.01)
     assert 2 * radii[0] - radii[1] == pytest.approx(1, abs=0.02)
     assert abs(ratios[0] - 1) < 0.05
+
+
+@pytest.mark.parametrize("relaxes", [False, True])
+def test_a_layer_far_thicker_than_the_period_is_a_half_space(relaxes: bool, solver: str) -> None:
+    """Its mean plane sinks by 1e4 times the heights, which must not make their gaps negligible."""
+    nu, time = 0.2, {"time": [0.0, 1.0]} if relaxes else {}
+    half_space = {"type": "half_space", "youngs_modulus": YOUNGS, "poissons_ratio": nu}
+    pressures = []
+    for solid in (half_space, layer("bonded_layer", nu, 10.0)):
+        relaxing = {
+            "type": "viscoelastic",
+            "solid": solid,
+            "relaxation": [{"fraction": 0.5, "time": 1.0}],
+        }
+        run = pl.Run(
+            grid=PERIODIC,
+            kernel=relaxing if relaxes else solid,
+            indenter=ROUGH,
+            loading={"mean_pressure": [50.0, 50.0] if relaxes else 50.0, **time},
+            solver={"type": solver},
+        )
+        result = pl.run(run, progress=False).dataset
+        assert result["converged"].all()
+        pressures.append(result["pressure"].values)
+    np.testing.assert_allclose(pressures[1], pressures[0], atol=3e-5 * pressures[0].max())

@@ -172,6 +172,18 @@ def test_small_domain_is_reported(size: float, tension: float, steps: list[int])
     assert result.converged
 
 
+def test_a_contact_that_has_shrunk_left_its_memory_outside() -> None:
+    """The domain has to hold 8 radii of the largest contact so far, as the solid remembers it."""
+    times, depth = np.array([0.0, 0.5, 0.6]), np.array([0.3, 0.4, 0.2])
+    indenter = {"type": "paraboloid", "radius": 10.0}
+    problem = run_of(
+        24, times, depth, size=8.0, substrate=kernel(0.25, 0.6, 0.3), indenter=indenter
+    )
+    steps = _warned(problem, progress=False).dataset
+    assert 8 * float(steps["contact_radius"][-1]) < 7
+    assert steps["status_code"].values.tolist() == ["CONVERGED", "SMALL_DOMAIN", "SMALL_DOMAIN"]
+
+
 def _warned(*arguments: Any, **options: Any) -> Any:
     with pytest.warns(pl.ConvergenceWarning, match="domain of .* is small for a skin"):
         return pl.run(*arguments, **options)

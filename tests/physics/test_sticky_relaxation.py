@@ -141,6 +141,9 @@ def test_energy_that_the_solid_stores_is_not_known() -> None:
     summary = path_variables(result.dataset)
     assert np.isfinite(summary["work"])
     assert np.isnan(summary["dissipated_energy"])
+    legs = [{"to": 0.6, "time": 20.0, "num": 2}]
+    first = pl.run(configuration(loading={"depth": legs}), progress=False).dataset
+    assert np.isnan(first["energy"].values).all()
 
 
 @pytest.mark.parametrize(("cells", "message"), [(1.5, "here it is 1.5"), (3.5, "")])

@@ -9,7 +9,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import Annotated, Any
 
 import typer
@@ -21,7 +21,7 @@ from pellicle.version import CITATION, __version__
 from . import check, explain, explore, fit, new, plot, plugins, run, schema, show, validate
 from .encoding import encode_readably
 from .exits import BAD_INPUT, CRASHED, INTERRUPTED
-from .printing import echo, print_warning
+from .printing import echo, only_json, print_warning
 
 
 def _named_by_use(parameters: list[Any]) -> list[Any]:
@@ -37,10 +37,14 @@ def _named_by_use(parameters: list[Any]) -> list[Any]:
 
 
 class _Command(TyperCommand):
-    """A command whose help shows no types of Python."""
+    """A command whose help shows no types of Python, and which prints nothing beside its JSON."""
 
     def get_params(self, ctx: Any) -> list[Any]:
         return _named_by_use(super().get_params(ctx))
+
+    def invoke(self, ctx: Any) -> Any:
+        with only_json() if ctx.params.get("json") else nullcontext():
+            return super().invoke(ctx)
 
 
 def _misuse(error: Any) -> str:
@@ -102,6 +106,12 @@ class _Group(TyperGroup):
         except PellicleError as error:
             for line in str(error).splitlines():
                 echo(f"error: {line}", err=True)
+            raise typer.Exit(BAD_INPUT) from None
+        except BrokenPipeError:
+            raise typer.Exit(BAD_INPUT) from None
+        except SystemExit as error:
+            # Commands end by typer.Exit. The code of a component could be that of success.
+            echo(f"error: a component calls sys.exit({error.code!r})", err=True)
             raise typer.Exit(BAD_INPUT) from None
         except Exception as error:
             # A call of a component adds a note that names the component at fault.

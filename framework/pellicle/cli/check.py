@@ -61,10 +61,11 @@ def _allowed(text: str) -> float:
 
 def _check_run(run: Run, error: float, *, json: bool) -> None:
     from pellicle.runs.advice import advise
+    from pellicle.runs.runner import memory_of
     from pellicle.units import readable
 
     advice = advise(run, error)
-    needed = _memory(run)
+    needed = memory_of(run)
     if json:
         print_json(_data(advice, needed))
         return
@@ -112,6 +113,7 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
     A smaller domain is suggested only where it fits every run.
     """
     from pellicle.runs.advice import advise
+    from pellicle.runs.runner import memory_of
     from pellicle.studies.summary import run_names
     from pellicle.studies.table import StudyTable
     from pellicle.units import readable
@@ -120,7 +122,7 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
     checked: list[tuple[str, Advice, float]] = []
     for name, point in zip(names, study.points, strict=True):
         try:
-            checked.append((name, advise(point.run, error), _memory(point.run)))
+            checked.append((name, advise(point.run, error), memory_of(point.run)))
         except ConfigError as problem:
             raise ConfigError(f"{problem} (run with {name})") from None
     if json:
@@ -147,13 +149,6 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
         f'every contact fits into a smaller domain: grid.size = ["{x}", "{y}"]; the points of a '
         "run are for the domain that fits its own"
     )
-
-
-def _memory(run: Run) -> float:
-    from pellicle import memory
-    from pellicle.runs.relaxation import history_arrays
-
-    return memory.estimate(run.grid, len(run.loading.values), run.solver, history_arrays(run))
 
 
 def _data(advice: Advice, needed: float) -> dict[str, Any]:

@@ -5,19 +5,24 @@ from __future__ import annotations
 import math
 import sys
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from io import StringIO
 from numbers import Integral, Real
 from typing import Any, NamedTuple
 
 from rich.cells import cell_len
 from rich.console import Console
 
+from pellicle.errors import StorageError
 from pellicle.files import for_document
 
 from .encoding import as_printed
 
 _GAP = 2
 _NARROWEST_TEXT = 16
+_texts: ContextVar[list[str] | None] = ContextVar("JSON of a command", default=None)
 
 
 def echo(text: str = "", err: bool = False) -> None:
@@ -26,11 +31,43 @@ def echo(text: str = "", err: bool = False) -> None:
     typer would write UTF-8 where the environment wants ASCII.
     """
     stream = sys.stderr if err else sys.stdout
+    # Standard streams that are closed at the start are None; a component may close them too.
+    if stream is None or stream.closed:
+        return
     if stream.isatty():
         width = Console(stderr=err).width
         text = "\n".join(part for line in text.split("\n") for part in _in_words(line, width))
-    stream.write(f"{text}\n")
-    stream.flush()
+    if not err:
+        _print(f"{text}\n")
+        return
+    with suppress(OSError):
+        stream.write(f"{text}\n")
+        stream.flush()
+
+
+def _print(text: str) -> None:
+    """Write a text to standard output.
+
+    Raises
+    ------
+    StorageError
+        It cannot be written.
+    BrokenPipeError
+        Nobody reads it any more, as behind ``head``.
+    """
+    if sys.stdout is None or sys.stdout.closed:
+        return
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except OSError as error:
+        # Otherwise Python would try again at its end, and exit with 120.
+        sys.stdout = StringIO()
+        if isinstance(error, BrokenPipeError):
+            raise
+        raise StorageError(
+            f"standard output cannot be written ({error.strerror or error})"
+        ) from None
 
 
 def _in_words(line: str, width: int) -> list[str]:
@@ -184,7 +221,29 @@ def print_json(value: object) -> None:
     """Print JSON in ASCII, which every code page contains; numbers that are not finite are null."""
     import json
 
-    sys.stdout.write(json.dumps(_plain(value), indent=2, allow_nan=False) + "\n")
+    text = json.dumps(_plain(value), indent=2, allow_nan=False) + "\n"
+    if (texts := _texts.get()) is None:
+        _print(text)
+    else:
+        texts.append(text)
+
+
+@contextmanager
+def only_json() -> Iterator[None]:
+    """Let nothing but JSON reach standard output; what components print goes to standard error."""
+    from pellicle.components.foreign_code import diverted_output
+    from pellicle.plugins import registry
+
+    # While they are loaded, plugins are judged one by one for what they do to standard output.
+    registry()
+    texts: list[str] = []
+    token = _texts.set(texts)
+    try:
+        with diverted_output():
+            yield
+    finally:
+        _texts.reset(token)
+        _print("".join(texts))
 
 
 def _plain(value: object) -> object:

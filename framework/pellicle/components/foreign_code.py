@@ -1,4 +1,4 @@
-"""Guards for importing plugins: against writing to standard output and raising KeyboardInterrupt.
+"""Guards for the code of plugins: against writing to standard output and raising KeyboardInterrupt.
 
 Commands print JSON to standard output, which a single line from a plugin would make invalid.
 """
@@ -20,17 +20,26 @@ from pellicle.errors import PluginError
 
 # File descriptors, which C libraries and subprocesses write to directly.
 _OUT, _ERR = 1, 2
+# Standard output belongs to the process: of two threads that redirect it at the same time the
+# second would restore what the first has redirected. A plugin may load another one.
+_diverting = threading.RLock()
 
 
 @contextmanager
 def diverted_output() -> Iterator[None]:
-    """Redirect standard output to standard error.
+    """Redirect standard output to standard error, in one thread at a time.
 
     Raises
     ------
     PluginError
         The code closed standard output; it has been reopened.
     """
+    with _diverting, _diverted():
+        yield
+
+
+@contextmanager
+def _diverted() -> Iterator[None]:
     stream = sys.stdout
     was_closed = _is_closed(stream)
     _flush(stream, sys.__stdout__)

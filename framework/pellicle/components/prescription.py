@@ -102,6 +102,8 @@ class Prescription(Component):
     """Whether values below `at_least` are allowed where there is an interaction."""
     needs_period: ClassVar[bool] = False
     """Whether it is defined on periodic grids only."""
+    is_zero_at_rest: ClassVar[bool] = True
+    """Whether 0, from which a path in legs begins, is its value before the indenter presses."""
     variables: ClassVar[tuple[Variable, ...]] = ()
     """Variables that it adds to a result; kind ``residual`` is the relative error of its search."""
 

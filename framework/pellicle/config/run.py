@@ -124,6 +124,21 @@ class Run(FromFile):
         return self
 
     @model_validator(mode="after")
+    def _legs_begin_at_rest(self) -> Self:
+        loading = self.loading
+        begins = loading.prescription.is_zero_at_rest or not loading.samples
+        if begins or not (self.interaction or branches_of(self.kernel)):
+            return self
+        if loading.durations[0] > 0 or (len(loading.values) > 1 and loading.samples[1].leg == 0):
+            raise ConfigError(
+                "begins at 0, which is not the value before the indenter presses, and the solid or "
+                "the interaction remembers the way; begin with a jump to a first value, "
+                '{ to, time = "0 s", num = 1 }',
+                f"loading.{loading.field_of(0)}",
+            )
+        return self
+
+    @model_validator(mode="after")
     def _range_where_it_relaxes(self) -> Self:
         kernel = self.kernel
         if self.interaction and branches_of(kernel) and isinstance(kernel, HasRelaxation):

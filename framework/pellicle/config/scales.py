@@ -8,8 +8,9 @@ from contextlib import suppress
 
 import numpy as np
 
+from pellicle.checks import errors_attributed_to
 from pellicle.model.paths import walk
-from pellicle.units import printed, quantity_of, readable
+from pellicle.units import example, printed, quantity_of, readable
 
 from .run import Run
 
@@ -23,7 +24,6 @@ _ELASTOCAPILLARY = 20.0
 """Largest plausible ratio of tension over modulus and the domain."""
 _STICKY = 10.0
 """Largest plausible displacement by adhesion over the domain."""
-_EXAMPLES = {"m": "um", "N": "nN", "Pa": "kPa", "N/m": "mN/m", "J/m**2": "mJ/m^2"}
 
 
 def doubtful_scales(run: Run) -> Iterator[tuple[str, str]]:
@@ -35,7 +35,7 @@ def doubtful_scales(run: Run) -> Iterator[tuple[str, str]]:
     # Displacement by a pressure, both over the whole domain, over its size [1/Pa].
     softness = 0.0
     # A kernel that cannot be evaluated is refused when the run is composed.
-    with suppress(Exception), np.errstate(all="ignore"):
+    with suppress(Exception), errors_attributed_to(run.kernel), np.errstate(all="ignore"):
         longest = np.array([2 * math.pi / size])
         softness = float(np.asarray(run.kernel.compliance(longest))[0]) / size
     if size > _LARGE and max(moduli, default=0.0) > _STIFF:
@@ -72,9 +72,9 @@ def _values(run: Run) -> Iterator[tuple[str, float, str]]:
 
 
 def _doubt(path: str, value: float, unit: str, reason: str) -> tuple[str, str]:
-    given = f"{value:g}"
+    given, usual = f"{value:g}", example(unit).partition(" ")[2]
     because = f", {reason}" if reason else ""
     return path, (
         f"{path} is {given} {printed(unit)}{because}; a number without a unit is in SI: "
-        f"give one, such as '{given} {_EXAMPLES[unit]}', if that is not meant"
+        f"give one, such as '{given} {usual}', if that is not meant"
     )

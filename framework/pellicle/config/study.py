@@ -16,7 +16,7 @@ from pellicle import memory
 from pellicle.components import Executor
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError, Problem, shown
-from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate
+from pellicle.model.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
 from pellicle.model.from_file import FromFile, read
 from pellicle.model.html import summary
 from pellicle.model.input_path import paths_relative_to
@@ -131,6 +131,11 @@ class Study(FromFile):
 
     @model_validator(mode="after")
     def _expand(self) -> Self:
+        self._set_points()
+        return self
+
+    def _set_points(self) -> None:
+        """Create the runs, or refuse the study."""
         self._check_axes()
         # Workers may run in another current folder.
         with paths_relative_to(None):
@@ -140,7 +145,13 @@ class Study(FromFile):
             refuse_shared_files(self.points[0].run.outputs or (), of_study=True)
         except ConfigError as error:
             raise error.within("run") from None
-        return self
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with the fields of ``update``, and the runs that these describe."""
+        copy = super().model_copy(update=update, deep=deep)
+        if update:
+            copy._set_points()
+        return copy
 
     @property
     def points(self) -> tuple[Point, ...]:
@@ -179,6 +190,17 @@ class Study(FromFile):
             for point in self.points
             if not any(index for other, index in enumerate(point.position) if other != number)
         ]
+
+    @property
+    def varying(self) -> set[str]:
+        """The dotted paths of numbers of the first run in which others differ, beside the axes."""
+        first = self.points[0].run
+        others = [run for number in range(len(self.dimensions)) for run in self._runs_along(number)]
+        return {
+            path
+            for path, value in constants(first).items()
+            if any(get(run, path) != value for run in others)
+        } - {*self.vary, *itertools.chain.from_iterable(self.zip)}
 
     @classmethod
     def from_mapping(cls, data: Mapping[str, Any]) -> Self:
@@ -273,9 +295,15 @@ class Study(FromFile):
         allowed |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         names = python_names([*self.vary, *itertools.chain.from_iterable(self.zip)])
         reserved = {*FUNCTIONS, *CONSTANTS, *texts, *names.values(), "run", "step", "x", "y"}
+        varying = self.varying if self.derived else set()
         problems: list[Problem] = []
         for name, text in self.derived.items():
             try:
+                if differ := sorted(names_in(text) & varying):
+                    raise ConfigError(
+                        f"{shown(differ[0])} in {shown(text)} is not one number: runs differ in "
+                        f"it; name an axis, or make {differ[0]} one"
+                    )
                 if name in allowed | reserved:
                     raise ConfigError(f"{shown(name)} has a meaning already; give another name")
                 if not name.isidentifier():

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial, reduce
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -25,11 +25,11 @@ from .statistics.profile import (
     estimate_of,
     united,
 )
-from .statistics.rivals import NONE, TENSED, Rival, rivals
+from .statistics.rivals import MARGIN, NONE, TENSED, Rival, rivals
 from .wording import in_words, words
 
-MARGIN = 6.0
-"""Difference of AIC from which one model is preferred: odds of e³, 20 to 1."""
+_OF_PARAMETER = 6.0
+"""Difference of AIC by which an effect must beat its absence: chance alone does so in 0.2 %."""
 _OF_MANY = 12.0
 """Difference of AIC by which the best of many rivals must beat no effect at all."""
 _LIKELIER = 2.0
@@ -115,7 +115,7 @@ class Comparison:
 
         def counts(fit: RivalFit) -> bool:
             if self.verdict == "not shown":
-                return fit.rival.of_shape or fit.aic + MARGIN <= aic[NONE.code]
+                return fit.rival.of_shape or fit.aic + _OF_PARAMETER <= aic[NONE.code]
             single = fit.rival.code.partition("+")[2]
             effects = aic[TENSED.code], aic.get(single, np.inf)
             return not single or fit.aic + _LIKELIER <= min(effects)
@@ -196,8 +196,8 @@ def compare(
 
     def add(rival: Rival, starts: Sequence[Coordinates]) -> None:
         report(rival.words)
-        pair = rival.minimum(chi_squared, starts)
-        if pair is not None:
+        pair, known = rival.minimum(chi_squared, starts), minima.get(rival.code)
+        if pair and (known is None or pair[1].chi_squared < known[1].chi_squared):
             minima[rival.code] = pair
 
     for rival in every:
@@ -205,6 +205,7 @@ def compare(
             add(rival, [without.parameters, best.parameters])
     quiet, failed = _at_its_noise(chi_squared, minima)
     alone = {code: _criterion(chi_squared, pair) for code, pair in minima.items()}
+    singles = {rival.code: rival for rival in every if rival.is_single}
     every_pair = pairs or any(check.of_model for check in failed)
     for rival in every:
         single = rival.code.partition("+")[2]
@@ -215,6 +216,13 @@ def compare(
         if single and (every_pair or leads):
             start = minima.get(single, (NONE, without))[1]
             add(rival, [best.parameters, *_tensed(chi_squared, start)])
+            pair = minima.get(rival.code)
+            # χ² of adhesion jumps as the contact point passes a row, and a search may stop there:
+            # so a pair with next to no tension had beaten the adhesion in it by 15.
+            if pair and single in minima:
+                gain = alone[single] - _criterion(chi_squared, pair)
+                if gain >= _OF_PARAMETER:
+                    add(singles[single], [pair[1].parameters])
     quiet, failed = _at_its_noise(chi_squared, minima)
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
@@ -298,7 +306,7 @@ def _criterion(chi_squared: ChiSquared, pair: tuple[Rival, Minimum]) -> float:
         member.force.size * float(np.log(member.chi_squared(part) * member.noise**2))
         for member, part in parts
     )
-    return misfit + 2 * len(mine.free)
+    return misfit + 2 * _size(rival, mine)
 
 
 def _at_its_noise(
@@ -337,25 +345,25 @@ def _ranked(
         mine = rival.of(chi_squared)
         here = minimum._replace(chi_squared=mine.chi_squared(minimum.parameters))
         rows.append((rival, mine, here))
-    first = min(_aic(mine, minimum) for _, mine, minimum in rows)
+    first = min(start.chi_squared + 2 * _size(rival, mine) for rival, mine, start in rows)
     fits = []
     for rival, mine, start in rows:
-        minimum = start
+        minimum, size = start, _size(rival, mine)
         ends: dict[Parameter, Ends] = {}
         intervals: Intervals = "none"
-        if threshold is not None and _aic(mine, start) - first <= _FAR:
+        if threshold is not None and start.chi_squared + 2 * size - first <= _FAR:
             minimum, ends = rival.intervals(chi_squared, start, threshold, _reported(mine))
             intervals = "profile"
         elif threshold is not None:
             bounds = mine.deviations(start.parameters)
             ends = {p: curvature_interval(p, start, bounds, threshold) for p in _reported(mine)}
             intervals = "curvature"
-        bic = minimum.chi_squared + float(np.log(points)) * len(mine.free)
+        bic = minimum.chi_squared + float(np.log(points)) * size
         fits.append(
             RivalFit(
                 rival,
                 minimum.chi_squared,
-                _aic(mine, minimum),
+                minimum.chi_squared + 2 * size,
                 bic,
                 minimum.parameters,
                 _estimates(mine, minimum, ends),
@@ -367,8 +375,9 @@ def _ranked(
     return sorted(fits, key=lambda fit: fit.aic)
 
 
-def _aic(chi_squared: ChiSquared, minimum: Minimum) -> float:
-    return minimum.chi_squared + 2 * len(chi_squared.free)
+def _size(rival: Rival, chi_squared: ChiSquared) -> int:
+    """Return the number of fitted parameters as criteria count them."""
+    return len(chi_squared.free) + rival.searched
 
 
 def _reported(chi_squared: ChiSquared) -> list[Parameter]:
@@ -388,44 +397,65 @@ def _estimates(
     }
 
 
+class Decision(NamedTuple):
+    """What criteria of explanations say of a tension."""
+
+    verdict: Verdict
+    tensed: str
+    """Name of the best explanation with a tension."""
+    other: str
+    """Name of the best explanation without."""
+    lead: float
+    """AIC of the latter over that of the former."""
+
+
+def decision(aic: Mapping[str, float], *, doubted: bool, margin: float) -> Decision:
+    """Return what Akaike's criteria of explanations, by name, say of a tension.
+
+    ``doubted`` tells whether the best fails a check of its residuals.  Explanations that differ by
+    less than ``margin`` cannot be told apart.
+    """
+    ranked = sorted(aic, key=aic.__getitem__)
+
+    def describes(code: str) -> bool:
+        # A tension beside an effect explains the curves only if neither does as well alone.
+        tension, _, effect = code.partition("+")
+        alone = min(aic[TENSED.code], aic.get(effect, np.inf))
+        return code == TENSED.code or (
+            tension == TENSED.code and alone - aic[code] >= _OF_PARAMETER
+        )
+
+    tensed = next(code for code in ranked if describes(code))
+    other = next(code for code in ranked if code.partition("+")[0] != TENSED.code)
+    lead = aic[other] - aic[tensed]
+    verdict: Verdict = "undecided"
+    if doubted:
+        verdict = "other"
+    elif aic[NONE.code] - aic[tensed] < _OF_PARAMETER:
+        # The best of many rivals beats a clean curve by more than one of them does.
+        verdict = "other" if aic[other] + _OF_MANY <= aic[NONE.code] else "not shown"
+    elif abs(lead) >= margin:
+        verdict = "needed" if lead > 0 else "other"
+    return Decision(verdict, tensed, other, lead)
+
+
 def _judge(
     chi_squared: ChiSquared,
     fits: Sequence[RivalFit],
     failed: Sequence[FailedCheck],
 ) -> Comparison:
     """Return the verdict on ranked explanations."""
-    alone = {fit.rival.code: fit.aic for fit in fits if not fit.rival.has_tension}
-    tensed = next(fit for fit in fits if fit.rival == TENSED)
-    # A tension beside an effect explains the curves only if neither does as well alone.
-    with_tension = next(
-        fit
-        for fit in fits
-        if fit is tensed
-        or (
-            fit.rival.has_tension
-            and min(tensed.aic, alone.get(fit.rival.code.partition("+")[2], np.inf)) - fit.aic
-            >= MARGIN
-        )
-    )
-    without = [fit for fit in fits if not fit.rival.has_tension]
-    none = next(fit for fit in fits if fit.rival == NONE)
-    first = without[0]
-    gain = none.chi_squared - with_tension.chi_squared
-    margin = first.aic - with_tension.aic
-    doubt = doubt_of_tension(failed)
+    by_code = {fit.rival.code: fit for fit in fits}
+    doubted = bool(doubt_of_tension(failed))
+    aic = {code: fit.aic for code, fit in by_code.items()}
+    verdict, tensed_name, other_name, lead = decision(aic, doubted=doubted, margin=MARGIN)
+    with_tension, first = by_code[tensed_name], by_code[other_name]
+    tensed, none = by_code[TENSED.code], by_code[NONE.code]
     curves = "this curve" if isinstance(chi_squared, Likelihood) else "these curves"
     advice = ""
     chosen = None
-    verdict: Verdict
-    if none.aic - with_tension.aic < MARGIN and not doubt:
-        # The best of many rivals beats a clean curve by more than one of them does.
-        is_other = first.aic + _OF_MANY <= none.aic
-        verdict, sentence = "not shown", ""
-        if is_other:
-            chosen = first
-            verdict, sentence = "other", f"{first.rival.words} describes {curves}, without tension"
-    elif doubt:
-        verdict = "other"
+    sentence = ""
+    if doubted:
         chosen = fits[0] if tensed.aic >= MARGIN else None
         sentence = (
             f"no model describes {curves}: that of least AIC is {fits[0].rival.words}, and it "
@@ -433,24 +463,27 @@ def _judge(
         )
         if "adhesion" in {check.code for check in failed}:
             sentence += "; the force dips before contact, which is adhesion"
-    elif margin >= MARGIN:
-        verdict, chosen = "needed", with_tension
+    elif verdict == "needed":
+        chosen = with_tension
+        gain = none.chi_squared - with_tension.chi_squared
         sentence = (
             f"tension is needed (Δχ² = {decimal(gain, 3)}, "
             f"ΔAIC = {decimal(none.aic - with_tension.aic, 3)} against none; "
-            f"ΔAIC = {decimal(margin, 3)} against {first.rival.words}, the best without it)"
+            f"ΔAIC = {decimal(lead, 3)} against {first.rival.words}, the best without it)"
         )
         if with_tension.rival != TENSED:
             beside = with_tension.rival.words.removeprefix("tension and ")
             sentence += f"; beside it there is {beside}"
-    elif margin <= -MARGIN:
-        verdict, chosen = "other", first
-        sentence = (
-            f"{first.rival.words} describes {curves} better than tension "
-            f"(ΔAIC = {decimal(-margin, 3)}), so this is not evidence of a tension"
-        )
-    else:
-        verdict = "undecided"
+    elif verdict == "other":
+        chosen = first
+        sentence = f"{first.rival.words} describes {curves}, without tension"
+        if none.aic - with_tension.aic >= _OF_PARAMETER:
+            sentence = (
+                f"{first.rival.words} describes {curves} better than tension "
+                f"(ΔAIC = {decimal(-lead, 3)}), so this is not evidence of a tension"
+            )
+    elif verdict == "undecided":
+        without = [fit for fit in fits if not fit.rival.has_tension]
         tied = [fit for fit in without if abs(fit.aic - with_tension.aic) < MARGIN]
         names = [
             f"{fit.rival.words} (Δχ² = {decimal(fit.chi_squared - with_tension.chi_squared, 2)})"

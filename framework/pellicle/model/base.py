@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
@@ -24,6 +24,14 @@ class Model(BaseModel):
             super().__init__(**data)
         except ValidationError as error:
             raise ConfigError(problems(type(self), error.errors(), data)) from None
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with the fields of ``update``, which are not validated."""
+        copy = super().model_copy(update=update, deep=deep)
+        # Cached properties are those of the fields before the update.
+        for name in copy.__dict__.keys() - type(self).model_fields.keys():
+            del copy.__dict__[name]
+        return copy
 
     @property
     def described_fields(self) -> Mapping[str, FieldInfo]:

@@ -9,7 +9,7 @@ from typing import Any, Self
 
 import tomli_w
 
-from pellicle.errors import ConfigError
+from pellicle.errors import ConfigError, shown
 
 from .base import Model
 from .input_path import AS_GIVEN, paths_relative_to
@@ -33,6 +33,11 @@ class FromFile(Model):
             return cls.from_mapping(configuration)
         if isinstance(configuration, (str, Path)):
             return cls.from_toml(configuration)
+        if not isinstance(configuration, cls):
+            raise ConfigError(
+                f"{shown(configuration)} is not a {cls.__name__}; give one, a table of its fields "
+                "or the path of a TOML file"
+            )
         return configuration
 
     @classmethod

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from numbers import Integral
 from typing import Any
 
 from pellicle.errors import ConfigError, Problem, shown
@@ -84,7 +85,7 @@ def ranged(
             "need be"
         )
     num, spacing = table["num"], table.get("spacing", "linear")
-    if not isinstance(num, int) or isinstance(num, bool) or not 2 <= num <= _MOST:
+    if not isinstance(num, Integral) or isinstance(num, bool) or not 2 <= int(num) <= _MOST:
         raise ConfigError(
             f"{shown(num)} is not allowed; give a whole number of values, 2 to {_MOST}", "num"
         )
@@ -103,7 +104,7 @@ def ranged(
     log = spacing == "log"
     if log and (start == 0 or stop / start <= 0):
         raise ConfigError('spacing = "log" needs start and stop ≠ 0 of the same sign')
-    values: list[Any] = list(ramp(start, stop, num, log=log))
+    values: list[Any] = list(ramp(start, stop, int(num), log=log))
     whole = all(isinstance(table[end], int) for end in ("start", "stop"))
     if whole and all(value.is_integer() for value in values):
         return tuple(map(int, values))

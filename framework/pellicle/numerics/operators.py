@@ -151,6 +151,14 @@ class Operator:
         """Return the deflection of the spring [m] under pressures whose sum is ``total`` [Pa]."""
         return self._spring_compliance * self.grid.cell_area * total
 
+    def mean_displacement(self, total: float) -> float:
+        """Return the mean displacement [m] of a period under pressures whose sum is ``total`` [Pa].
+
+        The deflection of a spring is not counted. It is 0 on a free boundary, where the surface has
+        no mean plane.
+        """
+        return 0.0
+
     def scaled(self, factor: float) -> Self:
         """Return the operator times ``factor``; it shares all arrays with this one.
 
@@ -176,7 +184,7 @@ class Operator:
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) [m/Pa] of the kernel at q > 0, `scaled` as the operator is."""
-        return np.asarray(self.kernel.compliance(q) * self._factor, dtype=np.float64)
+        return checked_call(self.kernel, "compliance")(q) * self._factor
 
     def parts(self) -> dict[str, object]:
         """Return the attributes by name, to detect changes by comparison."""
@@ -254,6 +262,11 @@ class PeriodicOperator(Operator):
         _refuse_growth(kernel, compliance, float(q.max()))
         self._symbol = _Symbol(symbol)
         self.padded = grid.shape
+
+    def mean_displacement(self, total: float) -> float:
+        """Return G(0) times the mean pressure [m]; see `Operator.mean_displacement`."""
+        mean = float(self._symbol.double[0, 0]) * self._symbol.unit * self._factor
+        return mean * (total / math.prod(self.grid.points))
 
 
 class FreeOperator(Operator):

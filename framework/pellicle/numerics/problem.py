@@ -175,17 +175,22 @@ class Problem:
     def height_scale(self, contact: Mask | Cells, depth: float, total: float) -> float:
         """Return the length [m] to which gaps are compared.
 
-        This is the height range of the indenter in contact or, if it is flat there, its depth. If a
-        flat indenter fills a periodic domain whose mean displacement is 0, both are mere rounding;
-        the length is then the displacement of the most compliant wave under the mean pressure.
-        ``contact`` is a mask or has flat indices, ``depth`` [m] is that of the base and ``total``
-        the sum of all pressures [Pa].
+        This is the height range of the indenter in contact or, if it is flat there, its depth below
+        the mean plane of a period, which a layer much thicker than the period displaces by far more
+        than heights. If a flat indenter fills a period, both are mere rounding; the length is then
+        the displacement of the most compliant wave under the mean pressure. ``contact`` is a mask
+        or has flat indices, ``depth`` [m] is that of the base and ``total`` the sum of all
+        pressures [Pa].
         """
         wave, cells = 0.0, self.profile.size
         number = np.count_nonzero(contact) if contact.dtype == bool else contact.size
-        if number == cells and not self.operator.has_mean_compliance:
+        if number == cells and self.grid.boundary == "periodic":
             wave = self.operator.greatest * total / cells
-        return height_scale(self.heights, contact, depth - self.operator.deflection(total), wave)
+        below = self.operator.mean_displacement(total)
+        if below and self.left is not None:
+            below += float(self.left.mean())
+        below += self.operator.deflection(total)
+        return height_scale(self.heights, contact, depth - below, wave)
 
     def coarsened(self) -> Problem:
         """Return the same problem with half as many cells each way.

@@ -28,6 +28,9 @@ REDUCTIONS: dict[str, Callable[[Any], Any]] = {
 
 FIRST_RUN = "first_run"
 """Attribute of a study's table: the configuration of the first run as JSON in SI."""
+VARYING = "varying"
+"""Attribute of a study's table: as JSON, paths of numbers of the first run that others differ in,
+beside the axes."""
 
 
 def names(data: xr.Dataset) -> dict[str, Any]:
@@ -38,8 +41,11 @@ def names(data: xr.Dataset) -> dict[str, Any]:
     """
     configuration = json.loads(data.attrs.get(FIRST_RUN, data.attrs["configuration"]))
     varied = tuple(f"{name}." for name in data.coords)
+    varying = json.loads(data.attrs.get(VARYING, "[]"))
     fixed = {
-        key: value for key, value in constants(configuration).items() if not key.startswith(varied)
+        key: value
+        for key, value in constants(configuration).items()
+        if not key.startswith(varied) and key not in varying
     }
     numeric = {str(name): data[name] for name in data.variables if data[name].dtype.kind in "iuf"}
     # numpy refuses to subtract bools.

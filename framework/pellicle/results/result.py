@@ -21,7 +21,7 @@ from . import storage
 from .limits import beyond_theory
 from .path import label_of_step, oscillations_of, path_variables
 from .status import Status
-from .variables import FIELDS, REQUIRED, VARIABLES, damage
+from .variables import COORDINATES, FIELDS, REQUIRED, VARIABLES, damage
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -234,12 +234,11 @@ def load(path: str | Path) -> Result:
 
 def _damage(dataset: xr.Dataset) -> str:
     """Return the reason why a dataset is not a result of any version; empty if it is one."""
-    coordinates = "step", "x", "y"
     variables = {name: dataset[name] for name in dataset.variables}
-    if problem := damage(variables, (*coordinates, *REQUIRED)):
+    if problem := damage(variables, (*COORDINATES, *REQUIRED)):
         return problem
-    for name in (*coordinates, *REQUIRED):
-        dims = coordinates if name in FIELDS else (name,) if name in coordinates else ("step",)
+    for name in (*COORDINATES, *REQUIRED):
+        dims = COORDINATES if name in FIELDS else (name,) if name in COORDINATES else ("step",)
         if dataset[name].dims != dims:
             return f"has {name} over {', '.join(map(str, dataset[name].dims)) or 'nothing'}"
     configuration = json.loads(dataset.attrs["configuration"])

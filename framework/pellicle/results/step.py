@@ -122,6 +122,10 @@ class Steps:
         """The scalars of the last step, or None before the first step."""
         return self._scalars[-1] if self._scalars else None
 
+    def numbers(self, name: str) -> list[float]:
+        """Return a scalar of each finished step, in order."""
+        return [float(scalars[name].item()) for scalars in self._scalars]
+
     def field(self, name: str) -> Array:
         """Return a field at the end of each step, in order; (step, nx, ny), a view."""
         if not self._scalars:

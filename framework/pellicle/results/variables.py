@@ -213,6 +213,8 @@ def names_of(*kinds: Kind) -> tuple[str, ...]:
 
 
 FIELDS = names_of("field")
+COORDINATES = ("step", "x", "y")
+"""Names of the coordinates of a result."""
 WALL_PRESSURE = "wall_pressure"
 """The field that a result has beside `FIELDS` if there is an interaction."""
 REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "iterations")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import signal
+import sys
 import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import TracebackType
-from typing import TYPE_CHECKING, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self, TextIO, cast
 
 from pellicle.components import Monitor, Say, Task
 
@@ -273,10 +274,34 @@ def status_line(enabled: bool) -> Iterator[Callable[[str], None]]:
         yield lambda stage: line.update(f"fitting: {stage}")
 
 
+class _Lasting:
+    """A stream on which writing never fails: a log on a full disk must not end a study.
+
+    Of a pipe that nobody reads any more, rich would even end the process.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        with suppress(OSError):
+            self._stream.write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        with suppress(OSError):
+            self._stream.flush()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
 def _stderr() -> rich.console.Console:
     import rich.console
 
-    return rich.console.Console(stderr=True)
+    # Without a standard error, rich writes nowhere.
+    file = cast("TextIO", _Lasting(sys.stderr)) if sys.stderr else None
+    return rich.console.Console(stderr=True, file=file)
 
 
 def _make_bar(console: rich.console.Console) -> rich.progress.Progress | None:

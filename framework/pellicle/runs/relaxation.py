@@ -11,7 +11,7 @@ from typing import Final, Self
 
 import numpy as np
 
-from pellicle.arrays import Array, Mask
+from pellicle.arrays import Array
 from pellicle.checks import errors_attributed_to
 from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel, Setting
 from pellicle.components.calls import branches_of
@@ -129,12 +129,13 @@ def warn_of_relaxation(run: Run) -> None:
         )
 
 
-def least_domain(run: Run, index: int, contact: Mask) -> float:
+def least_domain(run: Run, index: int, largest_area: float) -> float:
     """Return the edge [m] that a domain needs at a step, for what its solid carries outside.
 
-    It is 8 contact radii, and 3 times the length 1/q of the wave for which the skin is as stiff as
-    the solid is after the duration of the run so far: 2τ₀/E* under a tension. It is 0 where there
-    is nothing outside: at the first step, without a skin, and on a periodic boundary.
+    It is 8 radii of the largest contact so far, of ``largest_area`` [m²], since a solid remembers
+    a contact that has shrunk; and 3 times the length 1/q of the wave for which the skin is as stiff
+    as the solid is after the duration of the run so far: 2τ₀/E* under a tension. It is 0 where
+    there is nothing outside: at the first step, without a skin, and on a periodic boundary.
     """
     kernel, branches = run.kernel, branches_of(run.kernel)
     if not index or not branches or run.grid.boundary == "periodic":
@@ -147,7 +148,7 @@ def least_domain(run: Run, index: int, contact: Mask) -> float:
     share = max(_SOFTEST, stiffness_after(branches, elapsed))
     carried = CarriedShare(kernel.scaled(share), solid)
     shortest = 3 / min(run.grid.size)
-    radius = math.sqrt(np.count_nonzero(contact) * run.grid.cell_area / math.pi)
+    radius = math.sqrt(largest_area / math.pi)
     length = 0.0
     if share * carried.compliance(np.array([shortest])).item() < 0.5:
         waves = shortest * np.geomspace(1 / _LONGEST, 1.0, 1 + 20 * round(math.log10(_LONGEST)))

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 STANDARD_OUTPUTS = ("csv", "figures")
 """Types of the outputs of a configuration that names none."""
+# Bytes; most file systems allow 255, and names of temporary files hold that of the host too.
+_LONGEST_STEM = 120
 # Points of a transform from which threads save time.
 _LARGE = 1024**2
 Value = TypeVar("Value")
@@ -160,6 +162,12 @@ def execute(
     return Executed(result, files, resumed)
 
 
+def memory_of(run: Run) -> float:
+    """Return the estimated peak memory of a run [bytes]."""
+    history, sticks = history_arrays(run), run.interaction is not None
+    return memory.estimate(run.grid, len(run.loading.values), run.solver, history, sticks=sticks)
+
+
 def _hand_over(
     step: xr.Dataset, outputs: Sequence[Output], journal: Journal, *, is_new: bool = False
 ) -> None:
@@ -223,8 +231,9 @@ def _as_run(configuration: Run | Mapping[str, Any] | str | Path) -> tuple[Run, s
 
 
 def _file_stem(title: str) -> str:
-    """Return the file name for a title."""
-    return re.sub(r"\W+", "-", title).strip("-").lower() or "run"
+    """Return the file name for a title, cut where it would be too long for a file system."""
+    stem = re.sub(r"\W+", "-", title).lower().encode()[:_LONGEST_STEM].decode(errors="ignore")
+    return stem.strip("-") or "run"
 
 
 def standard_outputs(named: Sequence[Output] | None) -> Sequence[Output]:

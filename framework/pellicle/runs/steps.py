@@ -12,6 +12,7 @@ import numpy as np
 from pellicle.components import Depth, Monitor, Search, Setting
 from pellicle.components.base import words_of_type
 from pellicle.components.calls import (
+    branches_of,
     corrected_area,
     report_of,
     response_of,
@@ -71,7 +72,9 @@ def _solved_step(
     lost = jump_energy(steps.last, step.equilibrium) if setting.law else 0.0
     jumped = step.jumped or lost > 0 or asperity_jumped(setting.state, step.equilibrium)
     in_part = jumped and not step.jumped and bool(step.equilibrium.contact.any())
-    status, message = judge(run, index, step, stiffness, lost if in_part else None)
+    area = np.count_nonzero(step.equilibrium.contact) * run.grid.cell_area
+    largest_area = max([area, *steps.numbers("contact_area")])
+    status, message = judge(run, index, step, stiffness, lost if in_part else None, largest_area)
     report = report_of(prescription, setting, step.equilibrium)
     report |= {v.name: step.missed for v in prescription.variables if v.name not in report}
     areas = {
@@ -97,7 +100,11 @@ def _solved_step(
         "wall_time": time.perf_counter() - started,
     }
     added = (*areas, *map(corrected_fraction, areas), *prescription.variables)
-    return step_dataset(run.grid, index + 1, step.equilibrium, scalars, added)
+    solved = step_dataset(run.grid, index + 1, step.equilibrium, scalars, added)
+    if setting.law and branches_of(run.kernel) and run.loading.durations[index] > 0:
+        # The energy of a solid that has relaxed on its way does not follow from its surface.
+        solved["energy"][:] = np.nan
+    return solved
 
 
 def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Reached:

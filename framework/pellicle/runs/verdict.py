@@ -27,17 +27,23 @@ _STEEPEST = 0.3
 
 
 def judge(
-    run: Run, index: int, step: Reached, stiffness: Stiffness | None, lost: float | None
+    run: Run,
+    index: int,
+    step: Reached,
+    stiffness: Stiffness | None,
+    lost: float | None,
+    largest_area: float,
 ) -> tuple[Status, str]:
     """Return the status of a step, from its measured residuals, and the message to the user.
 
-    ``index`` counts the steps from 0; ``lost`` is the energy [J] that it lost because a part
+    ``index`` counts the steps from 0; ``largest_area`` [m²] is that of the contact in this step and
+    those before; ``lost`` is the energy [J] that it lost because a part
     of the contact jumped, 0 if that is not known; None without a jump.
     """
     verdict = _failure(run, index, step, stiffness)
     if verdict is None and step.search and (step.how != "met" or step.missed > _NEAR):
         verdict = _not_met(step, step.search)
-    verdict = verdict or _caveat(run, index, step.equilibrium)
+    verdict = verdict or _caveat(run, index, step.equilibrium, largest_area)
     if verdict:
         return verdict
     if lost is not None:
@@ -89,14 +95,16 @@ def _failure(
     return None
 
 
-def _caveat(run: Run, index: int, equilibrium: Equilibrium) -> tuple[Status, str] | None:
+def _caveat(
+    run: Run, index: int, equilibrium: Equilibrium, largest_area: float
+) -> tuple[Status, str] | None:
     """Return what limits the accuracy of a solved step; None if nothing does."""
     verdict = _coarse(run, equilibrium)
     if verdict is None and run.interaction:
         verdict = _caveat_of_interaction(run, run.interaction, equilibrium)
     if verdict:
         return verdict
-    needed = least_domain(run, index, equilibrium.contact)
+    needed = least_domain(run, index, largest_area)
     if needed > min(run.grid.size):
         return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
             size=" × ".join(readable(length, "m", DIGITS) for length in run.grid.size),

@@ -14,7 +14,6 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pellicle import memory
 from pellicle.checks import checked_threads, read_only_dataset
 from pellicle.components import Output, Runs, Say
 from pellicle.components.calls import outcomes_of
@@ -29,7 +28,6 @@ from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.lock import locked
 from pellicle.runs.progress import ProgressReporter, StudyProgress
-from pellicle.runs.relaxation import history_arrays
 
 from . import table
 from .summary import caveats, failures, progress_of, run_names
@@ -57,10 +55,7 @@ class RunTask:
     @property
     def memory(self) -> int:
         """Estimated peak memory of the run [bytes]."""
-        run = self.run
-        history, sticks = history_arrays(run), run.interaction is not None
-        needed = memory.estimate(run.grid, self.steps, run.solver, history, sticks=sticks)
-        return int(min(needed, sys.maxsize))
+        return int(min(runner.memory_of(self.run), sys.maxsize))
 
     @property
     def steps(self) -> int:
@@ -292,8 +287,18 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
 
 
 def is_table(path: Path) -> bool:
-    """Return whether a path is the folder of a study, or its table."""
-    return path.name == "study.h5" or (path / "study.h5").is_file()
+    """Return whether a path is the folder of a study, or its table.
+
+    The result of a single run has the name of the table if its run file is called ``study.toml``.
+    """
+    whole = path / "study.h5" if path.is_dir() else path
+    if whole.name != "study.h5" or (path.is_dir() and not whole.is_file()):
+        return False
+    try:
+        storage.attributes(whole)
+    except StorageError:
+        return True
+    return False
 
 
 def _collect(task: RunTask, rows: table.StudyTable) -> int:

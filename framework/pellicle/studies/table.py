@@ -14,7 +14,7 @@ from pellicle.config.provenance import now_with
 from pellicle.config.study import Study
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
-from pellicle.results.derived import FIRST_RUN, derive
+from pellicle.results.derived import FIRST_RUN, VARYING, derive
 from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.results.status import Status
@@ -36,6 +36,7 @@ class StudyTable:
             "title": for_document(study.points[0].run.title),
             "configuration": study.to_json(),
             FIRST_RUN: study.points[0].run.to_json(as_given=True),
+            VARYING: json.dumps(sorted(study.varying)),
             "axes": json.dumps({name: list(axes) for name, axes in study.dimensions.items()}),
             **now_with(point.run for point in study.points),
         }

@@ -40,7 +40,7 @@ _EXAMPLES = {
     "J/m**2": "50 mJ/m^2",
     "N*m": "1 pN*m",
     "Pa/m": "1 kPa/mm",
-    "N": "2 uN",
+    "N": "5 nN",
     "m**2": "0.01 mm**2",
     "m**3": "0.001 mm**3",
     "rad": "70 degree",
@@ -90,7 +90,8 @@ class Quantity:
             raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
         if not self._within(number):
             raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}")
-        return number
+        # Of −0, tables would show the sign, and a run would not be the one of 0.
+        return number + 0.0
 
     def _magnitude(self, value: object) -> float:
         if isinstance(value, Real) and not isinstance(value, bool):

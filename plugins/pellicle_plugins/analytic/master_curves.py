@@ -27,7 +27,7 @@ from numpy.polynomial import chebyshev
 from pellicle.arrays import Array, Mask
 from pellicle.components import ContactRadius, ForceCurve
 
-from .stretched_spline import Interpolant, stretched_spline
+from .stretched_spline import Interpolant, stretched_spline, with_slopes
 
 SCALE = 1e-3
 _PUNCH_RADII: tuple[float, float] = 1e-3, 1e8
@@ -54,26 +54,32 @@ def _one_variable(name: str) -> Interpolant:
 
 
 @cache
-def _sphere_coefficients() -> tuple[float, Any, Any]:
-    """Return the last t, Chebyshev coefficients of values and slopes in δ/R, and d/dt of values."""
-    from scipy.interpolate import make_interp_spline
+def _sphere_coefficients() -> tuple[float, Any]:
+    """Return the last t; Chebyshev coefficients of values, slopes in δ/R and d/dt of values."""
+    from scipy.interpolate import PPoly
 
     nodes = _table()["sphere"]
     t = np.log1p(np.asarray(nodes["x"]) / SCALE)
     values = np.asarray(nodes["coefficients"])
     slopes = 2 * np.asarray(chebyshev.chebder(values, axis=1))
-    both = make_interp_spline(t, np.concatenate([values, slopes], axis=1), 5)
-    return float(t[-1]), both, make_interp_spline(t, values, 5).derivative()
+    both = with_slopes(t, np.concatenate([values, slopes], axis=1))
+    used = 2 * values.shape[1] + slopes.shape[1]
+    return float(t[-1]), PPoly(both.c[..., :used].copy(), both.x)
 
 
 def paraboloid(radius: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a paraboloid of R = ``radius`` [m] at s = ``length`` [m]."""
     touching, d = _touching(depth)
-    x = _ratio(length, np.sqrt(d * radius))
+    return _spread(touching, *_paraboloid(radius, d, length))
+
+
+def _paraboloid(radius: float, d: Array, length: float) -> ForceCurve:
+    """Return P/E* under a paraboloid at depths > 0 [m]."""
+    root = np.sqrt(d * radius)
+    x = _ratio(length, root)
     log, rate = _one_variable("paraboloid")(x)
     force = 4 / 3 * np.sqrt(radius) * d**1.5 * np.exp(log)
-    by_depth = force / d * (1.5 - rate * x / 2)
-    return _spread(touching, force, by_depth, force * rate / np.sqrt(d * radius))
+    return ForceCurve(force, force / d * (1.5 - rate * x / 2), force * rate / root)
 
 
 def cone(half_angle: float, depth: Array, length: float) -> ForceCurve:
@@ -127,18 +133,20 @@ def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
     It is valid up to δ = R; beyond, the contribution of the shape to log P is kept constant.
     """
     touching, d = _touching(depth)
-    flat = paraboloid(radius, d, length)
-    last, spline, slope = _sphere_coefficients()
+    flat = _paraboloid(radius, d, length)
+    last, spline = _sphere_coefficients()
     root = np.sqrt(d * radius)
     x = _ratio(length, root)
     at = np.log1p(x / SCALE)
     inside = np.minimum(at, last)
     ratio = np.minimum(d / radius, 1.0)
-    both, by_t = spline(inside), slope(inside)
-    count = by_t.shape[1]
+    coefficients = spline(inside)
+    count = (coefficients.shape[1] + 1) // 3
+    shapes, by_t = coefficients[:, :count], coefficients[:, -count:]
+    slopes = coefficients[:, count:-count]
     polynomials = chebyshev.chebvander(2 * ratio - 1, count - 1)
-    shape = np.einsum("ij,ij->i", both[:, :count], polynomials)
-    by_ratio = np.einsum("ij,ij->i", both[:, count:], polynomials[:, :-1])
+    shape = np.einsum("ij,ij->i", shapes, polynomials)
+    by_ratio = np.einsum("ij,ij->i", slopes, polynomials[:, :-1])
     by_x = np.where(at < last, np.einsum("ij,ij->i", by_t, polynomials), 0.0) / (x + SCALE)
     factor = np.exp(ratio * shape)
     force = flat.force * factor

@@ -5,6 +5,8 @@ from __future__ import annotations
 from abc import abstractmethod
 from functools import lru_cache
 
+import numpy as np
+
 from pellicle.arrays import Array
 from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceCurve
 from pellicle_plugins.analytic.layer_curves import Layer, Profile, Punch
@@ -21,14 +23,16 @@ class Axisymmetric(Indenter):
 
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
         """Return P/E* and its partial derivatives at depths [m] and s = 2τ₀/E* [m]."""
-        return self._master_curve(depth, length)
+        curve = _kept_curve(self, np.asarray(depth, dtype=float).tobytes(), length)
+        return ForceCurve(*(part.copy() for part in curve))
 
     def contact_radius(self, depth: Array, length: float) -> ContactRadius:
         """Return the contact radius without adhesion at depths > 0 [m], and dk/da over E*.
 
         The stiffness dF/dδ is that of the flat punch of the same radius.
         """
-        return punch_radius(self._master_curve(depth, length).by_depth, length)
+        curve = _kept_curve(self, np.asarray(depth, dtype=float).tobytes(), length)
+        return punch_radius(curve.by_depth, length)
 
     def layer_depth_limit(self, thickness: float, poissons_ratio: float) -> float:
         """Return the depth [m] up to which the force curve holds on a bonded layer."""
@@ -48,6 +52,12 @@ class Axisymmetric(Indenter):
     @abstractmethod
     def _make_layer_curves(self) -> Profile | Punch:
         """Return the curves of the indenter on bonded layers."""
+
+
+# A fit with adhesion asks for the force curve and the contact radius at the same depths.
+@lru_cache(maxsize=1)
+def _kept_curve(indenter: Axisymmetric, depth: bytes, length: float) -> ForceCurve:
+    return indenter._master_curve(np.frombuffer(depth), length)
 
 
 @lru_cache(maxsize=64)

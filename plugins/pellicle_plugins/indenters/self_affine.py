@@ -15,7 +15,7 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Footprint, Indenter
 from pellicle.errors import ConfigError
-from pellicle.units import Length, Quantity
+from pellicle.units import Length, Quantity, readable
 
 from .sampling import UniformAxis
 
@@ -57,8 +57,8 @@ class SelfAffine(Indenter):
     def _ordered(self) -> Self:
         if self.roll_off_wavelength and self.roll_off_wavelength < self.cutoff_wavelength:
             raise ConfigError(
-                f"{self.roll_off_wavelength:g} m is shorter than cutoff_wavelength = "
-                f"{self.cutoff_wavelength:g} m; give a longer one",
+                f"{readable(self.roll_off_wavelength, 'm')} is shorter than cutoff_wavelength = "
+                f"{readable(self.cutoff_wavelength, 'm')}; give a longer one",
                 "roll_off_wavelength",
             )
         return self
@@ -75,8 +75,8 @@ class SelfAffine(Indenter):
         coarsest = max(axis.spacing for axis in axes)
         if 2 * coarsest >= self.cutoff_wavelength * (1 - _ROUNDING):
             raise ConfigError(
-                f"{self.cutoff_wavelength:g} m cannot be resolved by cells of {coarsest:g} m; use "
-                "more grid.points, or a cut-off above two cells",
+                f"{readable(self.cutoff_wavelength, 'm')} cannot be resolved by cells of "
+                f"{readable(coarsest, 'm', 4)}; use more grid.points, or a cut-off above two cells",
                 "cutoff_wavelength",
             )
         series = self._series(axes[0].period, axes[1].period)
@@ -96,8 +96,9 @@ class SelfAffine(Indenter):
         kept = (q >= q_low) & (q <= q_high) & ((n > 0) | (m > 0))
         if not kept.any():
             raise ConfigError(
-                f"no wavelength between {self.cutoff_wavelength:g} m and {longest:g} m fits the "
-                f"domain of {period_x:g} × {period_y:g} m; widen the range or the domain",
+                f"no wavelength between {readable(self.cutoff_wavelength, 'm')} and "
+                f"{readable(longest, 'm', 4)} fits the domain of {readable(period_x, 'm')} × "
+                f"{readable(period_y, 'm')}; widen the range or the domain",
                 "roll_off_wavelength",
             )
         m, n, q = m[kept], n[kept], q[kept]

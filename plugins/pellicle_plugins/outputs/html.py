@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-import re
 import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -17,43 +15,35 @@ from pydantic import Field
 
 from pellicle import Grid, hookimpl
 from pellicle.components import Output, Runs
-from pellicle.config.describe import Input, inputs
+from pellicle.config.describe import inputs
 from pellicle.errors import StorageError
 from pellicle.files import atomic_write
 from pellicle.report.fields import (
     DIVERGING,
     default_step,
     draws_contact,
-    profile,
     without_round_off,
 )
 from pellicle.report.page import (
-    Cell,
     Code,
-    Column,
     Frame,
     Maps,
     Notice,
     Picture,
     Section,
-    Table,
     Text,
     frame,
     page,
     side,
 )
 from pellicle.report.page import Field as MapField
-from pellicle.report.plotting import TIME, drawings, study_curves, study_figures
-from pellicle.report.saving import svg
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN
 from pellicle.results.path import has_interaction, label_of_step, prescribed_variable
 from pellicle.results.result import Result, first_message
-from pellicle.results.shape import means_something
-from pellicle.results.status import Status
 from pellicle.results.variables import FIELDS as RESULT_FIELDS
-from pellicle.results.variables import VARIABLES, WALL_PRESSURE, names_of
-from pellicle.results.wording import Wording, wording, wording_of
+from pellicle.results.variables import WALL_PRESSURE
+from pellicle.results.wording import wording
 from pellicle.studies.summary import (
     caveats,
     failures,
@@ -61,21 +51,25 @@ from pellicle.studies.summary import (
     reasons,
     run_names,
     runs_of,
-    short_files,
 )
-from pellicle.units import DIGITS, readable
 
-from .answer import (
-    answer_of_path,
-    answer_of_step,
-    answer_of_study,
-    methods,
+from .answer import answer_of_path, answer_of_step, answer_of_study
+from .html_curves import curves_of_run, curves_of_study
+from .html_tables import (
+    input_table,
+    inputs_of_study,
+    origin_tables,
+    oscillation_tables,
+    path_tables,
+    run_table,
+    step_tables,
+    study_path_tables,
 )
+from .methods import methods
 from .setup_drawing import description, setup_drawing
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
 FIELDS = {
     "pressure": MapField("contact pressure", "Pa", blank=True),
@@ -88,14 +82,6 @@ _STICKING = {
     "gap": FIELDS["gap"],
 }
 """The variables that are mapped where there is an interaction."""
-_PROFILES = 16
-"""Largest number of load steps whose profile is on the page."""
-_CURVES = {
-    "profile": "Pressure and gap along x through the centre, at {step}.",
-    "force_depth": "Force against depth over the load steps.",
-    "area_force": "Contact area, of the cells and corrected, against force over the load steps.",
-    TIME: "Force, depth and contact area over time.",
-}
 
 
 class Html(Output):
@@ -142,9 +128,12 @@ class Html(Output):
             sections = [
                 Section("In short", [*_answer(result, grid), _status(result), _setup(run)]),
                 Section("Maps", [maps]),
-                Section("Curves", _pictures_of(result, chosen)),
-                Section("Numbers", [*_steps(data), *_path(result), *_oscillations(result)]),
-                Section("Inputs", [_inputs(list(inputs(run)))]),
+                Section("Curves", curves_of_run(result, chosen)),
+                Section(
+                    "Numbers",
+                    [*step_tables(data), *path_tables(result), *oscillation_tables(result)],
+                ),
+                Section("Inputs", [input_table(list(inputs(run)))]),
             ]
             varied: tuple[str, ...] = ()
         else:
@@ -159,13 +148,16 @@ class Html(Output):
                     "In short", [*lead, _status_of_study(table, len(rows)), _setup(run, varied)]
                 ),
                 Section("Maps", _maps_of_runs(table, list(frames.values()), len(rows))),
-                Section("Curves", _pictures_of_study(table)),
-                Section("Numbers", [_runs(table, rows, list(frames)), *_paths(table, rows)]),
-                Section("Inputs", [_inputs(_varied(table, list(inputs(run))))]),
+                Section("Curves", curves_of_study(table)),
+                Section(
+                    "Numbers",
+                    [run_table(table, rows, list(frames)), *study_path_tables(table, rows)],
+                ),
+                Section("Inputs", [input_table(inputs_of_study(table, list(inputs(run))))]),
             ]
         sections += [
             Section("Methods", [Text(methods(run, table.attrs["versions"], varied))]),
-            Section("Provenance", [*_origin(table.attrs, run)]),
+            Section("Provenance", [*origin_tables(table.attrs, run)]),
             Section("How to reproduce it", [*_reproduce(configuration, stem)]),
         ]
         date = table.attrs["date"].replace("T", " ").replace("+00:00", " UTC")
@@ -320,294 +312,6 @@ def _status_of_study(table: xr.Dataset, count: int) -> Notice:
     if not failed:
         return Notice(f"Every step of all {count} runs converged.", not warnings, warnings)
     return Notice(f"{failed[0].upper()}{failed[1:]}.", False, [*reasons(table), *warnings])
-
-
-def _column(variable: xr.DataArray) -> tuple[Column, Wording]:
-    """Return the head of a variable's column, and how its values are shown."""
-    shown = wording(variable)
-    is_text = variable.dtype.kind not in "if"
-    meaning = variable.attrs.get("long_name", "")
-    return Column(shown.words, shown.scale.unit, meaning, is_text), shown
-
-
-def _path(result: Result) -> list[Table]:
-    """Return the numbers of the whole path, where there is an interaction."""
-    rows: list[list[str | Cell]] = [
-        [declared.words, readable(value, declared.unit, DIGITS), declared.meaning]
-        for name, value in result.path_summary.items()
-        if name in names_of("path")
-        for declared in (VARIABLES[name],)
-    ]
-    columns = [Column(head, words=True) for head in ("path", "value", "meaning")]
-    caption = "Events on the path, to a step, and its work."
-    return [Table(caption, columns, rows)] if rows else []
-
-
-def _oscillations(result: Result) -> list[Table]:
-    """Return the numbers of each oscillation, where a leg oscillates."""
-    oscillations, columns, cells = result.oscillations, [], []
-    for name in names_of("oscillation"):
-        values = [getattr(oscillation, name) for oscillation in oscillations]
-        shown = wording_of(name, values)
-        columns.append(Column(shown.words, shown.scale.unit, VARIABLES[name].meaning))
-        cells.append([shown.number(value) for value in values])
-    rows: list[list[str | Cell]] = [list(row) for row in zip(*cells, strict=True)]
-    caption = "Response over the last whole cycle of each oscillation."
-    return [Table(caption, columns, rows)] if rows else []
-
-
-def _paths(table: xr.Dataset, runs: list[xr.Dataset]) -> list[Table]:
-    """Return the numbers of the path of each run, where there is an interaction or oscillation."""
-    names = [
-        str(name)
-        for name, variable in table.data_vars.items()
-        if "step" not in variable.dims and variable.dtype.kind == "f"
-    ]
-    if not names:
-        return []
-    axes = [str(name) for name in table.coords if name != "step"]
-    columns = [(name, *_column(table[name])) for name in (*axes, *names)]
-    rows: list[list[str | Cell]] = [
-        [str(number), *(shown.number(run[name].item()) for name, _, shown in columns)]
-        for number, run in enumerate(runs, start=1)
-    ]
-    heads = [Column("run"), *(column for _, column, _ in columns)]
-    caption = "The path of each run: events, to a step, and work; the last oscillation."
-    return [Table(caption, heads, rows)]
-
-
-def _numbers(data: xr.Dataset) -> list[str]:
-    return [
-        str(name)
-        for name, variable in data.data_vars.items()
-        if "step" in variable.dims and variable.dtype.kind in "if" and "x" not in variable.dims
-    ]
-
-
-def _is_shown(data: xr.Dataset, name: str) -> bool:
-    """Return whether a variable describes the contact, and has finite values.
-
-    Without a finite force the variables of a step stay in the table.
-    """
-    if not means_something(data, name):
-        return False
-    missing = not np.isfinite(data[name].values.astype(float)).any()
-    return not missing or not np.isfinite(data["force"].values).any()
-
-
-def _is_effort(name: str) -> bool:
-    # Prescriptions add residuals of their own.
-    return name in names_of("effort") or name.startswith("residual_")
-
-
-def _steps(data: xr.Dataset) -> list[Table]:
-    """Return the numbers of each load step: the result, the shape of the contact, the effort."""
-    effort = [n for n in _numbers(data) if _is_effort(n)]
-    shape = [n for n in _numbers(data) if n in names_of("contact") and _is_shown(data, n)]
-    measures = [
-        n for n in _numbers(data) if n not in (*effort, *names_of("contact")) and _is_shown(data, n)
-    ]
-    tables = {
-        "Results of each load step.": measures,
-        "Shape of the contact in each load step.": shape,
-        "Residuals and effort of each load step.": effort,
-    }
-    # Files of earlier versions lack the shape.
-    return [_table_of_steps(data, names, caption) for caption, names in tables.items() if names]
-
-
-def _table_of_steps(data: xr.Dataset, names: list[str], caption: str) -> Table:
-    columns, texts = [Column("step")], [list(map(str, data["step"].values))]
-    for name in names:
-        column, shown = _column(data[name])
-        columns.append(column)
-        if name.startswith("residual_"):
-            shown = replace(shown, digits=2)
-        texts.append([shown.number(value) for value in data[name].values.tolist()])
-    rows = [
-        [*cells, _verdict(Status[code].verdict)]
-        for *cells, code in zip(*texts, data["status_code"].values, strict=True)
-    ]
-    return Table(caption, [*columns, Column("status", words=True)], rows)
-
-
-def _verdict(word: str) -> Cell:
-    return Cell(word, bad=word != "converged")
-
-
-def _runs(table: xr.Dataset, runs: list[xr.Dataset], mapped: list[int]) -> Table:
-    """Return a row for each run: its values on the axes, and the numbers of its last step.
-
-    ``mapped`` has the indices of the runs that are mapped, in the order of their maps.
-    """
-    axes = [str(name) for name in table.coords if name != "step"]
-    names = [n for n in _numbers(table) if not _is_effort(n) and _is_shown(table, n)]
-    varied = [_column(table[name]) for name in axes]
-    numbers = [_column(table[name]) for name in names]
-    rows: list[list[str | Cell]] = []
-    for index, (row, file) in enumerate(zip(runs, short_files(table), strict=True)):
-        done, total, word = progress_of(row)
-        point = [
-            shown.number(row[name].item()) for name, (_, shown) in zip(axes, varied, strict=True)
-        ]
-        last = [
-            shown.number(row[name].values[done - 1].item()) if done else ""
-            for name, (_, shown) in zip(names, numbers, strict=True)
-        ]
-        frame_of_run = mapped.index(index) if index in mapped else None
-        run = Cell(str(index + 1), frame=frame_of_run)
-        rows.append([run, *point, f"{done}/{total}", *last, _verdict(word), file])
-    columns = [
-        Column("run", meaning="number of the run, the last axis varying fastest"),
-        *(column for column, _ in varied),
-        Column("steps", meaning="finished load steps, of those planned"),
-        *(column for column, _ in numbers),
-        Column("status", words=True),
-        Column("file", meaning="beginning of the name of its file in the folder runs", words=True),
-    ]
-    caption = "The last load step of each run; a click on a run shows its map."
-    return Table(caption, columns, rows)
-
-
-def _pictures_of(result: Result, chosen: list[int]) -> list[Picture]:
-    """Return the curves of a run, with marks at the ``chosen`` steps, which are mapped."""
-    fills = {name: fill for name, fill in drawings(result).items() if name in _CURVES}
-    several = result.dataset.sizes["step"] > 1
-    marks = partial(_marks, data=result.dataset, chosen=chosen)
-    return [
-        _profiles(result, chosen) if name == "profile" else _picture(fill, _CURVES[name], marks)
-        for name, fill in fills.items()
-        if several or name == "profile"
-    ]
-
-
-def _profiles(result: Result, chosen: list[int]) -> Picture:
-    """Return the profile of a step, and those that take its place while another is mapped.
-
-    Where many steps are mapped, some have the profile of the nearest one, as the caption says.
-    """
-    count = -(-len(chosen) // _PROFILES)
-
-    def picture(index: int) -> Picture:
-        label = label_of_step(result.dataset, index, result.configuration)
-        caption = _CURVES["profile"].format(step=label)
-        return _picture(lambda figure: profile(result, figure.add_subplot(), index), caption)
-
-    # The last step is drawn, and every `count`-th before it.
-    drawn = {index: picture(index) for index in chosen[::-1][::count]}
-    frames = [drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - index))] for index in chosen]
-    shown = default_step(result.dataset) % result.dataset.sizes["step"]
-    first = drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - shown))]
-    return replace(first, by_frame=frames if len(drawn) > 1 else ())
-
-
-def _pictures_of_study(table: xr.Dataset) -> list[Picture]:
-    def fill(variable: str, figure: Figure) -> None:
-        study_curves(table, figure.add_subplot(), variable)
-
-    return [
-        _picture(partial(fill, name), f"{wording(table[name]).words.capitalize()} over the study.")
-        for name in study_figures(table)
-    ]
-
-
-_Marks = list[list[tuple[float, float]]]
-
-
-def _picture(
-    fill: Callable[[Figure], None],
-    caption: str,
-    marked: Callable[[Figure], _Marks] | None = None,
-) -> Picture:
-    """Return a picture, with the marks that ``marked`` returns for the filled figure."""
-    marks: _Marks = []
-
-    def untitled(figure: Figure) -> None:
-        fill(figure)
-        # The page has a title, and a title may be longer than a figure is wide.
-        for axes in figure.axes:
-            axes.set_title("")
-        if marked:
-            marks.extend(marked(figure))
-
-    return Picture(svg(untitled), caption, caption, marks)
-
-
-def _marks(figure: Figure, data: xr.Dataset, chosen: list[int]) -> _Marks:
-    """Return the points of ``chosen`` steps on the curves of a figure, as shares from top left.
-
-    The labels of axes tell which variables they show.
-    """
-    numbers = (data[name] for name in _numbers(data))
-    values = {
-        shown.head: v.values[chosen] * shown.scale.factor
-        for v in numbers
-        for shown in (wording(v),)
-    }
-    across = figure.axes[-1].get_xlabel()
-    marks: _Marks = [[] for _ in chosen]
-    figure.draw_without_rendering()
-    for axes in figure.axes:
-        x, y = values.get(across), values.get(axes.get_ylabel())
-        if x is None or y is None:
-            continue
-        pixels = axes.transData.transform(np.column_stack([x, y]))
-        shares = figure.transFigure.inverted().transform(pixels)
-        for points, (left, bottom) in zip(marks, shares.tolist(), strict=True):
-            if np.isfinite([left, bottom]).all():
-                points.append((left, 1 - bottom))
-    return marks
-
-
-def _inputs(fields: list[Input]) -> Table:
-    columns = [Column(head, words=True) for head in ("of", "input", "value", "meaning")]
-    rows = [
-        [i.part, "type" if i.words == i.part else i.words, _shortened(i.value), i.meaning]
-        for i in fields
-        if i.name != "title" and not i.name.startswith("outputs.")
-    ]
-    return Table("All inputs that determine the result, defaults included.", columns, rows)
-
-
-def _shortened(text: str) -> str:
-    """Return a text with the first eight digits of hashes."""
-    return re.sub(r"\b([0-9a-f]{8})[0-9a-f]{24,}\b", r"\1…", text)
-
-
-def _varied(table: xr.Dataset, fields: list[Input]) -> list[Input]:
-    """Return the inputs of a study: its axes, and the inputs of its first run that do not vary."""
-    axes = [
-        Input(
-            str(name),
-            "study",
-            shown.words,
-            shown.listing(axis.values.tolist()),
-            f"varied, {axis.size} values",
-        )
-        for name, axis in table.coords.items()
-        if name != "step"
-        for shown in (wording(axis),)
-    ]
-    names = tuple(f"{axis.name}." for axis in axes)
-    fixed = [field for field in fields if not f"{field.name}.".startswith(names)]
-    return [*axes, *fixed]
-
-
-def _origin(attributes: dict[str, str], configuration: dict[str, Any]) -> Iterator[Table]:
-    facts = [
-        ("versions", attributes["versions"]),
-        ("date", attributes["date"]),
-        ("identity", _shortened(attributes.get("identity", ""))),
-    ]
-    heads = [Column("what", words=True), Column("value", words=True)]
-    yield Table("Versions, date and identity.", heads, [list(fact) for fact in facts if fact[1]])
-    rows = [
-        [i.words, i.value, i.origin.distribution, i.origin.version, i.origin.entry_point]
-        for i in inputs(configuration)
-        if i.origin
-    ]
-    names = ("used as", "type", "package", "version", "entry point")
-    yield Table("Origin of the components.", [Column(n, words=True) for n in names], rows)
 
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:

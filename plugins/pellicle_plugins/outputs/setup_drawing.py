@@ -9,7 +9,7 @@ from typing import Any
 from pellicle.config.describe import Input, inputs
 from pellicle.files import for_document
 
-from .answer import prescribed_of
+from .methods import prescribed_of
 
 _SURFACE, _BOTTOM, _LEFT, _RIGHT, _CENTRE, _TIP = 120, 215, 20, 500, 260, 142
 _ROUND = f"M 190 50 C 195 110 225 {_TIP} {_CENTRE} {_TIP} S 325 110 330 50 Z"

@@ -19,6 +19,7 @@ class GapVolume(Prescription):
     type: Literal["gap_volume"] = "gap_volume"
     unit: ClassVar[str] = "m**3"
     at_least: ClassVar[float | None] = 0.0
+    is_zero_at_rest: ClassVar[bool] = False
     variables: ClassVar[tuple[Variable, ...]] = (
         Variable("gap_volume", "m3", "volume between surface and indenter within the domain"),
         Variable("residual_gap_volume", "1", "relative error of the gap volume", "residual"),

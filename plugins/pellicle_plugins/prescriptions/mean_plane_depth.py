@@ -20,6 +20,7 @@ class MeanPlaneDepth(Prescription):
 
     type: Literal["mean_plane_depth"] = "mean_plane_depth"
     unit: ClassVar[str] = "m"
+    is_zero_at_rest: ClassVar[bool] = False
     variables: ClassVar[tuple[Variable, ...]] = (
         Variable("mean_plane_depth", "m", "depth of the indenter's mean plane"),
     )

@@ -21,6 +21,7 @@ from pellicle.numerics.solution import Progress, Solution, State, Stop
 from .adhesion import AdhesionSolver
 from .adhesive_response import with_zone
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
+from .few_cells import MOST_CELLS, solved_on_few_cells
 from .nested_grids import coarse_solution, coarser, prolonged
 from .preconditioner import OnContact, Preconditioner
 from .relaxation import relaxed
@@ -44,6 +45,8 @@ _DIVERGED: Final = 0.5
 # A local relaxation is brief if the misclassified cells have fallen to this share: it then only has
 # to sort out the last of them.
 _FEW: Final = 0.1
+# Outer iterations without progress after which contacts of few cells are treated as all others.
+_EXACT_STAGNATION: Final = 5
 # Outer iterations without progress after which the solve is abandoned.
 _STAGNATION: Final = 30
 # Local relaxation is switched off after this many outer iterations without fewer misclassified
@@ -158,6 +161,11 @@ class ActiveSet(ScaledSolver):
     def step(self, problem: Problem, state: _Iterate) -> _Iterate:
         """Return the iterate after one outer iteration."""
         goal = self.tolerance / 2 * state.scale
+        if state.bends and state.progress.stagnant < _EXACT_STAGNATION:
+            pressure = self._solved_on_few_cells(problem, state, goal)
+            if pressure is not None:
+                on_contact = state.on_contact.preconditioner.on(pressure > 0)
+                return _iterate(problem, on_contact, pressure, state.history, state)
         relaxes = state.bends and state.may_relax
         # Loose solves are cheap as long as they leave fewer misclassified cells. With bending
         # stiffness they only prepare a local relaxation.
@@ -192,6 +200,17 @@ class ActiveSet(ScaledSolver):
         # This frees two arrays while the next displacement is computed.
         del inner
         return _iterate(problem, on_contact, trial, history, state)
+
+    def _solved_on_few_cells(
+        self, problem: Problem, state: _Iterate, margin: float
+    ) -> Array | None:
+        """Return the pressure by `solved_on_few_cells`, or None."""
+        on_contact = state.on_contact
+        if on_contact.cells.size > MOST_CELLS:
+            return None
+        gap, _ = problem.gap(state.displacement, on_contact.contact)
+        column = on_contact.preconditioner.column
+        return solved_on_few_cells(problem, column, on_contact.contact, state.trial, gap, margin)
 
     def residual(self, problem: Problem, state: _Iterate) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""

@@ -10,32 +10,20 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Mask
-from pellicle.numerics.sharing import blocks, row_blocks, shared
+from pellicle.numerics.sharing import blocks, shared
 
+from .biharmonic import Sweeps, along, sweeps_near, wrapped
 from .circulant_stiffness import Field
 
 Moments = tuple[Field, ...]
 
 _NEAR: Final = np.float32(0.75)
 _FAR: Final = np.float32(0.25)
-# Index of all cells except those at the ends, by the number of axes.
-_INNER: Final = ((), (slice(1, -1),), (slice(1, -1), slice(1, -1)))
 # Fine cells in a block, few enough for its intermediate arrays to fit in the cache.
 _BLOCK: Final = 2**17
 
 # Order of the stiffness above which the extension must not have kinks.
 _BENDS: Final = 2.5
-_SWEEPS: Final = 16
-# Eigenvalues of Δ² for waves of about nine cells and of two, in units of the cell.
-_SLOWEST, _FASTEST = 0.25, 64.0
-# Roots of the Chebyshev polynomial, used from both ends in turn: in order, round-off would grow.
-_ROOTS: Final = np.cos(np.pi * (np.arange(_SWEEPS) + 0.5) / _SWEEPS)
-# Relaxation factors of the Chebyshev iteration on that range.
-_DAMPINGS: Final = tuple(
-    np.float32(2 / (_FASTEST + _SLOWEST + (_FASTEST - _SLOWEST) * root))
-    for pair in zip(_ROOTS[: _SWEEPS // 2], _ROOTS[::-1], strict=False)
-    for root in pair
-)
 
 
 def bends(order: float) -> bool:
@@ -55,8 +43,8 @@ class Extension:
 
     A bending energy penalises kinks. Where it dominates, a mean is shifted from the centroid of
     the known cells to the centre of its cell, along the slope of the interpolated coarser level,
-    so that E preserves planes; and waves too short for the coarser level are relaxed towards
-    Δ²u = 0.
+    so that E preserves planes; and near the contact waves too short for the coarser level are
+    relaxed towards Δ²u = 0.
 
     The domain is periodic. On a line of cells, as on a grid one cell across, a mean is over two
     cells, and the factor is 2^(α − 1). Single precision is enough for a preconditioner.
@@ -69,7 +57,7 @@ class Extension:
         α at the length scale of each level, the finest first; both edges must be divisible by 2 as
         often as there are levels.
     stretch
-        The aspect ratio of the cells, see `stretch_of`; by default they are square.
+        The aspect ratio of the cells, see `biharmonic.stretch_of`; by default they are square.
     """
 
     def __init__(
@@ -79,9 +67,8 @@ class Extension:
         stretch: tuple[float, float] = (1.0, 1.0),
     ) -> None:
         self.shape = known.shape
-        # A line is squeezed to one axis.
-        self._stretch = stretch
         self._levels: list[_Level] = []
+        # A line is squeezed to one axis.
         weight = np.squeeze(known.astype(np.float32))
         any_bends = any(map(bends, orders))
         moments: Moments | None = None
@@ -91,7 +78,9 @@ class Extension:
             coarse = np.minimum(np.float32(loss) * total, np.float32(1))
             share = np.divide(coarse, total, out=total, where=total > 0)
             shift = moments if bends(order) else None
-            self._levels.append(_Level(1 - weight, share, shift, bends(order)))
+            free = 1 - weight
+            sweeps = sweeps_near(free, stretch) if bends(order) else None
+            self._levels.append(_Level(free, share, shift, sweeps))
             if any_bends:
                 moments = _coarse_moments(weight, moments, share)
             weight = coarse
@@ -108,8 +97,8 @@ class Extension:
         filled = means.pop()
         for level, own in zip(reversed(self._levels), reversed(means), strict=True):
             filled = level.fill(filled, own)
-            for damping in _DAMPINGS if level.relaxes else ():
-                _subtract_biharmonic(filled, filled, damping, self._stretch, level.free)
+            if level.sweeps:
+                level.sweeps.apply(filled)
         return filled.reshape(self.shape)
 
     def apply_transpose(self, values: Field) -> Field:
@@ -119,9 +108,8 @@ class Extension:
         """
         means = [np.squeeze(values)]
         for level in self._levels:
-            for damping in reversed(_DAMPINGS) if level.relaxes else ():
-                free = level.free * means[-1]
-                _subtract_biharmonic(means[-1], free, damping, self._stretch)
+            if level.sweeps:
+                level.sweeps.apply_transpose(means[-1])
             means.append(level.transposed_fill(means[-1]))
         result = means.pop()
         for level, own in zip(reversed(self._levels), reversed(means), strict=True):
@@ -139,7 +127,8 @@ class _Level:
     """Weight of each value in the mean of the coarser level."""
     moments: Moments | None
     """w × centroid of the known cells, in cells from the centre, where means are shifted."""
-    relaxes: bool
+    sweeps: Sweeps | None
+    """Where bending dominates."""
 
     def fill(self, coarse: Field, own: Field) -> Field:
         """Return this level from the coarser one and its own means times their weights.
@@ -227,7 +216,7 @@ def _interpolate(coarse: Field, free: Field, own: Field) -> Field:
 
     The sum is in ``own``.
     """
-    wide = _wrapped(coarse)
+    wide = wrapped(coarse)
 
     def add(rows: slice) -> None:
         block = wide[rows.start : rows.stop + 2]
@@ -269,10 +258,10 @@ def _transposed_interpolate(fine: Field, free: Field) -> Field:
 
 def _refined(wide: Field, axis: int) -> Field:
     """Interpolate to twice as many cells along an axis, without the cells at the ends."""
-    near, far = _NEAR * wide[_along(axis, 1, -1)], _FAR * wide
+    near, far = _NEAR * wide[along(axis, 1, -1)], _FAR * wide
     fine = np.empty([n * (2 if i == axis else 1) for i, n in enumerate(near.shape)], near.dtype)
-    np.add(near, far[_along(axis, 0, -2)], out=fine[_along(axis, 0, None, 2)])
-    np.add(near, far[_along(axis, 2)], out=fine[_along(axis, 1, None, 2)])
+    np.add(near, far[along(axis, 0, -2)], out=fine[along(axis, 0, None, 2)])
+    np.add(near, far[along(axis, 2)], out=fine[along(axis, 1, None, 2)])
     return fine
 
 
@@ -287,81 +276,6 @@ def _transposed_refined(fine: Field) -> Field:
     coarse[:, 1:] += odd[:, :-1]
     coarse[:, 0] += odd[:, -1]
     return coarse
-
-
-def _along(axis: int, start: int, stop: int | None = None, step: int = 1) -> tuple[slice, ...]:
-    """Return the index of a slice along an axis."""
-    return (slice(None),) * axis + (slice(start, stop, step),)
-
-
-def stretch_of(dx: float, dy: float) -> tuple[float, float]:
-    """Return (h/dx)² and (h/dy)², where h makes their sum 2."""
-    ratio = (dx / dy) ** 2
-    return 2 / (1 + ratio), 2 * ratio / (1 + ratio)
-
-
-def _subtract_biharmonic(
-    target: Field,
-    field: Field,
-    damping: np.float32,
-    stretch: tuple[float, float],
-    weight: Field | None = None,
-) -> None:
-    """Subtract ``damping`` × ``weight`` × h⁴ Δ² of ``field`` from ``target``; see `biharmonic`."""
-    wide = _wrapped(field, 2)
-
-    def subtract(rows: slice) -> None:
-        change = _laplacian(_laplacian(wide[rows.start : rows.stop + 4], stretch), stretch)
-        change *= damping
-        if weight is not None:
-            change *= weight[rows]
-        target[rows] -= change
-
-    shared(subtract, row_blocks(field.shape))
-
-
-def biharmonic(field: Field, stretch: tuple[float, float]) -> Field:
-    """Return h⁴ Δ² of a periodic field; its eigenvalues are at most 64.
-
-    ``stretch`` is that of the cells, see `stretch_of`; h is the edge of square cells.
-    """
-    return _laplacian(_laplacian(_wrapped(field, 2), stretch), stretch)
-
-
-def _laplacian(wide: Field, stretch: tuple[float, float]) -> Field:
-    """Return h² Δ without the cells at the ends of each axis."""
-    inner = wide[_INNER[wide.ndim]]
-    if wide.ndim == 1:
-        change = np.float32(-2) * inner
-        change += wide[:-2]
-        change += wide[2:]
-        return change
-    x, y = stretch
-    change = np.float32(-4 / x) * inner
-    change += wide[:-2, 1:-1]
-    change += wide[2:, 1:-1]
-    if x != y:
-        change *= np.float32(x / y)
-    change += wide[1:-1, :-2]
-    change += wide[1:-1, 2:]
-    if y != 1:
-        change *= np.float32(y)
-    return change
-
-
-def _wrapped(field: Field, width: int = 1) -> Field:
-    """Return a periodic field padded by ``width`` cells at both ends of each axis."""
-    wide = np.empty([n + 2 * width for n in field.shape], field.dtype)
-    inner = wide[width:-width] if field.ndim == 1 else wide[width:-width, width:-width]
-
-    def copy(rows: slice) -> None:
-        inner[rows] = field[rows]
-
-    shared(copy, row_blocks(field.shape))
-    for axis in range(field.ndim):
-        wide[_along(axis, 0, width)] = wide[_along(axis, -2 * width, -width)]
-        wide[_along(axis, -width)] = wide[_along(axis, width, 2 * width)]
-    return wide
 
 
 def _blocks(shape: Sequence[int]) -> list[slice]:

@@ -13,8 +13,9 @@ from pellicle.arrays import Array, Cells, Mask
 from pellicle.grid import Grid
 from pellicle.numerics.operators import Operator
 
+from .biharmonic import stretch_of
 from .circulant_stiffness import Field, Stiffness
-from .multilevel_extension import Extension, bends, stretch_of
+from .multilevel_extension import Extension, bends
 
 # Without a margin, contact at the edge of a free domain couples to the opposite edge.
 _FREE_MARGIN: Final = 1.25
@@ -61,6 +62,13 @@ class Preconditioner:
     def grid_stiffness(self) -> Stiffness:
         """K on the grid itself, as if the grid were periodic; see `relaxed`."""
         return self._stiffness if self._plane == self._shape else self.stiffness(self._shape)
+
+    @cached_property
+    def column(self) -> Array:
+        """Displacement [m] of all cells under 1 Pa on the first one: one operator application."""
+        unit = np.zeros(self._shape)
+        unit[0, 0] = 1
+        return self._operator(unit)
 
     def stiffness(self, shape: tuple[int, int]) -> Stiffness:
         """Return K on a periodic plane of as many cells of the grid's size."""

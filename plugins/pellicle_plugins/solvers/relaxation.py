@@ -16,8 +16,8 @@ from .circulant_stiffness import Field, Stiffness
 from .contact_cg import InnerSolution
 from .preconditioner import OnContact
 
-# Enough steps to relax waves of up to about twenty cells; inner solves relax longer waves.
-_STEPS: Final = 160
+# Enough steps to relax waves of up to about fourteen cells; inner solves relax longer waves.
+_STEPS: Final = 80
 # Cells around the contact beyond which the relaxation does not reach in that many steps; with 32
 # instead, some contacts take four outer iterations more.
 _MARGIN: Final = 48

@@ -173,6 +173,34 @@ KERNELS = {
 }
 
 
+class Transposed(Kernel):
+    """Returns its values the other way round, which shows where q has two dimensions only."""
+
+    def compliance(self, q: Any) -> Any:
+        """Return the compliance transposed."""
+        return super().compliance(q).T
+
+
+class Listed(Kernel):
+    """Returns a list."""
+
+    def compliance(self, q: Any) -> Any:
+        """Return the compliance as a list."""
+        return super().compliance(q).tolist()
+
+
+def test_the_solver_is_not_blamed_for_a_kernel() -> None:
+    """What the preconditioner asks a kernel for is checked as what the operator asks for."""
+    grid = pl.Grid(**GRID, boundary="periodic")
+    with pytest.raises(pl.PluginError, match=r"^kernel 'liar': compliance\(q\) returned an array"):
+        run(kernel=Transposed(reduced_modulus=1e4), grid=grid)
+    array, listed = (
+        run(kernel=kind(reduced_modulus=1e4), grid=grid, loading={"depth": "2 um"})
+        for kind in (Kernel, Listed)
+    )
+    assert array.dataset["force"].item() == listed.dataset["force"].item() > 0
+
+
 @pytest.mark.parametrize(
     ("lie", "boundary"), [(lie, b) for lie, (boundaries, _) in KERNELS.items() for b in boundaries]
 )

@@ -26,8 +26,7 @@ def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Result
     return call
 
 
-@pytest.fixture
-def no_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
+def skip_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let fits of this process skip rivals: most of their time, and tested elsewhere."""
 
     def skipped(*arguments: Any, **options: Any) -> None:
@@ -35,3 +34,9 @@ def no_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
 
     for module in ("fit", "pooled"):
         monkeypatch.setattr(f"pellicle.fitting.{module}.compare", skipped)
+
+
+@pytest.fixture
+def no_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let fits of a test skip rivals."""
+    skip_rivals(monkeypatch)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from fit_rivals import pink_noise
 
+import pellicle as pl
 from pellicle.fitting.statistics.long_memory import differenced, exponent_of
 
 
@@ -43,3 +44,23 @@ def test_other_noise_has_no_exponent(size: float) -> None:
     assert exponent_of(white + 2 * size * np.sin(np.arange(300) / 3)) == 0
     assert exponent_of(white[:50].cumsum()) == 0
     assert exponent_of(np.zeros(300)) == 0
+
+
+def test_a_bent_baseline_is_not_the_noise_of_the_contact() -> None:
+    """A wandering baseline, and steps in contact: differences left a modulus 170 times too high."""
+    random = np.random.default_rng(0)
+    depth, radius, modulus = np.linspace(-0.4e-6, 0.4e-6, 400), 5e-6, 6e3
+    top = 4 / 3 * modulus * np.sqrt(radius) * 0.4e-6**1.5
+    share = np.maximum(depth / 0.4e-6, 0.0)
+    steps = 0.15 * share * np.sign(np.sin(120 * depth / 0.4e-6))
+    wander = 1e-3 * random.standard_normal(400).cumsum()
+    fit = pl.fit(
+        depth,
+        top * (share**1.5 + steps + wander),
+        indenter="paraboloid",
+        radius=radius,
+        baseline="offset",
+        fix={"tension": 0},
+    )
+    assert fit.reduced_modulus.value == pytest.approx(modulus, rel=0.1)
+    assert "misfit" in {check.code for check in fit.failed_checks}

@@ -24,6 +24,7 @@ from pellicle.errors import ConfigError
 from pellicle.fitting.curves.curve import Axis
 from pellicle.fitting.population.images import force_maps
 from tests.framework.fitting import instruments
+from tests.framework.fitting.conftest import skip_rivals
 from tests.framework.fitting.test_many import curve, save
 from tests.framework.fitting.test_population import row
 from tests.plugins.outputs.test_contact import decoded
@@ -41,7 +42,9 @@ def mapped(tmp_path_factory: pytest.TempPathFactory) -> Path:
     nothing = curves[EMPTY].force[:0]
     curves[EMPTY] = replace(curves[EMPTY], force=nothing, height=nothing)
     instruments.jpk(folder / "cell.jpk-force-map", *curves)
-    pl.fit_map(folder / "cell.jpk-force-map", directory=folder / "out", **OPTIONS)
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        skip_rivals(monkeypatch)
+        pl.fit_map(folder / "cell.jpk-force-map", directory=folder / "out", **OPTIONS)
     return folder
 
 

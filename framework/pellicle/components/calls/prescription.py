@@ -10,6 +10,7 @@ from pellicle.checks import component_name, errors_attributed_to, real_number
 from pellicle.components.prescription import Prescription, Search, Setting
 from pellicle.errors import ConfigError, PluginError, shown
 from pellicle.numerics.problem import Depth, Equilibrium, Force
+from pellicle.results.variables import COORDINATES, VARIABLES
 
 
 def check_value(prescription: Prescription, setting: Setting, value: float, field: str) -> None:
@@ -21,13 +22,29 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
     ------
     ConfigError
         The value is not allowed in this setting.
+    PluginError
+        A variable that the prescription adds has the name of another, or no name.
     """
+    _check_names(prescription)
     try:
         with errors_attributed_to(prescription):
             prescription.check(setting, value)
     except ConfigError as error:
         named = any(problem.field for problem in error.problems)
         raise (error if named else error.within(field)) from None
+
+
+def _check_names(prescription: Prescription) -> None:
+    """Refuse variables that would replace others of a result, or have no name in Python."""
+    reserved = {*VARIABLES, *COORDINATES}
+    for variable in prescription.variables:
+        name = variable.name
+        if name in reserved or not name.isidentifier():
+            reason = "the name of another variable" if name in reserved else "not a name"
+            raise PluginError(
+                f"{component_name(prescription)}: variables has {shown(name)}, which is {reason}; "
+                "choose one of letters, digits and _ that no result has yet"
+            )
 
 
 def target_of(prescription: Prescription, setting: Setting, value: float) -> Depth | Force | Search:

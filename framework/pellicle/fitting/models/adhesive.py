@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -50,6 +50,21 @@ class _Branch(NamedTuple):
     """Derivatives of position and force by E*, τ₀ and w, without adhesion the same depth."""
 
 
+class _Curve(NamedTuple):
+    """Interpolated branch, over the root of the base position beyond its end."""
+
+    end: float
+    """Base position over the contact point at which the branch ends [m]."""
+    end_by: tuple[float, ...]
+    """Its derivatives by E*, τ₀ and w."""
+    root_limit: float
+    """Root of the last position over the end [m^½]."""
+    steepness: float
+    """Slope of the force below the end [N/m]."""
+    spline: CubicSpline
+    """Force, and derivatives of position and force by E*, τ₀ and w."""
+
+
 @dataclass(frozen=True, eq=False)
 class AdhesiveModel:
     """Adhesive contact on its stable branch, which a cantilever ends where dF/dδ = −k.
@@ -71,6 +86,9 @@ class AdhesiveModel:
     ended: Mask | None = None
     """Rows that lie below the end of the branch, of shape (n,); None if a contact may break early,
     as one that jumps does."""
+    reach: float | None = None
+    """Base position over the contact point [m] up to which the branch is computed, if it is not
+    that of the deepest row: one branch then serves many contact points."""
     parameters: ClassVar[tuple[Parameter, ...]] = (MODULUS, TENSION, WORK_OF_ADHESION)
     coarse: ClassVar[None] = None
     is_sudden: ClassVar[bool] = True
@@ -97,40 +115,30 @@ class AdhesiveModel:
 
     def force(self, depth: Array, values: Values) -> ModelForce:
         """Return force and derivatives at base positions over the contact point [m]."""
-        branch = self._stable(values, float(depth.max()))
-        end = float(branch.position[0])
-        root = np.sqrt(np.maximum(branch.position - end, 0.0))
-        highest = np.maximum.accumulate(root)
-        keep = np.concatenate([[True], root[1:] > highest[:-1]])
-        columns = [branch.force, *(part for pair in branch.by_parameter for part in pair)]
-        spline = CubicSpline(root[keep], np.column_stack(columns)[keep])
-        beyond = depth - end
-        at = np.sqrt(np.clip(beyond, 0.0, float(root[-1]) ** 2))
-        force, *changes = spline(at).T
-        # Below the last equilibrium it goes on steeply, so that rows in contact pull it along.
-        steepest = _PENALTY * float(np.ptp(branch.force)) / float(np.ptp(branch.position))
-        least = 1e-9 * float(root[-1])
-        rate = np.where(beyond > 0, spline(at, 1)[:, 0] / (2 * np.maximum(at, least)), steepest)
-        rate = np.minimum(rate, 1e3 * steepest)
-        force = force + np.where(beyond > 0, 0.0, steepest * beyond)
+        deepest = float(depth.max()) if self.reach is None else self.reach
+        curve = _curve(self, tuple(values[p] for p in self.parameters), deepest)
+        beyond = depth - curve.end
         touches = np.where(self.moves_out, beyond >= 0, depth > 0)
         contact = np.where(self.attached == 0, touches, self.attached > 0)
-        by_parameter = {
-            p: np.where(contact, changes[2 * i + 1] - rate * changes[2 * i], 0.0)
-            for i, p in enumerate(self.parameters)
-        }
-        force, rate = np.where(contact, force, 0.0), np.where(contact, rate, 0.0)
+        at = np.sqrt(np.clip(beyond, 0.0, curve.root_limit**2))
+        force, *changes = curve.spline(at).T
+        rate = curve.spline(at, 1)[:, 0] / (2 * np.maximum(at, 1e-9 * curve.root_limit))
+        rate = np.where(contact & (beyond > 0), np.minimum(rate, 1e3 * curve.steepness), 0.0)
+        force = np.where(contact, force, 0.0)
+        # Below its end the branch goes on steeply, so that rows in contact pull it along, and rows
+        # that have no contact push it above them.
+        steepness = np.where(contact & (beyond <= 0), curve.steepness, 0.0)
         if self.ended is not None:
-            # A row that has no contact pushes the end of the branch above it.
-            passed = self.ended & (beyond > 0)
-            barrier = steepest * _BARRIER / _PENALTY
-            force, rate = (
-                np.where(passed, -barrier * beyond, force),
-                np.where(passed, -barrier, rate),
+            steepness = np.where(
+                self.ended & (beyond > 0), -curve.steepness * _BARRIER / _PENALTY, steepness
             )
-            for p, (end_by, _) in zip(self.parameters, branch.by_parameter, strict=True):
-                by_parameter[p] = np.where(passed, barrier * end_by[0], by_parameter[p])
-        return ModelForce(force, rate, by_parameter)
+        by_parameter = {
+            p: np.where(contact, force_by - rate * position_by, 0.0) - steepness * end_by
+            for p, position_by, force_by, end_by in zip(
+                self.parameters, changes[::2], changes[1::2], curve.end_by, strict=True
+            )
+        }
+        return ModelForce(force + steepness * beyond, rate + steepness, by_parameter)
 
     def end(self, values: Values, deepest: float) -> float:
         """Return the base position over the contact point [m] at which the contact breaks."""
@@ -234,6 +242,24 @@ class AdhesiveModel:
     def description(self) -> dict[str, Any]:
         """Return the indenter and the adhesion as JSON data."""
         return self.elastic.description() | {"adhesion": "equilibrium"}
+
+
+@lru_cache(maxsize=16)
+def _curve(model: AdhesiveModel, values: tuple[float, ...], deepest: float) -> _Curve:
+    """Return the stable branch up to a base position [m], at values of the model's parameters."""
+    branch = model._stable(dict(zip(model.parameters, values, strict=True)), deepest)
+    end = float(branch.position[0])
+    root = np.sqrt(np.maximum(branch.position - end, 0.0))
+    highest = np.maximum.accumulate(root)
+    keep = np.concatenate([[True], root[1:] > highest[:-1]])
+    columns = [branch.force, *(part for pair in branch.by_parameter for part in pair)]
+    return _Curve(
+        end,
+        tuple(float(position_by[0]) for position_by, _ in branch.by_parameter),
+        float(root[-1]),
+        _PENALTY * float(np.ptp(branch.force)) / float(np.ptp(branch.position)),
+        CubicSpline(root[keep], np.column_stack(columns)[keep]),
+    )
 
 
 def attachment(base: Array, force: Array, moves_out: Mask) -> Array:

@@ -17,13 +17,15 @@ from pellicle.units import decimal, readable
 
 from .likelihood import ChiSquared, Likelihood
 from .pooled_likelihood import Pool
-from .rivals import Rival
+from .rivals import MARGIN, Rival
 
 _ROWS = 150
 """Rows of a pass in a forecast."""
-_NEEDED = 21.0
-"""Expected Δχ² from which a measurement tells two models apart in 95 % of cases: the difference of
-two misfits is normal about this with twice its root as deviation, and must exceed 6."""
+_SURE = 1.645
+"""Standard deviations that a normal number exceeds in 5 % of cases."""
+_NEEDED = float((_SURE + np.sqrt(_SURE**2 + MARGIN)) ** 2)
+"""Expected Δχ² S from which a measurement tells two models apart in 95 % of cases: the difference
+of two misfits is normal about S with deviation 2√S, and must exceed the margin."""
 _USELESS = 1.0
 """Expected Δχ² below which a measurement is not proposed."""
 _DEEPEST = 0.5

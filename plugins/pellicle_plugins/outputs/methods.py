@@ -1,0 +1,108 @@
+"""How a result was computed, as a paragraph for the methods section of a paper."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, cast
+
+from pellicle.components import Prescription
+from pellicle.config.describe import Input, inputs
+from pellicle.config.loading import prescribed_in
+from pellicle.errors import ConfigError
+from pellicle.loading import OPTIONS
+from pellicle.model.legs import number_of_steps
+from pellicle.plugins import registry
+from pellicle.results.variables import words_of_name
+from pellicle.units import DIGITS, axis_unit, readable
+from pellicle.version import CITATION
+
+_FEW = 5
+"""Number of load steps up to which their values are listed."""
+
+
+def prescribed_of(configuration: Mapping[str, Any]) -> str:
+    """Return the name of what the load steps of a run prescribe; empty if it is not installed."""
+    loading = {k: v for k, v in configuration["loading"].items() if k not in OPTIONS}
+    try:
+        return prescribed_in(loading)
+    except ConfigError:
+        return ""
+
+
+def methods(configuration: Mapping[str, Any], versions: str, varied: tuple[str, ...] = ()) -> str:
+    """Return a paragraph for the methods section of a paper.
+
+    Values at the dotted paths ``varied`` differ between the runs of a study.
+    """
+    known = {i.name: i for i in inputs(configuration)}
+    grid = configuration["grid"]
+    points = " × ".join(str(n) for n in grid["points"])
+    size = " × ".join(readable(edge, "m", DIGITS) for edge in grid["size"])
+    parts = {
+        name: known[name].value
+        for name in ("kernel", "indenter", "interaction", "solver")
+        if name in known and f"{name}.type" not in varied
+    }
+    values = {
+        name: ", ".join(
+            f"{i.words} {i.value}"
+            for i in known.values()
+            if i.name.startswith(f"{name}.")
+            and i.value not in ("", "false", "False")
+            and not any(f"{i.name}.".startswith(f"{axis}.") for axis in varied)
+        )
+        for name in ("kernel", "indenter", "interaction")
+    }
+    described = [
+        f"{name}: {value}{f' ({values[name]})' if values[name] else ''}"
+        for name, value in parts.items()
+        if name in values
+    ]
+    words = [known[name].words if name in known else name for name in varied]
+    changes = f"Varied: {', '.join(words)}. " if words else ""
+    tolerance = configuration["solver"].get("tolerance")
+    ending = f", to a relative tolerance of {tolerance:g}" if tolerance is not None else ""
+    solver = parts.get("solver", "several solvers")
+    domain = "" if any(axis.startswith("grid") for axis in varied) else f" of {size}"
+    cells = "" if any(axis.startswith("grid") for axis in varied) else f" on {points} cells"
+    return (
+        "Normal contact of a rigid indenter with a linear solid was solved by a boundary element "
+        f"method with fast Fourier transforms{cells}{domain} with {grid['boundary']} boundaries. "
+        f"{'; '.join(described)[:1].upper()}{'; '.join(described)[1:]}. "
+        f"{_loading(configuration, known, varied)}{changes}Solver: {solver}{ending}. "
+        f"Computed with {versions}. To cite: {CITATION}."
+    )
+
+
+def _loading(
+    configuration: Mapping[str, Any], known: Mapping[str, Input], varied: tuple[str, ...]
+) -> str:
+    """Return a sentence on what the load steps prescribe; empty if that is not installed."""
+    name = prescribed_of(configuration)
+    if not name:
+        return ""
+    loading, texts = configuration["loading"], [words_of_name(name)]
+    if not any(axis.startswith(f"loading.{name}") for axis in varied):
+        prescription = cast(type[Prescription], registry().find("prescription", name))
+        texts[0] += f" {_values_of_steps(loading[name], prescription.unit)}"
+    texts += [
+        f"{known[path].words} {known[path].value}"
+        for key in loading
+        for path in (f"loading.{key}",)
+        if key not in OPTIONS and path in known and key != name and path not in varied
+    ]
+    return f"Prescribed: {', '.join(texts)}. "
+
+
+def _values_of_steps(values: Sequence[Any], unit: str) -> str:
+    """Return the values of load steps as words, such as "from 1 to 5 nN in 12 load steps"."""
+    count = f"{number_of_steps(values)} load steps"
+    if any(isinstance(value, Mapping) for value in values):
+        return f"in {len(values)} legs of {count} in all"
+    if len(values) <= _FEW:
+        return readable(values, unit, DIGITS)
+    scale = axis_unit(values, unit)
+    first, last = values[0], values[-1]
+    furthest = max(values, key=lambda value: abs(value - first))
+    ends = f"from {scale.number(first)} to {scale.text(furthest if last == first else last)}"
+    return f"{ends}{' and back' * (last == first)} in {count}"
