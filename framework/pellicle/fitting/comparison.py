@@ -219,10 +219,8 @@ def compare(
             pair = minima.get(rival.code)
             # χ² of adhesion jumps as the contact point passes a row, and a search may stop there:
             # so a pair with next to no tension had beaten the adhesion in it by 15.
-            if pair and single in minima:
-                gain = alone[single] - _criterion(chi_squared, pair)
-                if gain >= _OF_PARAMETER:
-                    add(singles[single], [pair[1].parameters])
+            if pair and single in minima and _criterion(chi_squared, pair) < alone[single]:
+                add(singles[single], [pair[1].parameters])
     quiet, failed = _at_its_noise(chi_squared, minima)
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)

@@ -21,8 +21,11 @@ from .multilevel_extension import Extension, bends
 _FREE_MARGIN: Final = 1.25
 # Width across a line of cells, over their length along it, above which strain is plane.
 _SLENDER: Final = 8
-# The extension's plane is rounded up to a size that can be halved this many times.
+# The extension's plane is rounded up to a size that can be halved this many times, and on grids of
+# 4096 cells and more as often as leaves _COARSEST cells; six halvings took 29 applications there in
+# place of 23, and 44 at 8192, as waves between distant contacts were not extended.
 _HALVINGS: Final = 6
+_COARSEST: Final = 32
 
 
 class Preconditioner:
@@ -50,7 +53,7 @@ class Preconditioner:
         # A plate bends all the way from one contact to the next. On other surfaces, and near the
         # edge of a free domain, an extension by 0 far from all contact is better.
         all_levels = self.bends and grid.boundary == "periodic"
-        self._orders = orders[: levels if all_levels else min(levels, _HALVINGS)]
+        self._orders = orders[: levels if all_levels else min(levels, _halvings(grid.shape))]
         self._stretch = stretch_of(*edges(grid))
 
     @property
@@ -187,7 +190,7 @@ class OnContact:
 
 def _free_shape(grid: Grid) -> tuple[int, int]:
     """Return the shape of the plane of E on a free boundary, including a margin."""
-    multiple = 2**_HALVINGS
+    multiple = 2 ** _halvings(grid.shape)
     lengths = grid.spacing
     nx, ny = (
         1
@@ -198,10 +201,16 @@ def _free_shape(grid: Grid) -> tuple[int, int]:
     return nx, ny
 
 
+def _halvings(shape: tuple[int, int]) -> int:
+    """Return how often the plane of the extension of a grid is to be halved."""
+    fewest = min((n for n in shape if n > 1), default=1)
+    return max(_HALVINGS, (fewest // _COARSEST).bit_length() - 1)
+
+
 def _round_up(shape: tuple[int, int]) -> tuple[int, int]:
     """Return the shape with axes of more than one cell rounded up to multiples of a power of 2."""
     fewest = min((n for n in shape if n > 1), default=1)
-    multiple = 2 ** min(_HALVINGS, max(0, fewest.bit_length() - 2))
+    multiple = 2 ** min(_halvings(shape), max(0, fewest.bit_length() - 2))
     nx, ny = (-(-n // multiple) * multiple if n > 1 else 1 for n in shape)
     return nx, ny
 

@@ -188,6 +188,9 @@ def test_poissons_ratio_is_the_kernels() -> None:
     assert solid(skin, 0.3).kernel.substrate.poissons_ratio == 0.3  # type: ignore[attr-defined]
     own = {"type": "coated", "substrate": LAYER | {"poissons_ratio": 0.4}}
     assert solid(own).poissons_ratio == 0.4
+    assert solid(own, 0.4).poissons_ratio == 0.4
+    with pytest.raises(pl.ConfigError, match=r"kernel\.substrate\.poissons_ratio: is 0\.4, and "):
+        solid(own, 0.5)
     assert solid("tensed_membrane", 0.2).poissons_ratio == 0.2
 
 

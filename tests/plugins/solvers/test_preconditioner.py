@@ -13,7 +13,12 @@ from pellicle.operators import make_operator
 from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.kernels.half_space import HalfSpace
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
-from pellicle_plugins.solvers.preconditioner import Preconditioner
+from pellicle_plugins.solvers.preconditioner import (
+    Preconditioner,
+    _free_shape,
+    _halvings,
+    _round_up,
+)
 
 Array = NDArray[np.float64]
 SHAPE = (20, 24)
@@ -88,3 +93,15 @@ def test_pressure_of_cells_that_leave(kernel: str, share: float) -> None:
     pressure = exact(before)
     moved = Preconditioner(operator).on(stay).transferred(pressure)
     assert error(moved) < share * error(np.where(stay, pressure, 0.0))
+
+
+def test_large_grids_are_halved_to_as_many_cells() -> None:
+    """From 4096 cells on the coarsest plane has 32 or more each way."""
+    for points, halvings in ((64, 6), (2048, 6), (4095, 6), (4096, 7), (8192, 8), (10000, 8)):
+        assert _halvings((points, points)) == halvings
+        plane = _round_up((points, points))
+        assert plane[0] == plane[1] >= points
+        assert plane[0] % 2 ** min(halvings, points.bit_length() - 2) == 0
+        assert plane[0] < points + 2**halvings
+    assert _halvings((4096, 8)) == 6
+    assert _free_shape(Grid(points=4096, size=1.0, boundary="free")) == (5120, 5120)

@@ -51,8 +51,8 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
     Raises
     ------
     ConfigError, PluginError
-        The kernel is not valid, has no field for the reduced modulus or the tension, or has a value
-        for one of them.
+        The kernel is not valid, has no field for the reduced modulus or the tension, has a value
+        for one of them, or another Poisson's ratio.
     """
     table: Any = {"type": spec} if isinstance(spec, str) else dict(spec)
     try:
@@ -68,6 +68,12 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
         if ratio is None and poissons_ratio is not None and info.is_required():
             ratio, table = poissons_ratio, replaced(table, path, poissons_ratio)
         kernel = registry().make(Kernel, replaced(replaced(table, modulus, 1.0), tension, 0.0))
+        own = get(kernel.model_dump(), path)
+        if None not in (own, poissons_ratio) and own != poissons_ratio:
+            raise ConfigError(
+                f"is {own:g}, and poissons_ratio of the fit is {poissons_ratio:g}; give it once",
+                path,
+            )
     except ConfigError as error:
         raise error.within("kernel") from None
     return Solid(kernel, modulus, tension, poissons_ratio if ratio is None else ratio)
