@@ -55,6 +55,25 @@ def read_text(path: Path) -> str:
     return text
 
 
+def is_file(path: Path) -> bool:
+    """Return whether a path is a file; not so if it cannot be asked, as in a closed folder.
+
+    The method of `Path` raises then, before Python 3.14.
+    """
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
+
+def is_folder(path: Path) -> bool:
+    """Return whether a path is a folder; see `is_file`."""
+    try:
+        return path.is_dir()
+    except OSError:
+        return False
+
+
 def check_writable(path: Path) -> None:
     """Check before computing that a file can be written at ``path``.
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import inspect
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
@@ -113,6 +113,15 @@ class Registry:
         raise ConfigError(
             f"{type_!r} is not {article} {family}; {nearest(type_, types)}{hint}", "type"
         )
+
+    def versions(self, used: Collection[type[Component]]) -> dict[str, str]:
+        """Return the versions of the distributions of components, by name."""
+        return {
+            registered.origin.distribution: registered.origin.version
+            for family in self.components.values()
+            for registered in family.values()
+            if registered.component in used
+        }
 
     def make(self, base: type[AnyComponent], value: object) -> AnyComponent:
         """Return the component of ``base``'s family that ``value`` describes.

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import tomllib
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import Distribution, EntryPoint, entry_points
@@ -13,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from pellicle import ConfigError, Kernel, PluginError
+from pellicle import ConfigError, Kernel, PluginError, Run
 from pellicle.plugins import GROUP, Broken, Origin, load
 
 BUILT_INS = tuple(entry_points(group=GROUP, name="kernel.half_space"))
@@ -385,6 +386,23 @@ def test_two_owners_of_one_name_are_both_named(plugin: Plugin) -> None:
     for part in ("stranger 1.2", "rival 7", "uninstall", "PELLICLE_DISABLE_PLUGINS"):
         assert part in str(raised.value)
     assert plugins.find("kernel", "half_space").__name__ == "HalfSpace"
+
+
+def test_another_version_of_a_plugin_makes_another_run(
+    plugin: Plugin, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Results of an earlier version of a plugin are not taken for those of the present one."""
+    entry = plugin(SOFT)
+    identities = []
+    for dist in (entry.dist, Installed("stranger", "1.2"), Installed("stranger", "1.3")):
+        vars(entry).update(dist=dist)
+        plugins = load([entry, *entry_points(group=GROUP)])
+        monkeypatch.setattr("pellicle.config.run.registry", lambda loaded=plugins: loaded)
+        configuration = tomllib.loads(SOFT_RUN)
+        configuration["kernel"] = plugins.make(Kernel, configuration["kernel"])
+        identities.append(Run(**configuration).identity)
+    first, same, other = identities
+    assert first == same != other
 
 
 def test_entry_points_of_one_module_do_not_clash(plugin: Plugin) -> None:

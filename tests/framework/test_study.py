@@ -543,3 +543,19 @@ def test_configuration_of_a_run(tmp_path: Path) -> None:
     assert json.loads(storage.attributes(path)["configuration"]) == json.loads(
         plan.points[0].run.to_json()
     )
+
+
+def test_studies_in_threads_leave_warnings_to_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a process warns of after studies that ran at the same time is shown."""
+    shown: list[str] = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        monkeypatch.setattr(warnings, "showwarning", lambda message, *_: shown.append(str(message)))
+        first, second = (study_module._recorded_warnings() for _ in range(2))
+        first.__enter__()
+        second.__enter__()
+        first.__exit__(None, None, None)
+        second.__exit__(None, None, None)
+        warnings.warn("to be seen", stacklevel=1)
+        assert shown == ["to be seen"]
+        monkeypatch.undo()

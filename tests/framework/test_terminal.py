@@ -179,6 +179,29 @@ def test_a_run_called_study_is_a_run(cli: Cli) -> None:
         assert str(Path("drawn/study-pressure.png")) in drawn
 
 
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["show", "{long}"],
+        ["plot", "{long}"],
+        ["run", "{run}", "--set", "indenter={ type='heights', unit='m', path='{long}' }"],
+    ],
+    ids=lambda command: command[0],
+)
+def test_a_path_that_no_system_takes_is_told(command: list[str], folder: Path, cli: Cli) -> None:
+    """As one in a folder that is closed to the user; neither is a fault of pellicle."""
+    (folder / "plain.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
+    words = [word.replace("{long}", "a" * 5000).replace("{run}", "plain.toml") for word in command]
+    assert "aaa: no such file; give " in cli(*words, code=2).stderr
+
+
+def test_a_dry_run_into_a_path_that_no_system_takes(folder: Path, cli: Cli) -> None:
+    """The list of runs says that the file cannot be written."""
+    (folder / "plain.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
+    shown = cli("run", "plain.toml", "-o", "a" * 300, "--dry-run").stdout
+    assert "cannot be written (File name too long); choose another folder" in shown
+
+
 class Refusing(io.StringIO):
     """A stream that cannot be written to."""
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from pellicle.errors import StorageError
-from pellicle.files import for_document
+from pellicle.files import for_document, is_folder
 
 from .exits import NOT_CONVERGED
 from .printing import echo, print_columns, print_json, print_warning
@@ -29,7 +29,7 @@ def file_of_run(path: Path) -> Path:
     StorageError
         The folder holds several result files.
     """
-    files = sorted(path.glob("*.h5")) if path.is_dir() else []
+    files = sorted(path.glob("*.h5")) if is_folder(path) else []
     if len(files) > 1:
         names = ", ".join(for_document(file.name) for file in files)
         raise StorageError(f"{path}: holds several result files; give one of them: {names}")

@@ -50,14 +50,9 @@ def versions(used: Collection[type[Component]], others: Iterable[str] = ()) -> d
     others
         Libraries beside those that the components name.
     """
-    owners = {
-        registered.origin.distribution: registered.origin.version
-        for family in registry().components.values()
-        for registered in family.values()
-        if registered.component in used
-    }
     libraries = sorted({*others, *(name for component in used for name in component.libraries)})
-    numbers = {name: version(name) for name in ("pellicle", "numpy", "scipy")} | owners
+    numbers = {name: version(name) for name in ("pellicle", "numpy", "scipy")}
+    numbers |= registry().versions(used)
     for name in libraries:
         # A worker may receive data that a library has read without having the library itself.
         with suppress(PackageNotFoundError):

@@ -26,6 +26,7 @@ from pydantic import (
 from pellicle.checks import errors_attributed_to
 from pellicle.components import (
     AreaCorrection,
+    Component,
     HasRelaxation,
     HasTimeSpan,
     Indenter,
@@ -37,6 +38,7 @@ from pellicle.components import (
 from pellicle.components.calls import branches_of
 from pellicle.components.output import refuse_shared_files
 from pellicle.errors import ConfigError
+from pellicle.files import is_file
 from pellicle.grid import Grid, grid_of_run
 from pellicle.model.from_file import FromFile
 from pellicle.model.html import summary
@@ -206,7 +208,7 @@ class Run(FromFile):
         """Hash of everything on which the numbers of the result depend.
 
         It covers the configuration with its defaults, without `title` and `outputs`; input files
-        enter by their content.
+        enter by their content, components of other packages also by the version of the package.
         """
         identifying = self.model_dump(
             mode="json", exclude_none=True, exclude={"title", "outputs"}
@@ -214,7 +216,18 @@ class Run(FromFile):
         for path, value, _ in walk(self):
             if isinstance(value, Path) and isinstance(get(identifying, path), str):
                 identifying = replaced(identifying, path, _digest_of(value))
+        if versions := _versions_of_others(self):
+            identifying["plugins"] = versions
         return hashlib.sha256(json.dumps(identifying, sort_keys=True).encode()).hexdigest()
+
+
+def _versions_of_others(run: Run) -> dict[str, str]:
+    """Return the versions of the packages, besides pellicle, whose components solve a run."""
+    parts = (run.kernel, run.indenter, run.interaction, run.solver, run.corrections)
+    values = (run.loading.prescription, *(value for _, value, _ in walk(parts)))
+    used = {type(value) for value in values if isinstance(value, Component)}
+    versions = registry().versions(used)
+    return {name: number for name, number in versions.items() if name != "pellicle"}
 
 
 def _refuse_times(kernel: Kernel, loading: Loading) -> None:
@@ -270,7 +283,7 @@ def _refuse_range_of_the_grid(interaction: Interaction, kernel: HasRelaxation, g
 
 def _digest_of(path: Path) -> str:
     """Return the hash of a file, or the path itself if it is not a file."""
-    if not path.is_file():
+    if not is_file(path):
         return str(path)
     stat = path.stat()
     return _digest(path.absolute(), stat.st_mtime_ns, stat.st_size)

@@ -160,6 +160,11 @@ class Problem:
         gap -= depth
         return gap, depth
 
+    def attraction(self, gap: Array, contact: Mask) -> Attraction:
+        """Return what the law of the problem exerts across ``gap`` [m], closed in ``contact``."""
+        assert self.law
+        return attraction(self.law, self.heights, gap, contact, self.grid.boundary)
+
     def has_infinite_stiffness(self, contact: Mask) -> bool:
         """Return whether the contact stiffness is infinite.
 
@@ -294,12 +299,7 @@ class Equilibrium:
     @cached_property
     def attraction(self) -> Attraction | None:
         """What the law of the problem exerts across the gap; None without a law."""
-        problem = self.problem
-        if not problem.law:
-            return None
-        return attraction(
-            problem.law, problem.heights, self.gap, self.contact, problem.grid.boundary
-        )
+        return self.problem.attraction(self.gap, self.contact) if self.problem.law else None
 
     @cached_property
     def zone(self) -> Mask:

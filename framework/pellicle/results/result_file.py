@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from pellicle.errors import StorageError
+from pellicle.files import is_file, is_folder
 
 from . import checksum, netcdf, version_1
 
@@ -32,9 +33,9 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
     StorageError
         The file does not exist, is damaged, has another schema version, or is of another kind.
     """
-    if not path.is_file():
+    if not is_file(path):
         reason = "no such file; give a result file (.h5) that pellicle wrote"
-        if path.is_dir():
+        if is_folder(path):
             reason = "is a folder that holds no result yet; run it first, or give a result (.h5)"
         raise StorageError(f"{path}: {reason}")
     with _readable(path), _parsed(path) as file:
@@ -112,7 +113,7 @@ def _readable(path: Path) -> Iterator[None]:
         if "file signature not found" in reason:
             reason = "it is not an HDF5 file"
         beside = path.with_suffix(".h5")
-        remedy = str(beside) if beside.is_file() and beside != path else "an .h5 file"
+        remedy = str(beside) if is_file(beside) and beside != path else "an .h5 file"
         raise StorageError(
             f"{path}: not a readable result file ({reason}); give {remedy} that pellicle wrote"
         ) from None

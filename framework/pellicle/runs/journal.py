@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pellicle.errors import StorageError
-from pellicle.files import check_writable
+from pellicle.files import check_writable, storage_errors
 from pellicle.results import storage
 from pellicle.results.result import load
 
@@ -39,7 +39,9 @@ class Journal:
         StorageError
             The file exists but cannot be read or resumed.
         """
-        if self.overwrite or not self.path.exists():
+        with storage_errors(self.path):
+            exists = self.path.exists()
+        if self.overwrite or not exists:
             return None
         numbers = storage.scalars(self.path)
         if numbers.attrs.get("identity") != self.identity:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import sys
 import tempfile
+import threading
 import time
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
@@ -20,7 +21,7 @@ from pellicle.components.calls import outcomes_of
 from pellicle.config.run import Run
 from pellicle.config.study import Study
 from pellicle.errors import ConfigError, ConvergenceWarning, StorageError
-from pellicle.files import check_writable
+from pellicle.files import check_writable, is_file, is_folder
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.status import Status
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
 _TABLE_SHARE = 0.05
 _WARNINGS = "warnings"
+_recording = threading.Lock()
 
 
 @dataclass(frozen=True)
@@ -239,8 +241,7 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
     Warnings are stored in the attributes, so that a warning is shown once for all runs.
     """
     bar = ProgressReporter(task.steps, say)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", UserWarning)
+    with _recorded_warnings() as caught:
         executed = runner.execute(
             task.run, task.journal, task.outputs, bar, threads=threads, lock=False
         )
@@ -248,6 +249,25 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
     # Equal messages of several runs are shown once.
     messages += [f"in at least one run {subject}" for subject in executed.result.beyond_theory()]
     return executed.result.dataset.drop_dims(["x", "y"]).assign_attrs({_WARNINGS: messages})
+
+
+@contextmanager
+def _recorded_warnings() -> Iterator[list[warnings.WarningMessage]]:
+    """Yield the list of warnings within this context, in one thread at a time.
+
+    How warnings are shown belongs to the process: of two threads that record them at the same time
+    the second would leave it to the record of the first, so that no warning is shown any more.
+    Those of another thread are recorded here, or shown as ever.
+    """
+    if not _recording.acquire(blocking=False):
+        yield []
+        return
+    try:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", UserWarning)
+            yield caught
+    finally:
+        _recording.release()
 
 
 class Planned(NamedTuple):
@@ -279,7 +299,7 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
     StorageError
         The table does not exist or cannot be read.
     """
-    whole = path / "study.h5" if path.is_dir() else path
+    whole = path / "study.h5" if is_folder(path) else path
     dataset = storage.table(whole)
     if problem := table.damage(dataset):
         raise StorageError(f"{whole}: {problem}, so it is damaged; run the study again")
@@ -291,8 +311,8 @@ def is_table(path: Path) -> bool:
 
     The result of a single run has the name of the table if its run file is called ``study.toml``.
     """
-    whole = path / "study.h5" if path.is_dir() else path
-    if whole.name != "study.h5" or (path.is_dir() and not whole.is_file()):
+    whole = path / "study.h5" if is_folder(path) else path
+    if whole.name != "study.h5" or (whole != path and not is_file(whole)):
         return False
     try:
         storage.attributes(whole)

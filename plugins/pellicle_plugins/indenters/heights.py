@@ -14,7 +14,7 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Indenter
 from pellicle.errors import ConfigError
-from pellicle.files import read_text
+from pellicle.files import is_file, read_text
 from pellicle.grid import shape_of_run
 from pellicle.model.input_path import InputPath
 from pellicle.model.matlab import read_mat
@@ -95,7 +95,7 @@ class Heights(FromHeights):
 
 
 def _load(path: Path, dataset: str | None) -> Any:
-    if not path.is_file():
+    if not is_file(path):
         raise ConfigError(f"{path}: no such file; give the file that holds the heights", "path")
     if path.stat().st_size == 0:
         raise ConfigError(f"{path} is empty; give a file that holds a 2-D array", "path")

@@ -18,6 +18,7 @@ import numpy as np
 from pellicle import memory
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
+from pellicle.files import is_file
 from pellicle.units import Quantity
 
 from .text_numbers import separated_by_blanks
@@ -69,7 +70,7 @@ def read_scan(
     ConfigError
         The extra is not installed, or the file cannot be used.
     """
-    if not path.is_file():
+    if not is_file(path):
         raise ConfigError(f"{path}: no such file; give the file of a scan", "path")
     stat = path.stat()
     if stat.st_size == 0:

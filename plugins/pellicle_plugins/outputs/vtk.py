@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import glob
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal
@@ -12,6 +14,7 @@ import numpy as np
 from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Output, Runs
+from pellicle.files import storage_errors
 from pellicle.report.vtk import array, base64_of, element, encoded, file_of, rows_of, writer
 from pellicle.results.path import has_times
 from pellicle.results.variables import FIELDS, WALL_PRESSURE
@@ -41,8 +44,15 @@ class Vtk(Output):
         return ".pvd", "-*.vts"
 
     def step(self, record: xr.Dataset, stem: Path) -> None:
-        """Write the file of the step."""
-        _write_step(record, _file(stem, record["step"].item()))
+        """Write the file of the step; the first one removes those of an earlier run."""
+        number = record["step"].item()
+        if number == 1:
+            # ParaView opens files of successive numbers as one series.
+            for old in stem.parent.glob(f"{glob.escape(stem.name)}-*.vts"):
+                if re.fullmatch(r"-\d{4,}\.vts", old.name.removeprefix(stem.name)):
+                    with storage_errors(old):
+                        old.unlink()
+        _write_step(record, _file(stem, number))
 
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the list of the steps; return all files."""

@@ -11,7 +11,6 @@ import numpy as np
 from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor, Solver
-from pellicle.numerics.attraction import attraction
 from pellicle.numerics.grid_transfer import highest
 from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.path import Start
@@ -247,7 +246,7 @@ class ActiveSet(ScaledSolver):
         if not problem.law:
             return closing(np.zeros(contact.shape)) * unit
         gap = problem.operator(state.pressure) - problem.profile - state.depth
-        acting = attraction(problem.law, problem.heights, gap, contact, problem.grid.boundary)
+        acting = problem.attraction(gap, contact)
 
         def following(opened: Array) -> Array:
             return acting.change(opened) / unit

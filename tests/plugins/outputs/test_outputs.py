@@ -293,3 +293,20 @@ def test_library_writes_nothing_unasked(tmp_path: Path, monkeypatch: pytest.Monk
     for outputs in choices:
         pl.run(_run(outputs), progress=False)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_steps_of_a_longer_run_do_not_stay(tmp_path: Path) -> None:
+    """Files of steps that a run does not have would belong to the one that it replaces."""
+    run = {
+        "title": "s",
+        "grid": {"points": 16, "size": "0.4 mm"},
+        "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
+        "indenter": {"type": "paraboloid", "radius": "1 mm"},
+        "outputs": [{"type": "vtk"}],
+    }
+    other = tmp_path / "s-0003-0001.vts"
+    other.touch()
+    for depths in (["10 um", "12 um"], ["14 um"]):
+        loaded = run | {"loading": {"depth": depths}}
+        pl.run(loaded, directory=tmp_path, progress=False, overwrite=True)
+    assert {*tmp_path.glob("*.vts")} == {tmp_path / "s-0001.vts", other}
