@@ -4,6 +4,8 @@ from typing import Literal
 
 import numpy as np
 import pytest
+import scipy.fft
+from numpy.typing import NDArray
 
 from pellicle import Grid
 from pellicle.operators import make_operator
@@ -40,3 +42,25 @@ def test_a_scaled_operator_keeps_every_digit(boundary: Literal["free", "periodic
     assert relative.compliance(wave) * operator.unit == operator.kernel.compliance(wave)
     coarse = make_operator(operator.kernel, grid.coarsened())
     assert relative.coarsened().greatest * operator.unit == coarse.greatest
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_every_row_is_visited_once(boundary: Literal["free", "periodic"], threads: int) -> None:
+    """With the final displacement: in other units, with a spring, in place, on two threads."""
+    grid = Grid(points=(600, 520), size=(1.5, 1.3), boundary=boundary)
+    operator = make_operator(TensedMembrane(reduced_modulus=3.0, tension=0.01), grid)
+    operator = operator.scaled(3.0).with_spring(0.7)
+    pressure = np.random.default_rng(0).standard_normal(grid.shape)
+    expected = operator(pressure)
+    visits, copied = np.zeros(grid.shape[0], dtype=int), np.zeros(grid.shape)
+
+    def visit(displacement: NDArray[np.float64], rows: slice) -> None:
+        visits[rows] += 1
+        copied[rows] = displacement[rows]
+
+    with scipy.fft.set_workers(threads):
+        operator(pressure, out=pressure, visit=visit)
+    assert (visits == 1).all()
+    np.testing.assert_array_equal(copied, expected)
+    np.testing.assert_array_equal(pressure, expected)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -45,13 +46,15 @@ def convolve(
     padded: tuple[int, int],
     workspace: Workspace,
     out: NDArray[Float] | None = None,
+    visit: Callable[[NDArray[Float], slice], None] | None = None,
 ) -> NDArray[Float]:
     """Return the inverse transform of a symbol times the transform of a field.
 
     The transforms are those of `scipy.fft.rfft2`, of the field of shape (nx, ny) followed by zeros
     up to the shape ``padded``; only the first (nx, ny) values are returned, in ``out`` if given,
     which may be ``field``. ``symbol`` has the shape (px, py // 2 + 1), and the transform the
-    precision of ``field``.
+    precision of ``field``. ``visit`` is called with the result and a slice of its rows as soon as
+    these are there and in the cache; threads may share the blocks of rows.
     """
     (nx, ny), (px, py) = field.shape, padded
     transform = workspace.array((px, py // 2 + 1), np.result_type(field, np.complex64))
@@ -72,6 +75,8 @@ def convolve(
 
     def backward(rows: slice) -> None:
         result[rows] = scipy.fft.irfft(transform[rows], n=py, axis=1, workers=1)[:, :ny]
+        if visit:
+            visit(result, rows)
 
     block = max(_BLOCK, px * py if px * py < _SHARED else 0)
     rows = blocks(nx, max(1, block // py))

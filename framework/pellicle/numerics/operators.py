@@ -191,24 +191,33 @@ class Operator:
         return {**vars(self), "class": type(self), "symbol": self._symbol.double}
 
     def __call__(
-        self, pressure: NDArray[Float], out: NDArray[Float] | None = None
+        self,
+        pressure: NDArray[Float],
+        out: NDArray[Float] | None = None,
+        visit: Callable[[NDArray[Float], slice], None] | None = None,
     ) -> NDArray[Float]:
         """Return the displacement [m] under a pressure [Pa], in ``out`` or a new array.
 
         ``out`` may be ``pressure``. A pressure in single precision is transformed in single
-        precision, in half the time.
+        precision, in half the time. ``visit`` is called once with the displacement and each slice
+        of rows, while these are in the cache; threads may share the slices.
         """
         self._count[0] += 1
         deflection = 0.0
         if self._spring_compliance:
             deflection = self.deflection(float(pressure.sum(dtype=np.float64)))
         symbol = self._symbol[pressure.dtype]
-        displacement = convolve(pressure, symbol, self.padded, self.workspace, out)
-        if (unit := self._symbol.unit * self._factor) != 1:
-            displacement *= unit
-        if deflection:
-            displacement += deflection
-        return displacement
+        unit = self._symbol.unit * self._factor
+
+        def finish(displacement: NDArray[Float], rows: slice) -> None:
+            if unit != 1:
+                displacement[rows] *= unit
+            if deflection:
+                displacement[rows] += deflection
+            if visit:
+                visit(displacement, rows)
+
+        return convolve(pressure, symbol, self.padded, self.workspace, out, finish)
 
 
 def _power_of_two(number: float) -> float:

@@ -160,6 +160,11 @@ class Problem:
         gap -= depth
         return gap, depth
 
+    def attraction(self, gap: Array, contact: Mask) -> Attraction:
+        """Return what the law of the problem exerts across ``gap`` [m], closed in ``contact``."""
+        assert self.law
+        return attraction(self.law, self.heights, gap, contact, self.grid.boundary)
+
     def has_infinite_stiffness(self, contact: Mask) -> bool:
         """Return whether the contact stiffness is infinite.
 
@@ -209,12 +214,12 @@ class Problem:
     def scaled(self, height: float, pressure: float) -> Problem:
         """Return the problem in units of ``height`` [m] and ``pressure`` [Pa], both powers of two.
 
-        The lengths of the grid remain in m.
+        The lengths of the grid remain in m. The profile is in C order afterwards.
         """
         return replace(
             self,
             operator=self.operator.scaled(pressure / height),
-            profile=self.profile / height,
+            profile=np.divide(self.profile, height, order="C"),
             control=self.control.scaled(height, pressure),
             law=self.law.scaled(height, pressure) if self.law else None,
             left=None if self.left is None else self.left / height,
@@ -294,12 +299,7 @@ class Equilibrium:
     @cached_property
     def attraction(self) -> Attraction | None:
         """What the law of the problem exerts across the gap; None without a law."""
-        problem = self.problem
-        if not problem.law:
-            return None
-        return attraction(
-            problem.law, problem.heights, self.gap, self.contact, problem.grid.boundary
-        )
+        return self.problem.attraction(self.gap, self.contact) if self.problem.law else None
 
     @cached_property
     def zone(self) -> Mask:

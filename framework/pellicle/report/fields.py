@@ -33,12 +33,16 @@ def without_round_off(step: xr.Dataset) -> xr.Dataset:
     The tolerance is ``solver.tolerance`` times the length that scales the residuals of the step;
     otherwise full contact would be drawn as a landscape of femtometres.
     """
-    solver = json.loads(step.attrs.get("configuration", "{}")).get("solver", {})
+    configuration = json.loads(step.attrs.get("configuration", "{}"))
+    solver = configuration.get("solver", {})
     tolerance = float(solver.get("tolerance", Solver.model_fields["tolerance"].default))
     gap, depth = step["gap"].values, float(step["depth"])
     # A step that failed may have infinite values of both signs.
     with np.errstate(invalid="ignore"):
         profile = step["displacement"].values - depth - gap
+        # A layer far thicker than its period sinks by much more than the heights.
+        if configuration.get("grid", {}).get("boundary") == "periodic":
+            depth -= float(step["displacement"].mean())
     closed = np.abs(gap) <= tolerance * height_scale(profile, step["contact"].values, depth)
     return step.assign(gap=(step["gap"].dims, np.where(closed, 0.0, gap), step["gap"].attrs))
 

@@ -11,12 +11,10 @@ import numpy as np
 from pellicle import hookimpl
 from pellicle.arrays import Array, Mask
 from pellicle.components import Monitor, Solver
-from pellicle.numerics.attraction import attraction
 from pellicle.numerics.grid_transfer import highest
 from pellicle.numerics.initial_guess import first_guess, with_force
 from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Depth, Problem
-from pellicle.numerics.sharing import row_blocks, shared
 from pellicle.numerics.solution import Progress, Solution, State, Stop
 
 from .adhesion import AdhesionSolver
@@ -88,6 +86,8 @@ class _Iterate:
     """Pressure from which the next inner solve starts [Pa]; it may be tensile."""
     displacement: Array
     """The displacement under ``trial`` [m]."""
+    u_minus_f: Array
+    """The displacement minus the profile on the cells of the contact [m]."""
     on_contact: OnContact
     """Preconditioner on the contact of the next inner solve."""
     scale: float
@@ -179,6 +179,7 @@ class ActiveSet(ScaledSolver):
             goal,
             certainty=SIGN_CERTAINTY if loose else STRICT_SIGN_CERTAINTY,
             reduction=_REDUCTION if loose and relaxes else 0.0,
+            u_minus_f=state.u_minus_f,
         )
         history = state.history.after(state.on_contact.contact, inner.misclassified.size)
         if not inner.misclassified.size:
@@ -200,8 +201,8 @@ class ActiveSet(ScaledSolver):
                 after = _iterate(problem, state.on_contact, inner.pressure, state.history, state)
                 return replace(after, may_relax=False)
         on_contact = _changed(problem, state, inner, history)
-        trial = on_contact.transferred(inner.pressure)
-        # This frees two arrays while the next displacement is computed.
+        trial = on_contact.transferred(inner.pressure, out=inner.pressure)
+        # This frees an array while the next displacement is computed.
         del inner
         return _iterate(problem, on_contact, trial, history, state)
 
@@ -248,7 +249,7 @@ class ActiveSet(ScaledSolver):
         if not problem.law:
             return closing(np.zeros(contact.shape)) * unit
         gap = problem.operator(state.pressure) - problem.profile - state.depth
-        acting = attraction(problem.law, problem.heights, gap, contact, problem.grid.boundary)
+        acting = problem.attraction(gap, contact)
 
         def following(opened: Array) -> Array:
             return acting.change(opened) / unit
@@ -333,23 +334,30 @@ def _iterate(
     """
     history = history or History()
     trial = with_force(problem, trial, out=trial)
-    displacement = problem.operator(trial, out=before.displacement if before else None)
-    cells = on_contact.cells
-    pressed = cells[trial.ravel()[cells] != 0]
-    inside = displacement.ravel()[pressed] - problem.profile.ravel()[pressed]
+    cells, width = on_contact.cells, trial.shape[1]
+    u_minus_f, lowest = np.empty(cells.size), [np.inf]
+
+    def measure(displacement: Array, rows: slice) -> None:
+        above = displacement[rows] - problem.profile[rows]
+        lowest.append(float(above.min()))
+        first, last = np.searchsorted(cells, (rows.start * width, rows.stop * width))
+        u_minus_f[first:last] = above.ravel().take(cells[first:last] - rows.start * width)
+
+    displacement = before.displacement if before else None
+    displacement = problem.operator(trial, out=displacement, visit=measure)
+    pressed, inside = cells, u_minus_f
+    loaded = trial.ravel()[cells] != 0
+    if not loaded.all():
+        pressed, inside = cells[loaded], u_minus_f[loaded]
     depth = problem.depth(inside)
-
-    def least(rows: slice) -> float:
-        return float((displacement[rows] - problem.profile[rows]).min())
-
-    lowest = min(shared(least, row_blocks(displacement.shape)))
-    error = max(float(np.abs(inside - depth).max(initial=0.0)), depth - lowest)
+    error = max(float(np.abs(inside - depth).max(initial=0.0)), depth - min(lowest))
     scale = problem.height_scale(pressed, depth, float(trial.sum()))
     progress = before.progress if before else Progress()
     return _Iterate(
         problem=problem,
         trial=trial,
         displacement=displacement,
+        u_minus_f=u_minus_f,
         on_contact=on_contact,
         scale=scale,
         error=error,

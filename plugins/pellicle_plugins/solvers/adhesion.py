@@ -12,7 +12,7 @@ import scipy.fft
 from pellicle.analysis import perimeter
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Grid
-from pellicle.numerics.attraction import Attraction, attraction
+from pellicle.numerics.attraction import Attraction
 from pellicle.numerics.initial_guess import first_guess
 from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Problem, adhesive_scale
@@ -44,6 +44,9 @@ _GREATEST_GAIN: Final = 2.0
 _FASTER: Final = 2.0
 # The same where the state is unstable.
 _UNSTABLE_GAIN: Final = 256.0
+# Rise of the energy in a round, over the work of adhesion of the cells along the front, above which
+# the fronts have moved too far: the round is made again with half the shift.
+_RISE: Final = 1.0
 # Set changes of a round after which the strict factor of sign certainty applies.
 _LOOSE_CHANGES: Final = 6
 # Set changes after which the next round begins, whose tractions move the contact anyway. With 40 a
@@ -150,7 +153,7 @@ class _Round:
         """Traction that the law exerts minus `traction` [Pa]."""
         return self.exerted - self.traction
 
-    @property
+    @cached_property
     def on_this_contact(self) -> tuple[_Earlier, ...]:
         """Earlier rounds on the same contact."""
         return tuple(r for r in self.history if np.array_equal(r.contact, self.contact))
@@ -227,7 +230,7 @@ class AdhesionSolver(ScaledSolver):
         contact = (pressure > 0) | _touching(problem)
         u_minus_f = problem.operator(pressure) - problem.profile
         depth = problem.depth(u_minus_f[contact] if contact.any() else np.zeros(1))
-        traction = _attraction(problem, u_minus_f - depth, contact).traction
+        traction = problem.attraction(u_minus_f - depth, contact).traction
         wall = np.where(contact, np.maximum(pressure - traction, 0.0), 0.0)
         return self._closed(problem, preconditioner.on(contact), wall, traction)
 
@@ -242,6 +245,8 @@ class AdhesionSolver(ScaledSolver):
         wall = on_contact.transferred(wall + traction - following)
         wall[~contact] = 0.0
         after = self._closed(problem, on_contact, wall, following, state, changes)
+        if state.gain > _LEAST_GAIN and _overshoots(state, after):
+            return replace(state, gain=max(0.5 * state.gain, _LEAST_GAIN))
         extrapolation = state.extrapolation and state.extrapolation.after(
             after.contact, after.residual
         )
@@ -354,7 +359,7 @@ def _finished(
     gap = displacement - problem.profile
     depth = problem.depth(gap[contact] if contact.any() else np.zeros(1))
     gap -= depth
-    acting = _attraction(problem, gap, contact)
+    acting = problem.attraction(gap, contact)
     state = _Round(problem, on_contact, wall, traction, displacement, gap, depth, acting, settled)
     if before is None:
         return state
@@ -367,12 +372,6 @@ def _finished(
     return replace(
         state, history=history, progress=before.progress.after(state.residual, state.energy)
     )
-
-
-def _attraction(problem: Problem, gap: Array, contact: Mask) -> Attraction:
-    """Return what the law of a problem exerts across ``gap`` [m]."""
-    assert problem.law
-    return attraction(problem.law, problem.heights, gap, contact, problem.grid.boundary)
 
 
 def _is_convex(before: _Round, after: _Round) -> bool:
@@ -400,6 +399,13 @@ def _gain(before: _Round, after: _Round) -> float:
         return min(2 * before.gain, _UNSTABLE_GAIN)
     best = one / (one - other) if one > 0 else _FASTER
     return float(np.clip(before.gain * np.clip(best, 0.5, _FASTER), _LEAST_GAIN, _GREATEST_GAIN))
+
+
+def _overshoots(before: _Round, after: _Round) -> bool:
+    """Whether the energy has risen so much that the fronts have moved too far."""
+    grid = before.problem.grid
+    front = perimeter(before.contact, grid) / max(grid.spacing) / before.gap.size
+    return after.energy - before.energy > _RISE * front
 
 
 def _touching(problem: Problem) -> Mask:

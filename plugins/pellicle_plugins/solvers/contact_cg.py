@@ -51,6 +51,7 @@ def inner_solve(
     *,
     certainty: float,
     reduction: float = 0.0,
+    u_minus_f: Array | None = None,
 ) -> InnerSolution:
     """Return the pressure that nearly closes the gap on a contact, and the misclassified cells.
 
@@ -66,7 +67,8 @@ def inner_solve(
     bending stiffness it is applied in double precision, because a gap that single precision does
     not resolve corresponds to pressures larger than those whose signs are to be determined.
 
-    ``pressure``, which is 0 off the contact, and ``displacement`` are overwritten by the solution.
+    ``pressure``, which is 0 off the contact, and ``displacement`` are overwritten by the solution,
+    and so is ``u_minus_f``, the displacement minus the profile on the contact [m], if it is known.
     """
     cells = preconditioner.cells
     if not cells.size:
@@ -81,7 +83,8 @@ def inner_solve(
     bends = preconditioner.preconditioner.bends
     field = np.zeros(problem.grid.shape, dtype=np.float64 if bends else np.float32)
     on_contact = pressure.ravel()[cells]
-    u_minus_f = displacement.ravel()[cells] - problem.profile.ravel()[cells]
+    if u_minus_f is None:
+        u_minus_f = displacement.ravel()[cells] - problem.profile.ravel()[cells]
     depth = problem.depth(u_minus_f)
     residual = np.subtract(depth, u_minus_f, out=u_minus_f)
     del u_minus_f
@@ -94,6 +97,7 @@ def inner_solve(
     goal = max(goal, max(_MAX_REDUCTION, reduction) * error)
     least, stagnant, iteration = np.inf, 0, 0
     misclassified: Cells | None = None
+    pending: _Change | None = None
     direction = directions(residual)
     descent = dot(residual, direction)
     while descent > 0 and stagnant < _STAGNATION:
@@ -110,7 +114,6 @@ def inner_solve(
         if curvature <= 0:
             break
         length = descent / curvature
-        _add_multiple(displacement, change, length * size)
         inside *= length
         residual -= inside
         direction *= length
@@ -118,18 +121,22 @@ def inner_solve(
         error = directions.error(residual)
         least, stagnant = (error, 0) if error < least else (least, stagnant + 1)
         iteration += 1
+        pending = _Change(change, length * size)
         if error <= goal:
             break
         if np.isfinite(certainty) and iteration >= _MIN_ITERATIONS:
-            last = certainty, direction, change, directions.mean(inside)
+            last = certainty, direction, directions.mean(inside)
             current = depth - directions.mean(residual)
             certain, others = _misclassified(
-                problem, preconditioner, displacement, on_contact, current, goal, last
+                problem, preconditioner, displacement, on_contact, current, goal, pending, last
             )
+            pending = None
             if certain.size and others <= _UNCERTAIN * certain.size:
                 misclassified = certain
                 break
             del last
+        else:
+            pending = pending.add_to(displacement)
         # On a large contact each of these arrays is as large as the grid.
         del inside
         ascent = directions(residual)
@@ -139,11 +146,10 @@ def inner_solve(
         direction += ascent
         del ascent
     depth -= directions.mean(residual)
-    # This frees memory for the gap, which is computed next.
-    del residual, direction, field
     if misclassified is None:
+        margin = max(error, goal)
         misclassified, _ = _misclassified(
-            problem, preconditioner, displacement, on_contact, depth, max(error, goal)
+            problem, preconditioner, displacement, on_contact, depth, margin, pending
         )
     # A start or a guess may be in Fortran order, of which ravel() would be a copy.
     np.put(pressure, cells, on_contact)
@@ -175,14 +181,22 @@ def _gathered(field: NDArray[Any], cells: Cells) -> NDArray[Any]:
     return values
 
 
-def _add_multiple(target: NDArray[Any], change: NDArray[Any], factor: float) -> None:
-    """Multiply ``change`` by a factor in its place and add it to ``target``."""
+class _Change(NamedTuple):
+    """A change of the displacement that has not been added to it yet."""
 
-    def add(rows: slice) -> None:
-        change[rows] *= factor
-        target[rows] += change[rows]
+    field: NDArray[Any]
+    """The change over `factor`, until it is added [m]."""
+    factor: float
 
-    shared(add, row_blocks(target.shape))
+    def add(self, displacement: Array, rows: slice) -> None:
+        """Add the change to rows of the displacement, and multiply it by `factor` in its place."""
+        change = self.field[rows]
+        change *= self.factor
+        displacement[rows] += change
+
+    def add_to(self, displacement: Array) -> None:
+        """Add the change to the displacement, and multiply it by `factor` in its place."""
+        shared(lambda rows: self.add(displacement, rows), row_blocks(displacement.shape))
 
 
 class _Uniform:
@@ -236,29 +250,34 @@ def _misclassified(
     on_contact: Array,
     depth: float,
     margin: float,
-    last: tuple[float, Array, NDArray[Any], float] | None = None,
+    pending: _Change | None = None,
+    last: tuple[float, Array, float] | None = None,
 ) -> tuple[Cells, int]:
     """Return flat indices of misclassified cells of certain sign, and the number of uncertain ones.
 
     A cell in contact is misclassified if its pressure in ``on_contact`` [Pa] is tensile, any other
-    cell if its gap at ``depth`` [m] is below −``margin`` [m]. ``last`` is the sign-certainty factor
-    and the last changes of pressure in contact [Pa], displacement [m] and depth [m]; without it all
-    signs are certain.
+    cell if its gap at ``depth`` [m] is below −``margin`` [m]. The ``pending`` change is added to
+    the displacement. ``last`` is the sign-certainty factor and the last changes of pressure in
+    contact [Pa] and depth [m], to which belongs that of the displacement; without it all signs are
+    certain.
     """
-    u, f, contact = displacement.ravel(), problem.profile.ravel(), preconditioner.contact.ravel()
-    below = np.empty(u.size, dtype=bool)
+    profile, contact = problem.profile, preconditioner.contact
+    below = np.empty(contact.shape, dtype=bool)
 
-    def mark(block: slice) -> None:
-        np.less(u[block] - f[block], depth - margin, out=below[block])
-        np.greater(below[block], contact[block], out=below[block])
+    def mark(rows: slice) -> None:
+        if pending:
+            pending.add(displacement, rows)
+        np.less(displacement[rows] - profile[rows], depth - margin, out=below[rows])
+        np.greater(below[rows], contact[rows], out=below[rows])
 
-    shared(mark, blocks(u.size))
+    shared(mark, row_blocks(contact.shape))
     tensile, penetrating = np.flatnonzero(on_contact < 0), np.flatnonzero(below)
     number = tensile.size + penetrating.size
-    if last:
-        certainty, step, change, depth_change = last
+    if pending and last:
+        u, f = displacement.ravel(), profile.ravel()
+        certainty, step, depth_change = last
         tensile = tensile[on_contact[tensile] < -certainty * np.abs(step[tensile])]
-        gap_change = np.abs(change.ravel()[penetrating] - depth_change)
+        gap_change = np.abs(pending.field.ravel()[penetrating] - depth_change)
         gap = u[penetrating] - f[penetrating] - depth
         penetrating = penetrating[gap < -certainty * gap_change]
     certain = np.concatenate([preconditioner.cells[tensile], penetrating])
@@ -269,7 +288,9 @@ class _Directions:
     """Preconditioned search directions on a contact, without net force under force control.
 
     The spring of an indenter adds a uniform compliance, which enters the preconditioner by the
-    formula of Sherman & Morrison (1950). Force control is the limit of a soft spring.
+    formula of Sherman & Morrison (1950). Under force control the preconditioner M becomes P M Pᵀ
+    with P = 1 − w 1ᵀ. It is symmetric for every w of sum 1; with w ∝ M 1 it is the limit of a soft
+    spring.
     """
 
     def __init__(
@@ -280,15 +301,19 @@ class _Directions:
         self._keeps_force = problem.prescribed == "force"
         spring = problem.operator.deflection(1.0) * preconditioner.preconditioner.stiffest
         self._lift: Array | None = None
-        if self._keeps_force or spring:
+        if self._keeps_force:
+            self._lift = preconditioner.preconditioner.lift(preconditioner)
+        elif spring:
             self._lift = preconditioner(np.ones(preconditioner.cells.size)).astype(np.float64)
-            total = float(self._lift.sum())
-            self._lift /= total if self._keeps_force else total + 1 / spring
+            self._lift /= float(self._lift.sum()) + 1 / spring
 
     def __call__(self, residual: Array) -> Array:
         """Return the preconditioned residual, made free of net force or conjugate to `_Uniform`."""
-        # The mean would use up digits of single precision.
-        direction = self._preconditioner(residual, self.mean(residual)).astype(np.float64)
+        mean = 0.0
+        if self._keeps_force and self._lift is not None:
+            # The mean would also use up digits of single precision.
+            mean = dot(self._lift, residual)
+        direction = self._preconditioner(residual, mean).astype(np.float64)
         if self._lift is not None:
             total = float(direction.sum())
             lift = self._lift

@@ -21,6 +21,8 @@ from .multilevel_extension import Extension, bends
 _FREE_MARGIN: Final = 1.25
 # Width across a line of cells, over their length along it, above which strain is plane.
 _SLENDER: Final = 8
+# Share of an earlier lift on the cells of a contact from which on it serves there.
+_RETAINED: Final = 0.9
 # The extension's plane is rounded up to a size that can be halved this many times, and on grids of
 # 4096 cells and more as often as leaves _COARSEST cells; six halvings took 29 applications there in
 # place of 23, and 44 at 8192, as waves between distant contacts were not extended.
@@ -55,6 +57,7 @@ class Preconditioner:
         all_levels = self.bends and grid.boundary == "periodic"
         self._orders = orders[: levels if all_levels else min(levels, _halvings(grid.shape))]
         self._stretch = stretch_of(*edges(grid))
+        self._lift: tuple[Cells, Field] | None = None
 
     @property
     def stiffest(self) -> float:
@@ -65,6 +68,25 @@ class Preconditioner:
     def grid_stiffness(self) -> Stiffness:
         """K on the grid itself, as if the grid were periodic; see `relaxed`."""
         return self._stiffness if self._plane == self._shape else self.stiffness(self._shape)
+
+    def lift(self, on_contact: OnContact) -> Array:
+        """Return a pressure on the cells of a contact, of sum 1, that nearly lifts it uniformly.
+
+        It is the preconditioned uniform displacement. That of an earlier contact serves again while
+        its cells that remain bear nearly all of it.
+        """
+        cells = on_contact.cells
+        if self._lift:
+            field = np.zeros(self._shape, dtype=np.float32)
+            field.ravel()[self._lift[0]] = self._lift[1]
+            lift = field.ravel()[cells].astype(np.float64)
+            if (total := float(lift.sum())) >= _RETAINED:
+                lift /= total
+                return lift
+        lift = on_contact(np.ones(cells.size)).astype(np.float64)
+        lift /= float(lift.sum())
+        self._lift = cells, lift.astype(np.float32)
+        return lift
 
     @cached_property
     def column(self) -> Array:
@@ -149,15 +171,17 @@ class OnContact:
         nx, ny = self.contact.shape
         return self._apply(values)[:nx, :ny]
 
-    def transferred(self, forces: Array) -> Array:
+    def transferred(self, forces: Array, out: Array | None = None) -> Array:
         """Return forces [Pa] after transferring those off the contact onto it by Eᵀ.
+
+        They are in ``out``, an array in C order which may be ``forces``, or in a new one.
 
         Eᵀ K is the inverse of the operator on the contact to second order in the error of E. So
         forces that displace the surface onto the indenter on the contact become nearly the
         pressure that closes the gap there.
         """
         off = np.flatnonzero((forces != 0) & ~self.contact)
-        transferred = forces.copy()
+        transferred = forces.copy() if out is None else out
         if not off.size:
             return transferred
         values = forces.ravel()[off]

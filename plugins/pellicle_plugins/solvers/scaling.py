@@ -45,8 +45,11 @@ class ScaledSolver(IterativeSolver):
 
 
 def _scaled(state: State, length: float, pressure: float) -> State:
-    scaled = state.pressure * pressure
-    wall = scaled if state.wall is state.pressure else state.wall * pressure
+    """Return a state in other units, its arrays in C order."""
+    scaled = np.multiply(state.pressure, pressure, order="C")
+    wall = scaled
+    if state.wall is not state.pressure:
+        wall = np.multiply(state.wall, pressure, order="C")
     return State(scaled, wall, state.depth * length)
 
 

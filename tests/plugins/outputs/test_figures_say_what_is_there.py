@@ -80,6 +80,25 @@ def test_round_off_is_no_gap(folder: Path) -> None:
     assert _gaps(folder / "run.html")[0][1] > 0
 
 
+def test_a_layer_that_sinks_far_has_gaps() -> None:
+    """Gaps are compared with the heights, not with the sinking of a thick layer, 10⁵ times that."""
+    layer = {
+        "type": "bonded_layer",
+        "reduced_modulus": "10 kPa",
+        "poissons_ratio": 0.2,
+        "thickness": "100 m",
+    }
+    changes = {
+        "kernel": layer,
+        "loading": {"mean_pressure": "40 Pa"},
+        "solver": {"type": "active_set", "tolerance": 1e-6},
+    }
+    step = pl.run({**RUN, **changes}, progress=False).dataset.isel(step=0)
+    opened = ~step["contact"].values & (step["gap"].values > 1e-8)
+    assert opened.sum() > 50
+    assert (without_round_off(step)["gap"].values[opened] == step["gap"].values[opened]).all()
+
+
 def _gaps(path: Path) -> list[tuple[float, float]]:
     """Return the lowest and the highest gap of each frame of a page."""
     text = path.read_text(encoding="utf-8")

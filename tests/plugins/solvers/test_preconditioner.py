@@ -9,11 +9,14 @@ import pytest
 from numpy.typing import NDArray
 
 from pellicle import Grid, Kernel
+from pellicle.numerics.problem import Force, Problem
 from pellicle.operators import make_operator
 from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.kernels.half_space import HalfSpace
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
+from pellicle_plugins.solvers.contact_cg import _Directions
 from pellicle_plugins.solvers.preconditioner import (
+    OnContact,
     Preconditioner,
     _free_shape,
     _halvings,
@@ -93,6 +96,51 @@ def test_pressure_of_cells_that_leave(kernel: str, share: float) -> None:
     pressure = exact(before)
     moved = Preconditioner(operator).on(stay).transferred(pressure)
     assert error(moved) < share * error(np.where(stay, pressure, 0.0))
+
+
+def test_a_lift_serves_on_a_contact_that_has_changed_little(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of sum 1 on either, it is computed anew for a contact that has lost its cells."""
+    applications = 0
+    original = OnContact.__call__
+
+    def counted(self: OnContact, residual: Array, mean: float = 0.0) -> NDArray[np.float32]:
+        nonlocal applications
+        applications += 1
+        return original(self, residual, mean)
+
+    monkeypatch.setattr(OnContact, "__call__", counted)
+    preconditioner = Preconditioner(make_operator(KERNELS["tension"], grid("free")))
+    contact = island()
+    changed, other = contact.copy(), ~contact
+    changed[9, 8:12] ^= True
+    lifts = []
+    for cells, expected in ((contact, 1), (changed, 1), (other, 2)):
+        lifts.append(preconditioner.lift(preconditioner.on(cells)))
+        assert lifts[-1].shape == (np.count_nonzero(cells),)
+        assert lifts[-1].sum() == pytest.approx(1.0, rel=1e-12)
+        assert applications == expected
+    assert 0.9 < lifts[1][(contact & changed)[changed]].sum() / lifts[1].sum() <= 1 + 1e-12
+
+
+@pytest.mark.parametrize("boundary", ["free", "periodic"])
+def test_directions_under_a_force_are_symmetric(boundary: Literal["free", "periodic"]) -> None:
+    """With the lift of another contact too: P M Pᵀ is symmetric, of no net force, and positive."""
+    operator = make_operator(KERNELS["tension"], grid(boundary))
+    problem = Problem(grid(boundary), operator, np.zeros(SHAPE), Force(1.0))
+    preconditioner = Preconditioner(operator)
+    contact = island()
+    preconditioner.lift(preconditioner.on(contact))
+    contact[9, 8:12] ^= True
+    directions = _Directions(problem, preconditioner.on(contact), None)
+    residuals = np.random.default_rng(4).standard_normal((12, np.count_nonzero(contact)))
+    outcomes = np.array([directions(residual) for residual in residuals])
+    products = residuals @ outcomes.T
+    scale = np.abs(products).max()
+    np.testing.assert_allclose(products, products.T, atol=1e-5 * scale)
+    assert np.linalg.eigvalsh(products + products.T).min() > 0
+    assert np.abs(outcomes.sum(axis=1)).max() < 1e-6 * np.abs(outcomes).sum(axis=1).max()
 
 
 def test_large_grids_are_halved_to_as_many_cells() -> None:
