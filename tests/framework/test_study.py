@@ -348,7 +348,7 @@ def test_interrupted_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(Counting, "fails_at", staticmethod(lambda problem: None))
     result = pl.run(run, directory=tmp_path, progress=False, threads=1)
     assert len(Counting.solved) == 3
-    whole = pl.run(run, progress=False, threads=1)
+    whole = pl.run(run, directory=tmp_path / "whole", progress=False, threads=1)
     Counting.solved.clear()
     again = pl.run(run, directory=tmp_path, progress=False, threads=1)
     assert Counting.solved == []
