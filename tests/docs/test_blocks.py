@@ -56,7 +56,6 @@ class Reader:
         self.folder = folder
         self.monkeypatch = monkeypatch
         self.names: dict[str, Any] = {"__name__": "__main__"}
-        self.last: pl.Result | None = None
         self.lines_run: set[int] = set()
 
     def do(self, block: Block) -> None:
