@@ -88,6 +88,8 @@ class Steps:
         self._number = number
         self._fields: dict[str, xr.Variable] = {}
         self._scalars: list[xr.Dataset] = []
+        self.largest_area = 0.0
+        """Largest contact area of the finished steps [m²]."""
 
     def __len__(self) -> int:
         return len(self._scalars)
@@ -122,10 +124,6 @@ class Steps:
         """The scalars of the last step, or None before the first step."""
         return self._scalars[-1] if self._scalars else None
 
-    def numbers(self, name: str) -> list[float]:
-        """Return a scalar of each finished step, in order."""
-        return [float(scalars[name].item()) for scalars in self._scalars]
-
     def field(self, name: str) -> Array:
         """Return a field at the end of each step, in order; (step, nx, ny), a view."""
         if not self._scalars:
@@ -155,6 +153,7 @@ class Steps:
                 fields[str(name)] = self._fields[str(name)].isel(step=index)
                 fields[str(name)].values[:] = variable.values
         self._scalars.append(step.drop_vars(fields))
+        self.largest_area = max(self.largest_area, step["contact_area"].item())
         return step.assign(fields)
 
     def joined(self) -> xr.Dataset:

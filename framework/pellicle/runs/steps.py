@@ -73,7 +73,7 @@ def _solved_step(
     jumped = step.jumped or lost > 0 or asperity_jumped(setting.state, step.equilibrium)
     in_part = jumped and not step.jumped and bool(step.equilibrium.contact.any())
     area = np.count_nonzero(step.equilibrium.contact) * run.grid.cell_area
-    largest_area = max([area, *steps.numbers("contact_area")])
+    largest_area = max(area, steps.largest_area)
     status, message = judge(run, index, step, stiffness, lost if in_part else None, largest_area)
     report = report_of(prescription, setting, step.equilibrium)
     report |= {v.name: step.missed for v in prescription.variables if v.name not in report}

@@ -136,7 +136,8 @@ def inner_solve(
                 break
             del last
         else:
-            pending = pending.add_to(displacement)
+            pending.add_to(displacement)
+            pending = None
         # On a large contact each of these arrays is as large as the grid.
         del inside
         ascent = directions(residual)
