@@ -12,6 +12,7 @@ import numpy as np
 from pellicle.units import decimal, readable
 
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
+from .models.relaxing import EXPONENT
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from .statistics.checks import judged
 from .statistics.experiments import advised
@@ -39,6 +40,10 @@ _FIRST_TENSIONS = (0.03, 0.3)
 _FAR = 100.0
 """Difference of AIC beyond which intervals come from the curvature of χ²: their models describe the
 curves so badly that profiles, a third of the time of a comparison, would say nothing more."""
+_RELAXING = "tension+power_law"
+"""The pair that approaches at one speed cannot exclude, though they may not need it."""
+_ONE_SPEED = 1.5
+"""Ratio of speeds up to which curves count as measured at one."""
 _BESIDE = {CONTACT_POINT.name, OFFSET.name, SLOPE.name}
 """Parameters of every curve, of which a comparison tells nothing."""
 Intervals = Literal["none", "profile", "curvature"]
@@ -90,8 +95,12 @@ class Comparison:
     """The explanation whose estimates count, if it is not an elastic solid under tension."""
     pull_off: str = ""
     """The pull-off force of an adhesive contact against its limits, in words."""
+    at_one_speed: bool = False
+    """Whether the curves are approaches at one speed, without a dwell."""
     modulus: Estimate | None = None
     """E* [Pa] with the least interval that contains those of all `alternatives`, if several."""
+    tension: Estimate | None = None
+    """The same of τ₀ [N/m], if a tension is needed and several alternatives have one."""
 
     @property
     def best(self) -> RivalFit:
@@ -108,8 +117,10 @@ class Comparison:
         """The explanation whose estimates count, and those that are tied with it.
 
         A pair, which is never far behind one of its effects, counts if both are less likely than
-        it.  Of curves that need no tension only other shapes count, which have no parameter more,
-        and what is better than no effect by the margin.
+        it.  That of a tension and relaxation always counts at one speed, at which a power law bends
+        the curve as a tension does, so that neither shows as long as the other is free.  Of curves
+        that need no tension only other shapes count, which have no parameter more, and what is
+        better than no effect by the margin.
         """
         aic = {fit.rival.code: fit.aic for fit in self.fits}
 
@@ -118,6 +129,8 @@ class Comparison:
                 return fit.rival.of_shape or fit.aic + _OF_PARAMETER <= aic[NONE.code]
             single = fit.rival.code.partition("+")[2]
             effects = aic[TENSED.code], aic.get(single, np.inf)
+            if self.at_one_speed and fit.rival.code == _RELAXING:
+                return True
             return not single or fit.aic + _LIKELIER <= min(effects)
 
         chosen = TENSED.code if self.chosen is None else self.chosen.rival.code
@@ -156,6 +169,7 @@ class Comparison:
             "pull_off": self.pull_off,
             "alternatives": [fit.rival.code for fit in self.alternatives],
             "reduced_modulus": None if self.modulus is None else self.modulus.to_dict(),
+            "tension": None if self.tension is None else self.tension.to_dict(),
             "models": [fit.to_dict() for fit in self.fits],
         }
 
@@ -204,14 +218,17 @@ def compare(
         if rival.code not in minima and not rival.has_tension:
             add(rival, [without.parameters, best.parameters])
     quiet, failed = _at_its_noise(chi_squared, minima)
+    at_one_speed = _at_one_speed(chi_squared)
     alone = {code: _criterion(chi_squared, pair) for code, pair in minima.items()}
     singles = {rival.code: rival for rival in every if rival.is_single}
     every_pair = pairs or any(check.of_model for check in failed)
     for rival in every:
         single = rival.code.partition("+")[2]
         # What leads alone may hide a tension beside it, as a tension may hide adhesion.
-        leads = single == min(alone, key=alone.__getitem__) or (
-            single == "adhesion" and alone.get(single, np.inf) + _OF_MANY <= alone[NONE.code]
+        leads = (
+            single == min(alone, key=alone.__getitem__)
+            or (single == "adhesion" and alone.get(single, np.inf) + _OF_MANY <= alone[NONE.code])
+            or (rival.code == _RELAXING and at_one_speed)
         )
         if single and (every_pair or leads):
             start = minima.get(single, (NONE, without))[1]
@@ -224,29 +241,65 @@ def compare(
     quiet, failed = _at_its_noise(chi_squared, minima)
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
-    comparison = _judge(quiet, fits, failed)
+    comparison = replace(_judge(quiet, fits, failed), at_one_speed=at_one_speed)
     if comparison.chosen is not None:
         comparison = _with_intervals(quiet, comparison, comparison.chosen, threshold)
-    return _with_modulus(quiet, comparison, threshold)
+    return _over_alternatives(quiet, comparison, threshold)
 
 
-def _with_modulus(chi_squared: ChiSquared, comparison: Comparison, threshold: float) -> Comparison:
-    """Return the comparison with the interval of the modulus over all tied explanations."""
+def _at_one_speed(chi_squared: ChiSquared) -> bool:
+    """Whether the curves are approaches at one speed, without a dwell."""
+    speeds = []
+    for member, _ in chi_squared.curves(dict.fromkeys(chi_squared.parameters, 0.0)):
+        if member.segment != "approach" or member.history.dwells:
+            return False
+        speeds.append(float(np.median(member.history.velocity)))
+    return max(speeds) <= _ONE_SPEED * min(speeds)
+
+
+def _over_alternatives(
+    chi_squared: ChiSquared, comparison: Comparison, threshold: float
+) -> Comparison:
+    """Return the comparison with intervals of modulus and tension over all tied explanations."""
     if len(comparison.alternatives) < 2:
         return comparison
-    moduli = {f.rival.code: _modulus(chi_squared, f, threshold) for f in comparison.alternatives}
     chosen = TENSED.code if comparison.chosen is None else comparison.chosen.rival.code
-    low, high = reduce(united, ((modulus.low, modulus.high) for modulus in moduli.values()))
-    return replace(comparison, modulus=replace(moduli[chosen], low=low, high=high))
+    needed = comparison.verdict == "needed"
+    estimates = {
+        fit.rival.code: _shared_estimates(chi_squared, fit, threshold, tension=needed)
+        for fit in comparison.alternatives
+    }
+
+    def over_all(name: str) -> Estimate:
+        parts = [own[name] for own in estimates.values() if name in own]
+        low, high = reduce(united, ((part.low, part.high) for part in parts))
+        return replace(estimates[chosen][name], low=low, high=high)
+
+    comparison = replace(comparison, modulus=over_all(MODULUS.name))
+    if not needed:
+        return comparison
+    comparison = replace(comparison, tension=over_all(TENSION.name))
+    if chosen == _RELAXING or _RELAXING not in estimates:
+        return comparison
+    exponent = estimates[_RELAXING][EXPONENT.name].high
+    size = "" if exponent is None else f" of an exponent up to {decimal(exponent, 2)}"
+    beside = (
+        f"at one speed power-law relaxation{size} beside it would not show, at a second it would"
+    )
+    return replace(comparison, sentence=f"{comparison.sentence}; {beside}")
 
 
-def _modulus(chi_squared: ChiSquared, fit: RivalFit, threshold: float) -> Estimate:
-    """Return the modulus of an explanation with its interval."""
+def _shared_estimates(
+    chi_squared: ChiSquared, fit: RivalFit, threshold: float, *, tension: bool
+) -> dict[str, Estimate]:
+    """Return the modulus of an explanation, and its tension if requested, with intervals."""
     if fit.intervals == "profile":
-        return fit.estimates[MODULUS.name]
+        return fit.estimates
+    mine = fit.rival.of(chi_squared)
+    parameters = [MODULUS, *[p for p in (TENSION, EXPONENT) if tension and p in mine.free]]
     minimum = Minimum(fit.parameters, fit.chi_squared)
-    minimum, ends = fit.rival.intervals(chi_squared, minimum, threshold, [MODULUS])
-    return _estimates(fit.rival.of(chi_squared), minimum, ends)[MODULUS.name]
+    minimum, ends = fit.rival.intervals(chi_squared, minimum, threshold, parameters)
+    return _estimates(mine, minimum, ends)
 
 
 def _with_intervals(

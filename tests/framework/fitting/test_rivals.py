@@ -5,16 +5,24 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import fit_pairs
 import fit_rivals
 import numpy as np
 import pytest
-from fit_pairs import score_of
 from fit_rivals import KINDS, MODULUS_, RADIUS, Sample, fitted, path
 from numpy.typing import NDArray
 from scipy.special import beta
 
 import pellicle as pl
-from pellicle.fitting.comparison import Comparison, RivalFit, Verdict, _judge, decision
+from pellicle.fitting.comparison import (
+    Comparison,
+    RivalFit,
+    Verdict,
+    _at_one_speed,
+    _judge,
+    decision,
+)
+from pellicle.fitting.curves.curve import Segment
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.effects import DRAG, DRIFT, DragModel, DriftModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
@@ -30,6 +38,7 @@ from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, T
 from pellicle.fitting.report.answer import answer
 from pellicle.fitting.report.page import save_report
 from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle.fitting.statistics.pooled_likelihood import Pool
 from pellicle.fitting.statistics.rivals import MARGIN, NONE, TENSED, Rival
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
@@ -197,6 +206,25 @@ def test_two_speeds_show_relaxation() -> None:
     assert pool.rivals.best.rival.code == "power_law"
 
 
+def test_one_speed_does_not_tell_a_tension_from_relaxation_beside_it() -> None:
+    """A tensed power-law solid: modulus and tension of the elastic model miss by a factor of 2."""
+    random = np.random.default_rng([5, 19, *b"one speed"])
+    curve, _, truth = fit_pairs.relaxing(random, (1.0,))
+    assert isinstance(curve, Likelihood)
+    fit = pl.fit(curve.position, curve.force, time=curve.time, indenter="paraboloid", radius=RADIUS)
+    assert fit.tension_needed
+    assert fit.rivals is not None
+    tension = truth[TENSION]
+    assert (fit.tension.low or 0.0) > 1.5 * tension
+    for estimate, value in ((fit.rivals.tension, tension), (fit.rivals.modulus, 2e3)):
+        assert estimate is not None
+        assert estimate.low is not None
+        assert estimate.high is not None
+        assert estimate.low < value < estimate.high
+    assert "at one speed power-law relaxation of an exponent up to 0.3" in fit.comparison
+    assert "and the tension" in answer(fit)
+
+
 def test_comparison_in_full() -> None:
     """All explanations have intervals, a line of the table and JSON; the order is that of AIC."""
     solid = sample("tension, 5 errors of both passes", 4)
@@ -259,7 +287,7 @@ def test_retraction_whose_jump_is_not_seen() -> None:
 
     Without that, the work of adhesion was 5 bounds off, and its interval missed it.
     """
-    score = score_of("retraction", 5, 7)
+    score = fit_pairs.score_of("retraction", 5, 7)
     for name in ("reduced_modulus", "tension", "work_of_adhesion"):
         error, holds = score[name]
         assert abs(error) < 2
@@ -347,6 +375,49 @@ def test_models_whose_moduli_count(
     ]
     comparison = Comparison(tuple(fits), verdict, "", "", ())
     assert {fit.rival.code for fit in comparison.alternatives} == alternatives
+
+
+@pytest.mark.parametrize(
+    ("verdict", "aic", "counts"),
+    [("needed", 2.0, True), ("needed", 4.0, False), ("not shown", 2.0, False)],
+)
+def test_relaxation_beside_a_tension_counts_at_one_speed(
+    verdict: Verdict, aic: float, counts: bool
+) -> None:
+    """Though curves of one speed need it no more than any other pair."""
+    ranked = {"tension": 0.0, "tension+power_law": aic, "power_law": 40.0, "none": 100.0}
+    fits = [
+        RivalFit(Rival(code, code, "tension" in code, TENSED.build), 0.0, lead, lead, {}, {})
+        for code, lead in ranked.items()
+    ]
+    comparison = Comparison(tuple(fits), verdict, "", "", (), at_one_speed=True)
+    codes = {fit.rival.code for fit in comparison.alternatives}
+    assert codes == {"tension"} | ({"tension+power_law"} if counts else set())
+
+
+def test_what_is_one_speed() -> None:
+    """Approaches are, not if they end in a dwell, come back, or are pooled with faster ones."""
+
+    def is_one(*rows: fit_rivals.Path, segment: Segment = "approach") -> bool:
+        curves = [
+            Likelihood(
+                path.depth,
+                path.depth,
+                ELASTIC,
+                1.0,
+                (CONTACT_POINT,),
+                time=path.time,
+                segment=segment,
+            )
+            for path in rows
+        ]
+        return _at_one_speed(Pool.of(curves) if len(curves) > 1 else curves[0])
+
+    assert is_one(path())
+    assert is_one(path(), path(rate=1.2))
+    assert not is_one(path(), path(rate=10.0))
+    assert not is_one(path(dwell=True))
+    assert not is_one(path("both"), segment="both")
 
 
 @pytest.mark.parametrize(("gain", "chosen"), [(1.2, None), (7.0, "tension+adhesion")])
