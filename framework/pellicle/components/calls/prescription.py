@@ -22,10 +22,7 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
     ------
     ConfigError
         The value is not allowed in this setting.
-    PluginError
-        A variable that the prescription adds has the name of another, or no name.
     """
-    _check_names(prescription)
     try:
         with errors_attributed_to(prescription):
             prescription.check(setting, value)
@@ -34,8 +31,14 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
         raise (error if named else error.within(field)) from None
 
 
-def _check_names(prescription: Prescription) -> None:
-    """Refuse variables that would replace others of a result, or have no name in Python."""
+def check_variables(prescription: Prescription) -> None:
+    """Refuse variables that would replace others of a result, or whose name is none in Python.
+
+    Raises
+    ------
+    PluginError
+        The message names the first such variable.
+    """
     reserved = {*VARIABLES, *COORDINATES}
     for variable in prescription.variables:
         name = variable.name
