@@ -9,7 +9,8 @@ from pellicle.arrays import Mask
 from pellicle.components import Interaction
 from pellicle.components.prescription import Search
 from pellicle.config.run import Run
-from pellicle.numerics.problem import Equilibrium, Stiffness
+from pellicle.numerics.contact_stiffness import Stiffness
+from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.numerics.solution import Stop
 from pellicle.results.status import Status
 from pellicle.units import DIGITS, readable

@@ -16,7 +16,7 @@ from pellicle.components.calls import (
 )
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
-from pellicle.numerics.problem import Equilibrium, measure
+from pellicle.numerics.equilibrium import Equilibrium, measure
 from pellicle.results.step import step_dataset
 from pellicle.runs.compose import compose
 from pellicle.runs.target_search import reach

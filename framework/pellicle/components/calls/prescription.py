@@ -9,7 +9,8 @@ import numpy as np
 from pellicle.checks import component_name, errors_attributed_to, real_number
 from pellicle.components.prescription import Prescription, Search, Setting
 from pellicle.errors import ConfigError, PluginError, shown
-from pellicle.numerics.problem import Depth, Equilibrium, Force
+from pellicle.numerics.equilibrium import Equilibrium
+from pellicle.numerics.problem import Depth, Force
 from pellicle.results.variables import COORDINATES, VARIABLES
 
 
