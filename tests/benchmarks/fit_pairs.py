@@ -107,15 +107,9 @@ def _joined(pool: Pool, part: Coordinates) -> Coordinates:
 
 def minimum_of(curve: ChiSquared, code: str) -> tuple[Rival, ChiSquared, Minimum, float]:
     """Return a rival, χ² at the noise of its residuals, its minimum, and the threshold."""
-    members = [member for member, _ in curve.curves(dict.fromkeys(curve.parameters, 0.0))]
-    singles = [fit_single(member, {OFFSET: 0.0, SLOPE: 0.0}) for member in members]
-    chi: Any = (
-        replace(curve, members=tuple(s.likelihood for s in singles))
-        if isinstance(curve, Pool)
-        else singles[0].likelihood
-    )
-    parts = [single.parameters for single in singles]
-    start = chi.joined(parts) if isinstance(chi, Pool) else parts[0]
+    singles = [fit_single(member, {OFFSET: 0.0, SLOPE: 0.0}) for member in curve.members]
+    chi = curve.with_members([single.likelihood for single in singles])
+    start = chi.joined([single.parameters for single in singles])
     by_code = {rival.code: rival for rival in rivals(chi, start)}
     rival, single = by_code[code], by_code[code.partition("+")[2]]
     without = single.minimum(chi, [start | {TENSION: 0.0}, start])
@@ -130,11 +124,9 @@ def minimum_of(curve: ChiSquared, code: str) -> tuple[Rival, ChiSquared, Minimum
     judgements = [judged(member, part)[0] for member, part in mine.curves(best.parameters)]
     quiet = [
         replace(member, noise=judgement.noise.deviation)
-        for (member, _), judgement in zip(
-            chi.curves(dict.fromkeys(chi.parameters, 0.0)), judgements, strict=True
-        )
+        for member, judgement in zip(chi.members, judgements, strict=True)
     ]
-    chi = replace(chi, members=tuple(quiet)) if isinstance(chi, Pool) else quiet[0]
+    chi = chi.with_members(quiet)
     freedom = sum(judgement.noise.freedom for judgement in judgements)
     best = rival.of(chi).minimise(best.parameters, rough=True)
     return rival, chi, best, chi_squared_threshold(freedom)

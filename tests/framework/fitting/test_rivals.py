@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.special import beta
 
 import pellicle as pl
-from pellicle.fitting.comparison import Comparison, RivalFit, Verdict, _judge, decision
+from pellicle.fitting.comparison import Comparison, RivalFit, Verdict
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.effects import DRAG, DRIFT, DragModel, DriftModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
@@ -30,7 +30,9 @@ from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, T
 from pellicle.fitting.report.answer import answer
 from pellicle.fitting.report.page import save_report
 from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle.fitting.statistics.pooled_likelihood import Pool
 from pellicle.fitting.statistics.rivals import MARGIN, NONE, TENSED, Rival
+from pellicle.fitting.verdict import decision, judge
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 
@@ -360,8 +362,7 @@ def test_an_effect_beside_tension_has_to_beat_tension_alone(
         for code in ranked
     } | {rival.code: rival for rival in (NONE, TENSED)}
     fits = [RivalFit(rivals[code], 0.0, aic, aic, {}, {}) for code, aic in ranked.items()]
-    unused: Any = None
-    comparison = _judge(unused, fits, [])
+    comparison = judge(Pool.of([]), fits, [])
     assert comparison.verdict == "needed"
     assert (comparison.chosen and comparison.chosen.rival.code) == chosen
     assert ("beside it there is adhesion" in comparison.sentence) == (chosen is not None)
