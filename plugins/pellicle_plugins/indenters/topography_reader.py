@@ -329,10 +329,38 @@ def _size(
                 "size",
             )
         return size
-    x, y = (float(edge) * scale for edge in stated)
+    x, y = (
+        float(edge) * in_metres
+        for edge, in_metres in zip(stated, _scales_of_edges(channel, path, scale), strict=True)
+    )
     if size is not None:
         raise ConfigError(f"{path} states its own size, {x:g} × {y:g} m; leave this out", "size")
     return x, y
+
+
+def _scales_of_edges(channel: Any, path: Path, scale: float) -> tuple[float, float]:
+    """Return the lengths that 1 in the size stands for along x and y [m].
+
+    SurfaceTopography converts the size to the unit of the heights, but if a header states a unit of
+    the size alone, it leaves both as they are.
+    """
+    header = channel.info.get("raw_metadata", {}) if channel.unit is None else {}
+    along_x = header.get("xunit")
+    along_y = header.get("yunit") or along_x
+    return _scale_of_edge(along_x, path, scale), _scale_of_edge(along_y, path, scale)
+
+
+def _scale_of_edge(unit: str | None, path: Path, scale: float) -> float:
+    if not unit:
+        return scale
+    try:
+        return Quantity("m")(f"1 {unit}")
+    except ValueError:
+        raise ConfigError(
+            f"{path} states its size in {unit!r}, which is not a unit of length; in its header, "
+            "write decimals with a point and units such as um",
+            "path",
+        ) from None
 
 
 def require_content(points: int, path: Path) -> None:

@@ -474,6 +474,33 @@ def test_numbers_between_commas_or_semicolons(tmp_path: Path, text: str) -> None
     assert heights[0] == pytest.approx(heights[1], abs=0)
 
 
+@pytest.mark.parametrize(
+    "header",
+    [
+        "# Width: 10 µm\n# Height: 8 µm",
+        "# Width: 10 μm\n# Height: 8000 nm",
+        "x-length = 10\ny-length = 8\nx-unit = um",
+        "# Width: 10 µm\n# Height: 8 µm\n# Value units: nm",
+    ],
+)
+def test_size_of_a_header_is_in_its_own_unit(tmp_path: Path, header: str) -> None:
+    """Nanometres of heights, given or stated, do not make a scan of micrometres a thousandth."""
+    path = tmp_path / "a.txt"
+    rows = "\n".join("1 2 3 4 5" for _ in range(4))
+    path.write_text(f"{header}\n{rows}", encoding="utf-8")
+    unit = {} if "Value" in header else {"unit": "1 nm"}
+    profile = _profile(pl.Grid(points=[5, 4], size=["10 um", "8 um"]), path, level="none", **unit)
+    assert profile == pytest.approx(1e-9 * np.tile(np.arange(-4, 1), (4, 1)).T, abs=1e-20)
+
+
+def test_size_with_decimal_commas_is_refused(tmp_path: Path) -> None:
+    """A width of 10,5 µm is not taken for 10."""
+    path = tmp_path / "a.txt"
+    path.write_text("# Width: 10,5 µm\n# Height: 8,2 µm\n1 2 3 4\n2 3 4 5\n3 4 5 6\n", "utf-8")
+    with pytest.raises(pl.ConfigError, match=r"^path: .* states its size in ',5 µm', which is"):
+        pl.indenter("topography", path=path, unit="1 nm")
+
+
 @pytest.mark.parametrize("mark", ["\t", ",", ";"])
 @pytest.mark.parametrize("column", [0, 2, 4])
 def test_missing_points_of_a_text_keep_their_place(tmp_path: Path, mark: str, column: int) -> None:
