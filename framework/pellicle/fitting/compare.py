@@ -8,9 +8,9 @@ from functools import partial, reduce
 
 import numpy as np
 
-from pellicle.units import decimal, readable
+from pellicle.units import readable
 
-from .comparison import RELAXING_PAIR, Comparison, Intervals, RivalFit
+from .comparison import Comparison, Intervals, RivalFit
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
 from .models.relaxing import EXPONENT
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
@@ -20,6 +20,7 @@ from .statistics.noise import FailedCheck
 from .statistics.profile import Ends, Estimate, curvature_interval, estimate_of, united
 from .statistics.rivals import NONE, TENSED, Rival, rivals
 from .verdict import MANY_MARGIN, judge
+from .wording import words
 
 _FIRST_TENSIONS = (0.03, 0.3)
 """Tensions from which a search for one starts, over modulus and depth."""
@@ -28,6 +29,11 @@ _FAR = 100.0
 curves so badly that profiles, a third of the time of a comparison, would say nothing more."""
 _ONE_SPEED = 1.5
 """Ratio of speeds up to which curves count as measured at one."""
+_UNSEEN = {
+    "tension+adhesion": (WORK_OF_ADHESION, "on approach {} would not show, on retraction it would"),
+    "tension+power_law": (EXPONENT, "at one speed {} would not show, at a second it would"),
+}
+"""By the code of a pair, the parameter of its effect and what of it a measurement does not show."""
 _NUISANCES = {CONTACT_POINT.name, OFFSET.name, SLOPE.name}
 """Parameters of every curve, whose values a comparison does not report."""
 _Minima = dict[str, tuple[Rival, Minimum]]
@@ -58,7 +64,8 @@ def compare(
         Whether all explanations get intervals; otherwise only the one that is chosen.
     pairs
         Whether a tension is compared beside each other effect; otherwise only if no single effect
-        passes its checks, or beside one that leads, adhesion, and relaxation at one speed.
+        passes its checks, or beside one that leads, adhesion, and relaxation at one
+        speed.
     report
         Called with the name of each explanation.
     """
@@ -66,8 +73,7 @@ def compare(
     quiet, failed = _at_its_noise(chi_squared, minima)
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
-    at_one_speed = _at_one_speed(chi_squared)
-    comparison = replace(judge(quiet, fits, failed), at_one_speed=at_one_speed)
+    comparison = replace(judge(quiet, fits, failed), unseen=_unseen(chi_squared))
     if comparison.chosen is not None:
         comparison = _with_intervals(quiet, comparison, comparison.chosen, threshold)
     return _over_alternatives(quiet, comparison, threshold)
@@ -106,7 +112,7 @@ def _minima(
             or (
                 single == "adhesion" and alone.get(single, np.inf) + MANY_MARGIN <= alone[NONE.code]
             )
-            or (rival.code == RELAXING_PAIR and _at_one_speed(chi_squared))
+            or (single == "power_law" and rival.code in _unseen(chi_squared))
         )
         if single and (every_pair or leads):
             start = minima.get(single, (NONE, without))[1]
@@ -119,12 +125,19 @@ def _minima(
     return minima
 
 
-def _at_one_speed(chi_squared: ChiSquared) -> bool:
-    """Whether the curves are approaches at one speed, without a dwell."""
-    if any(curve.segment != "approach" or curve.history.dwells for curve in chi_squared.members):
-        return False
-    speeds = [float(np.median(curve.history.velocity)) for curve in chi_squared.members]
-    return max(speeds) <= _ONE_SPEED * min(speeds)
+def _unseen(chi_squared: ChiSquared) -> tuple[str, ...]:
+    """Return the codes of pairs that curves of this kind may need and do not show.
+
+    Beside a tension approaches do not show a weak adhesion, nor those of one speed relaxation.
+    """
+    curves = chi_squared.members
+    if any(curve.segment != "approach" for curve in curves):
+        return ()
+    speeds = [float(np.median(curve.history.velocity)) for curve in curves]
+    several = max(speeds) > _ONE_SPEED * min(speeds)
+    if several or any(curve.history.dwells for curve in curves):
+        return ("tension+adhesion",)
+    return tuple(_UNSEEN)
 
 
 def _over_alternatives(
@@ -135,7 +148,9 @@ def _over_alternatives(
         return comparison
     chosen = TENSED.code if comparison.chosen is None else comparison.chosen.rival.code
     is_needed = comparison.verdict == "needed"
-    searched = [MODULUS, TENSION, EXPONENT] if is_needed else [MODULUS]
+    searched = [MODULUS]
+    if is_needed:
+        searched += [TENSION, *(parameter for parameter, _ in _UNSEEN.values())]
     estimates = {
         fit.rival.code: _estimates_of(chi_squared, fit, threshold, searched)
         for fit in comparison.alternatives
@@ -150,14 +165,20 @@ def _over_alternatives(
     if not is_needed:
         return comparison
     comparison = replace(comparison, tension=over_all(TENSION.name))
-    if chosen == RELAXING_PAIR or RELAXING_PAIR not in estimates:
-        return comparison
-    exponent = estimates[RELAXING_PAIR][EXPONENT.name].high
-    size = "" if exponent is None else f" of an exponent up to {decimal(exponent, 2)}"
-    hidden = (
-        f"at one speed power-law relaxation{size} beside it would not show, at a second it would"
-    )
-    return replace(comparison, sentence=f"{comparison.sentence}; {hidden}")
+    hidden = [
+        sentence.format(
+            _up_to(parameter.name, estimates[code][parameter.name].high, parameter.unit)
+        )
+        for code, (parameter, sentence) in _UNSEEN.items()
+        if code in comparison.unseen and code in estimates and code != chosen
+    ]
+    return replace(comparison, sentence="; ".join([comparison.sentence, *hidden]))
+
+
+def _up_to(name: str, high: float | None, unit: str) -> str:
+    """Return what a parameter may be at most beside a tension, in words."""
+    size = "of any size" if high is None else f"up to {readable(high, unit, 2)}"
+    return f"a {words(name)} {size} beside it"
 
 
 def _estimates_of(

@@ -19,8 +19,6 @@ EFFECT_MARGIN = 6.0
 """Difference of AIC by which an effect must beat its absence: chance alone does so in 0.2 %."""
 _PAIR_MARGIN = 2.0
 """Difference of AIC that a pair of effects which is not needed exceeds in 5 % of curves."""
-RELAXING_PAIR = "tension+power_law"
-"""Tension beside the relaxation that approaches at one speed cannot exclude."""
 Intervals = Literal["none", "profile", "curvature"]
 Verdict = Literal["needed", "not shown", "undecided", "other"]
 
@@ -70,8 +68,8 @@ class Comparison:
     """The explanation whose estimates count, if it is not an elastic solid under tension."""
     pull_off: str = ""
     """The pull-off force of an adhesive contact against its limits, in words."""
-    at_one_speed: bool = False
-    """Whether the curves are approaches at one speed, without a dwell."""
+    unseen: tuple[str, ...] = ()
+    """Codes of pairs whose effect a measurement of this kind does not show beside a tension."""
     modulus: Estimate | None = None
     """E* [Pa] with the least interval that contains those of all `alternatives`, if several."""
     tension: Estimate | None = None
@@ -92,17 +90,16 @@ class Comparison:
         """The explanation whose estimates count, and those that are tied with it.
 
         A pair, which is never far behind one of its effects, counts if both are less likely than
-        it.  That of a tension and relaxation always counts at one speed, at which a power law bends
-        the curve as a tension does, so that neither shows as long as the other is free.  Of curves
-        that need no tension only other shapes count, which have no parameter more, and what is
-        better than no effect by the margin.
+        it, and always if its effect is `unseen`: that bends a curve as a tension does, so that
+        neither shows as long as the other is free.  Of curves that need no tension only other
+        shapes count, which have no parameter more, and what is better than no effect by the margin.
         """
         aic = {fit.rival.code: fit.aic for fit in self.fits}
 
         def counts(fit: RivalFit) -> bool:
             if self.verdict == "not shown":
                 return fit.rival.of_shape or fit.aic + EFFECT_MARGIN <= aic[NONE.code]
-            if self.at_one_speed and fit.rival.code == RELAXING_PAIR:
+            if fit.rival.code in self.unseen:
                 return True
             single = fit.rival.code.partition("+")[2]
             effects = aic[TENSED.code], aic.get(single, np.inf)

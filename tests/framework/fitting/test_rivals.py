@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.special import beta
 
 import pellicle as pl
-from pellicle.fitting.compare import _at_one_speed
+from pellicle.fitting.compare import _unseen
 from pellicle.fitting.comparison import Comparison, RivalFit, Verdict
 from pellicle.fitting.curves.curve import Segment
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
@@ -216,7 +216,7 @@ def test_one_speed_does_not_tell_a_tension_from_relaxation_beside_it() -> None:
         assert estimate.low is not None
         assert estimate.high is not None
         assert estimate.low < value < estimate.high
-    assert "at one speed power-law relaxation of an exponent up to 0.3" in fit.comparison
+    assert "at one speed a relaxation exponent up to 0.3" in fit.comparison
     assert "and the tension" in answer(fit)
 
 
@@ -380,15 +380,15 @@ def test_relaxation_beside_a_tension_counts_at_one_speed(aic: float, counts: boo
         RivalFit(Rival(code, code, "tension" in code, TENSED.build), 0.0, lead, lead, {}, {})
         for code, lead in ranked.items()
     ]
-    comparison = Comparison(tuple(fits), "needed", "", "", (), at_one_speed=True)
+    comparison = Comparison(tuple(fits), "needed", "", "", (), unseen=("tension+power_law",))
     codes = {fit.rival.code for fit in comparison.alternatives}
     assert codes == {"tension"} | ({"tension+power_law"} if counts else set())
 
 
-def test_what_is_one_speed() -> None:
-    """Approaches are, not if they end in a dwell, come back, or are pooled with faster ones."""
+def test_what_measurements_do_not_show() -> None:
+    """Adhesion in approaches; relaxation at one speed, without a dwell."""
 
-    def is_one(*rows: fit_rivals.Path, segment: Segment = "approach") -> bool:
+    def unseen(*rows: fit_rivals.Path, segment: Segment = "approach") -> tuple[str, ...]:
         curves = [
             Likelihood(
                 path.depth,
@@ -401,13 +401,14 @@ def test_what_is_one_speed() -> None:
             )
             for path in rows
         ]
-        return _at_one_speed(Pool.of(curves) if len(curves) > 1 else curves[0])
+        return _unseen(Pool.of(curves) if len(curves) > 1 else curves[0])
 
-    assert is_one(path())
-    assert is_one(path(), path(rate=1.2))
-    assert not is_one(path(), path(rate=10.0))
-    assert not is_one(path(dwell=True))
-    assert not is_one(path("both"), segment="both")
+    adhesion, relaxation = "tension+adhesion", "tension+power_law"
+    assert unseen(path()) == (adhesion, relaxation)
+    assert unseen(path(), path(rate=1.2)) == (adhesion, relaxation)
+    assert unseen(path(), path(rate=10.0)) == (adhesion,)
+    assert unseen(path(dwell=True)) == (adhesion,)
+    assert unseen(path("both"), segment="both") == ()
 
 
 @pytest.mark.parametrize(("gain", "chosen"), [(1.2, None), (7.0, "tension+adhesion")])
