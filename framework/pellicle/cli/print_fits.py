@@ -30,7 +30,7 @@ def print_fit(fit: FitResult, *, si: bool = False) -> None:
     from pellicle.fitting.report.answer import answer
     from pellicle.fitting.wording import column_scale, interval_text
 
-    if fit.chosen is not None or fit.range_of_moduli():
+    if fit.chosen is not None or fit.range_of_models():
         echo(answer(fit, si=si))
     if fit.chosen is not None:
         echo("An elastic solid under tension instead:")

@@ -15,7 +15,7 @@ from pellicle.errors import ConfigError, PellicleError
 from pellicle.runs.progress import status_line
 from pellicle.units import readable
 
-from .comparison import compare
+from .compare import compare
 from .config import FitConfig
 from .curves.curve import Curve
 from .curves.readers import Source

@@ -15,7 +15,7 @@ from pellicle.errors import ConfigError, PellicleError
 from pellicle.runs.progress import status_line
 from pellicle.units import decimal
 
-from .comparison import compare
+from .compare import compare
 from .config import FitConfig
 from .curves.curve import Note
 from .curves.readers import Curves, Source

@@ -20,7 +20,8 @@ from pellicle.components.calls import (
 )
 from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
-from pellicle.numerics.problem import Equilibrium, Stiffness, measure_stiffness
+from pellicle.numerics.contact_stiffness import Stiffness, measure_stiffness
+from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.numerics.solution import Stop
 from pellicle.results.step import Steps, step_dataset
 from pellicle.results.variables import corrected_area as area_variable

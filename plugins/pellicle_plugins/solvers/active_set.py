@@ -154,10 +154,10 @@ class ActiveSet(ScaledSolver):
             state = _iterate(problem, preconditioner.on(start.contact), start.wall)
             if state.error <= _CLOSE * state.scale:
                 return state
-        prolonged = self._prolonged(problem)
-        pressure = first_guess(problem) if prolonged is None else prolonged
+        from_coarse = self._prolonged(problem)
+        pressure = first_guess(problem) if from_coarse is None else from_coarse
         state = _iterate(problem, preconditioner.on(pressure > 0), pressure)
-        return state if prolonged is None else _without_pits(problem, state)
+        return state if from_coarse is None else _without_pits(problem, state)
 
     def step(self, problem: Problem, state: _Iterate) -> _Iterate:
         """Return the iterate after one outer iteration."""

@@ -227,16 +227,19 @@ def _free_shape(grid: Grid) -> tuple[int, int]:
 
 def _halvings(shape: tuple[int, int]) -> int:
     """Return how often the plane of the extension of a grid is to be halved."""
-    fewest = min((n for n in shape if n > 1), default=1)
-    return max(_HALVINGS, (fewest // _COARSEST).bit_length() - 1)
+    return max(_HALVINGS, (_fewest(shape) // _COARSEST).bit_length() - 1)
 
 
 def _round_up(shape: tuple[int, int]) -> tuple[int, int]:
     """Return the shape with axes of more than one cell rounded up to multiples of a power of 2."""
-    fewest = min((n for n in shape if n > 1), default=1)
-    multiple = 2 ** min(_halvings(shape), max(0, fewest.bit_length() - 2))
+    multiple = 2 ** min(_halvings(shape), max(0, _fewest(shape).bit_length() - 2))
     nx, ny = (-(-n // multiple) * multiple if n > 1 else 1 for n in shape)
     return nx, ny
+
+
+def _fewest(shape: tuple[int, int]) -> int:
+    """Return the number of cells along the shorter axis, among those of more than one cell."""
+    return min((n for n in shape if n > 1), default=1)
 
 
 def _levels(shape: tuple[int, int]) -> int:

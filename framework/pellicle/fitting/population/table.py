@@ -48,9 +48,10 @@ def table(rows: list[Row]) -> xr.Dataset:
     for end in ("value", "low", "high"):
         name = f"chosen_reduced_modulus{'' if end == 'value' else f'_{end}'}"
         columns[name] = numbers((e and e[end] for e in chosen), "Pa")
-    tied = [row.get("rivals", {}).get("reduced_modulus") or {} for row in rows]
-    for end in ("low", "high"):
-        columns[f"tied_reduced_modulus_{end}"] = numbers((e.get(end) for e in tied), "Pa")
+    for name, unit in (("reduced_modulus", "Pa"), ("tension", "N/m")):
+        tied = [row.get("rivals", {}).get(name) or {} for row in rows]
+        for end in ("low", "high"):
+            columns[f"tied_{name}_{end}"] = numbers((e.get(end) for e in tied), unit)
     columns["tension_needed"] = numbers(row.get("tension_needed") for row in rows)
     for name in ("delta_chi_squared", "delta_aic"):
         columns[name] = numbers(row.get("without_tension", {}).get(name) for row in rows)

@@ -20,7 +20,6 @@ from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
 from .long_memory import exponent_of
 from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
-from .pooled_likelihood import Pool
 from .profile import CONFIDENCE
 
 _QUIET = 20
@@ -265,9 +264,7 @@ def _misfit(code: str, finding: str, residuals: Residuals) -> FailedCheck:
     )
 
 
-def check_shape(
-    chi_squared: Likelihood | Pool, best: Minimum
-) -> tuple[list[str], list[FailedCheck]]:
+def check_shape(chi_squared: ChiSquared, best: Minimum) -> tuple[list[str], list[FailedCheck]]:
     """Return the effect of whole shapes in words, as a failed check if they replace the tension.
 
     They are those that the indenters of curves too deep for them approximate.  The check fails if
@@ -293,7 +290,7 @@ def check_shape(
         fails = _needs_no_tension(other, minimum, chi_squared, best)
     except ConvergenceError:
         return [], []
-    if isinstance(chi_squared, Pool):
+    if len(models) > 1:
         words = (
             f"{len(deep)} of {len(models)} curves go deeper than {SHALLOW:g} of the radius, and "
             "the shapes that their indenters approximate describe the curves equally well without "

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -20,6 +20,8 @@ from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinate
 
 from .condensed import Condensation, Rows
 from .long_memory import differenced
+
+_Value = TypeVar("_Value")
 
 REACH = np.log(100.0)
 """Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""
@@ -126,13 +128,34 @@ class ChiSquared(ABC):
         """Whether χ² jumps as a row touches, where searches to the last digit do not end."""
         return False
 
+    @property
+    @abstractmethod
+    def members(self) -> tuple[Likelihood, ...]:
+        """The likelihood of each curve."""
+
+    @abstractmethod
+    def with_members(self, members: Sequence[Likelihood]) -> ChiSquared:
+        """Return χ² of other likelihoods, one for each curve, whose free parameters are free."""
+
     @abstractmethod
     def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
         """Return the likelihood and the coordinates of each curve."""
 
     @abstractmethod
+    def joined(self, parts: Sequence[Mapping[Parameter, _Value]]) -> dict[Parameter, _Value]:
+        """Return what each curve has by its parameters, with the first curve's shared ones."""
+
+    def with_models(self, models: Sequence[ForceModel]) -> ChiSquared:
+        """Return the same with other force models, one for each curve."""
+        pairs = zip(self.members, models, strict=True)
+        return self.with_members([replace(member, force_model=model) for member, model in pairs])
+
     def coarse(self) -> ChiSquared | None:
         """Return the same with force curves from coarser grids; None if none is simulated."""
+        models = [member.force_model for member in self.members]
+        if not any(model.coarse for model in models):
+            return None
+        return self.with_models([model.coarse or model for model in models])
 
     def condensed(self, parameters: Coordinates, tolerance: float) -> ChiSquared:
         """Return the same χ² from a model that is evaluated at fewer rows, if it is that smooth.
@@ -383,19 +406,24 @@ class Likelihood(ChiSquared):
             SLOPE: Range(height / span, -steepest, steepest),
         }
 
+    @property
+    def members(self) -> tuple[Likelihood, ...]:
+        """The curve itself."""
+        return (self,)
+
+    def with_members(self, members: Sequence[Likelihood]) -> Likelihood:
+        """Return the one of ``members``."""
+        (member,) = members
+        return member
+
     def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
         """Return the likelihood and the coordinates of the one curve."""
         return [(self, parameters)]
 
-    def with_models(self, models: Sequence[ForceModel]) -> Likelihood:
-        """Return the same with another force model."""
-        (model,) = models
-        return replace(self, force_model=model)
-
-    def coarse(self) -> Likelihood | None:
-        """Return the same with the force model of a coarser grid, if there is one."""
-        coarse = self.force_model.coarse
-        return None if coarse is None else self.with_models([coarse])
+    def joined(self, parts: Sequence[Mapping[Parameter, _Value]]) -> dict[Parameter, _Value]:
+        """Return what the one curve has by its parameters."""
+        (part,) = parts
+        return dict(part)
 
     def condensed(self, parameters: Coordinates, tolerance: float) -> Likelihood:
         """Return the same χ² from a model that is evaluated at fewer rows, if it is that smooth."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import HasContactRadius, HasForceCurve, HasLayerForceCurve, Indenter
-from pellicle.errors import ConvergenceError, PellicleError
+from pellicle.errors import PellicleError
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.effects import DRAG, DRIFT, DragModel, DriftModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel, TensionModel
@@ -34,10 +34,10 @@ from pellicle.fitting.parameters import (
 )
 from pellicle.plugins import registry
 
+from .checks import SHALLOW
 from .condensed import Rows
 from .initial_guess import initial_guesses
 from .likelihood import ChiSquared, Likelihood, Minimum, least
-from .pooled_likelihood import Pool
 from .profile import OPEN, Ends, extended, profiled
 
 MARGIN = 4.0
@@ -58,8 +58,6 @@ _INCOMPRESSIBLE = 0.5
 """Poisson's ratio of a layer, whose effect is that of another thickness to first order."""
 _THICKNESSES = (2.0, 10.0)
 """Thicknesses from which a search starts, over the range of positions."""
-_SHALLOW = 0.1
-"""Depth over radius up to which sphere and paraboloid are one shape."""
 _CONE = np.pi / 4
 """Half angle of a cone in place of a bead, which its modulus cannot be told from."""
 _LOST = 12.0
@@ -103,21 +101,18 @@ class Rival:
 
     def of(self, chi_squared: ChiSquared) -> ChiSquared:
         """Return χ² with this model in place of an elastic solid under tension."""
-        if isinstance(chi_squared, Pool):
-            return Pool.of([self._of(member) for member in chi_squared.members])
-        assert isinstance(chi_squared, Likelihood)
-        return self._of(chi_squared)
+        return chi_squared.with_members([self.of_curve(m) for m in chi_squared.members])
 
-    def _of(self, likelihood: Likelihood) -> Likelihood:
+    def of_curve(self, likelihood: Likelihood) -> Likelihood:
+        """Return the likelihood of a curve with this model."""
         free = [p for p in likelihood.free if p != TENSION or self.has_tension]
         free += [p for p in (*self.own, *self.baseline) if p not in free]
         return replace(likelihood, force_model=self.build(likelihood), free=tuple(free))
 
     def start(self, chi_squared: ChiSquared, known: Coordinates) -> Coordinates:
         """Return coordinates for all parameters of a χ² of this model."""
-        defaults = {WORK_OF_ADHESION: -20.0, RELAXATION_TIME: 0.0, THICKNESS: -10.0}
-        missing = {p: defaults.get(p, 0.0) for p in chi_squared.parameters if p not in known}
-        start = {p: known.get(p, missing.get(p, 0.0)) for p in chi_squared.parameters}
+        defaults = {WORK_OF_ADHESION: -20.0, THICKNESS: -10.0}
+        start = {p: known.get(p, defaults.get(p, 0.0)) for p in chi_squared.parameters}
         return start if self.has_tension or TENSION not in start else start | {TENSION: 0.0}
 
     def minimum(
@@ -128,23 +123,23 @@ class Rival:
         That model may know more: which rows touch.  ``starts`` may lack the parameters of its own,
         of which it has guesses.  None is returned if no search converges.
         """
-        mine, minima, was_thin = self.of(chi_squared), [], False
-        is_long = max(m.force.size for m, _ in chi_squared.curves(starts[0])) > _LONG
+        own, minima, was_thin = self.of(chi_squared), [], False
+        is_long = max(member.force.size for member in chi_squared.members) > _LONG
         for start in starts:
-            whole = self.start(mine, start)
+            whole = self.start(own, start)
             known = [p for p in self.own if p in start]
-            guesses = [{}] if len(known) == len(self.own) else self._guesses(mine, whole)
+            guesses = [{}] if len(known) == len(self.own) else self._guesses(own, whole)
             for guess in guesses:
-                with suppress(ConvergenceError, PellicleError):
-                    thin = mine.condensed(whole | guess, _COARSE) if is_long else mine
-                    was_thin = was_thin or thin is not mine
+                with suppress(PellicleError):
+                    thin = own.condensed(whole | guess, _COARSE) if is_long else own
+                    was_thin = was_thin or thin is not own
                     minima.append(thin.minimise(whole | guess, rough=True))
         if not minima:
             return None
         best = least(minima)
         if WORK_OF_ADHESION in self.own:
             return self._attached(chi_squared, best)
-        return self, mine.minimise(best.parameters, rough=True) if was_thin else best
+        return self, own.minimise(best.parameters, rough=True) if was_thin else best
 
     def intervals(
         self,
@@ -176,7 +171,7 @@ class Rival:
         if touching is None:
             return self, best
         pairs = []
-        rows = sum(member.force.size for member, _ in chi_squared.curves(best.parameters))
+        rows = sum(member.force.size for member in chi_squared.members)
         for sense in (1, -1):
             shift, near = max(sense, 0) - 1, best
             while (pair := self._with_rows(chi_squared, near, touching, shift)) is not None:
@@ -233,7 +228,7 @@ class Rival:
             return next(known, None) or self.build(likelihood)
 
         rival = replace(self, build=build)
-        with suppress(ConvergenceError, PellicleError):
+        with suppress(PellicleError):
             return rival, rival.of(chi_squared).minimise(near.parameters, rough=True)
         return None
 
@@ -266,8 +261,7 @@ def _adhesive_guesses(
     """Yield the best of a scan for each curve, the shared parameters from the first."""
     parts = []
     for member, part in chi_squared.curves(start):
-        thin = rival.of(replace(member.thinned(_THIN), force_model=_elastic(member)))
-        assert isinstance(thin, Likelihood)
+        thin = rival.of_curve(replace(member.thinned(_THIN), force_model=_elastic(member)))
         span = max(member.deepest(part), 0.05 * float(np.ptp(member.position)))
         points = part[CONTACT_POINT] + span * np.linspace(-0.3, 0.6, 13)
         model = thin.force_model
@@ -281,8 +275,7 @@ def _adhesive_guesses(
             return
         parts.append(best)
     for rank in range(min(map(len, parts))):
-        chosen = [best[rank] for best in parts]
-        yield chi_squared.joined(chosen) if isinstance(chi_squared, Pool) else chosen[0]
+        yield chi_squared.joined([best[rank] for best in parts])
 
 
 def _undecided(model: AdhesiveModel, likelihood: Likelihood) -> Rows:
@@ -376,11 +369,11 @@ def _shapes(members: Sequence[Likelihood], deepest: float) -> Iterator[Rival]:
         return
     types = {getattr(indenter, "type", "") for indenter in indenters}
     for name in ("paraboloid", "sphere", "cone"):
-        if types == {name} or types == {"flat_punch"}:
+        if types in ({name}, {"flat_punch"}):
             continue
-        # Shallow, they differ by less than what is known of the shape of a bead.
+        # Shallow, sphere and paraboloid are one shape.
         radii = [getattr(indenter, "radius", np.inf) for indenter in indenters]
-        if name != "cone" and deepest <= _SHALLOW * min(radii):
+        if name != "cone" and deepest <= SHALLOW * min(radii):
             continue
         if all(_shape(name, indenter) is not None for indenter in indenters):
 
@@ -415,10 +408,9 @@ def rivals(chi_squared: ChiSquared, parameters: Coordinates) -> list[Rival]:
 
     ``parameters`` are the best with a tension.
     """
-    members = chi_squared.members if isinstance(chi_squared, Pool) else (chi_squared,)
-    likelihoods = [member for member in members if isinstance(member, Likelihood)]
+    members = chi_squared.members
     depths = [member.deepest(part) for member, part in chi_squared.curves(parameters)]
-    effects = [*_single_effects(likelihoods), *_shapes(likelihoods, max(depths))]
+    effects = [*_single_effects(members), *_shapes(members, max(depths))]
     pairs = [
         replace(
             effect,
