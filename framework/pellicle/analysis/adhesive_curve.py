@@ -60,13 +60,11 @@ class AdhesiveCurve:
         fixed_quantity = (
             self.depth if spring_constant == inf else self.force + spring_constant * self.depth
         )
-        lowest = (
-            np.flatnonzero((np.diff(fixed_quantity)[:-1] < 0) & (np.diff(fixed_quantity)[1:] >= 0))
-            + 1
-        )
+        rises = np.diff(fixed_quantity) >= 0
+        lowest = np.flatnonzero(~rises[:-1] & rises[1:])
         if not lowest.size:
             return AdhesiveContact(*np.full(3, nan))
-        middle = int(lowest[-1])
+        middle = int(lowest[-1]) + 1
         low, centre, high = fixed_quantity[middle - 1 : middle + 2]
         return self._near(middle, (low - high) / (2 * (low - 2 * centre + high)))
 

@@ -108,7 +108,7 @@ class ManyFits:
         return summary(self.rows)
 
     def _repr_html_(self) -> str:
-        """Return HTML for a notebook: the answer, the quartiles of each group, a picture."""
+        """Return HTML for a notebook: sentences, the quartiles of each group, a picture."""
         from .report.notebook import html_of_population
 
         return html_of_population(self)
