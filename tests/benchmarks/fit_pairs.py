@@ -30,7 +30,8 @@ from pellicle.fitting.parameters import (
     Coordinates,
 )
 from pellicle.fitting.statistics.checks import fit_single, judged
-from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood, Minimum
+from pellicle.fitting.statistics.chi_squared import ChiSquared, Minimum
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.pooled_likelihood import Pool
 from pellicle.fitting.statistics.profile import chi_squared_threshold
 from pellicle.fitting.statistics.rivals import Rival, rivals

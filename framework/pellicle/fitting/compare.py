@@ -14,7 +14,8 @@ from .comparison import Comparison, Intervals, RivalFit
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from .statistics.checks import judged
-from .statistics.likelihood import ChiSquared, Likelihood, Minimum
+from .statistics.chi_squared import ChiSquared, Minimum
+from .statistics.likelihood import Likelihood
 from .statistics.noise import FailedCheck
 from .statistics.profile import Ends, Estimate, curvature_interval, estimate_of, united
 from .statistics.rivals import NONE, TENSED, Rival, rivals

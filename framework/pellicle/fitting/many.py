@@ -26,7 +26,7 @@ from pellicle.runs.lock import locked
 from pellicle.runs.progress import StudyProgress
 
 from .config import FitConfig
-from .curves.readers import Curves, Source, SourceStream
+from .curves.sources import Curves, Source, SourceStream
 from .fit import Fit, fit_problem
 from .models.adhesive import WORK_OF_ADHESION
 from .population.images import force_maps

@@ -18,14 +18,15 @@ from pellicle.units import decimal
 from .compare import compare
 from .config import FitConfig
 from .curves.curve import Note
-from .curves.readers import Curves, Source
+from .curves.sources import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
 from .result import FitResult, thickness_of
 from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
+from .statistics.chi_squared import Minimum, best_minimum
 from .statistics.design import pooled_advice
-from .statistics.likelihood import Likelihood, Minimum, best_minimum
+from .statistics.likelihood import Likelihood
 from .statistics.noise import FailedCheck, doubt_of_tension
 from .statistics.pooled_likelihood import Pool
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood

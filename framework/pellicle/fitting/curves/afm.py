@@ -16,8 +16,9 @@ from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
+from .cleaning import grows
 from .columns import Calibration
-from .curve import Axis, Curve, Site, grows
+from .curve import Axis, Curve, Site
 from .origin import Origin
 
 SUFFIXES = (

@@ -13,7 +13,8 @@ from pellicle.errors import ConfigError, shown
 from pellicle.model.base import Model
 from pellicle.units import Quantity
 
-from .curve import Curve, grows
+from .cleaning import grows
+from .curve import Curve
 from .origin import Origin
 from .roles import EXAMPLE, OF_BASE, POSITIONS, SIGNALS, TIME, ColumnMap, factor, is_voltage
 

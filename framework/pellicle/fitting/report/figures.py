@@ -27,7 +27,8 @@ from pellicle.fitting.parameters import (
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.result import FitResult
-from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
+from pellicle.fitting.statistics.chi_squared import ChiSquared
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.profile import Estimate
 from pellicle.report.saving import save_figure as save_drawing
 from pellicle.report.style import LINES

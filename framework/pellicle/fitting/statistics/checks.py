@@ -16,8 +16,9 @@ from pellicle.fitting.models.solid import lengths
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 from pellicle.units import decimal, readable
 
+from .chi_squared import ChiSquared, Minimum, best_minimum
 from .initial_guess import initial_guesses
-from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
+from .likelihood import Likelihood
 from .long_memory import exponent_of
 from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
 from .profile import CONFIDENCE

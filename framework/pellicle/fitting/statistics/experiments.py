@@ -15,7 +15,8 @@ from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.parameters import CONTACT_POINT, Coordinates
 from pellicle.units import decimal, readable
 
-from .likelihood import ChiSquared, Likelihood
+from .chi_squared import ChiSquared
+from .likelihood import Likelihood
 from .pooled_likelihood import Pool
 from .rivals import MARGIN, Rival
 

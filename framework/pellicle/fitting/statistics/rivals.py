@@ -35,9 +35,10 @@ from pellicle.fitting.parameters import (
 from pellicle.plugins import registry
 
 from .checks import SHALLOW
+from .chi_squared import ChiSquared, Minimum, least
 from .condensed import Rows
 from .initial_guess import initial_guesses
-from .likelihood import ChiSquared, Likelihood, Minimum, least
+from .likelihood import Likelihood
 from .profile import OPEN, Ends, extended, profiled
 
 MARGIN = 4.0
