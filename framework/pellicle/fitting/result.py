@@ -219,11 +219,8 @@ class FitResult:
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: a sentence, the estimates, and the curve with its fit."""
-        from .fit import Fit
-        from .pooled import PooledFit
         from .report.notebook import html_of_fit
 
-        assert isinstance(self, (Fit, PooledFit)), "these are all fits that have panels"
         return html_of_fit(self)
 
     def plot(self) -> Figure:

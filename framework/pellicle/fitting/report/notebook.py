@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from io import BytesIO
-from typing import TYPE_CHECKING
 
 from pellicle.fitting.many import ManyFits
 from pellicle.fitting.result import FitResult
@@ -15,14 +14,10 @@ from pellicle.units import decimal
 from .figures import SIZE, Panel, panels
 from .sentences import sentence_of_fit, sentences_of_population
 
-if TYPE_CHECKING:
-    from pellicle.fitting.fit import Fit
-    from pellicle.fitting.pooled import PooledFit
-
 _DOTS_PER_INCH = 60
 
 
-def html_of_fit(fit: Fit | PooledFit) -> str:
+def html_of_fit(fit: FitResult) -> str:
     """Return a sentence, the estimates with their intervals, and the curve with its fit."""
     rows = []
     for name, estimate in fit.estimates().items():
