@@ -215,7 +215,7 @@ def _fit_pool(
     report: Callable[[str], None],
     compared: bool,
 ) -> PooledFit:
-    """Return the pooled fit of curves, of which each was fitted on its own."""
+    """Return the pooled fit of curves that were each fitted on their own."""
     report("least squares")
     pool = Pool.of([single.likelihood for _, single in singles])
     start = pool.initial_minimum([single.parameters for _, single in singles])
@@ -304,7 +304,7 @@ def _curve(
 
 
 class _Excess(NamedTuple):
-    """Rise of χ² where all curves share the parameters, over each curve on its own."""
+    """Rise of χ² if the curves share parameters, over that of each curve on its own."""
 
     chi_squared: float
     degrees: int

@@ -33,7 +33,7 @@ SUFFIXES = (
 """Suffixes that only instrument files have; .h5, .csv and .txt may be an instrument's too."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
 _FAR = 0.5
-"""Least motion of a segment that is no pause, over the largest motion."""
+"""Least motion of a segment that is not a pause, over the largest motion."""
 _SPRING, _TIP = "spring constant", "tip position"
 _HEIGHTS = ("height (measured)", "height (piezo)")
 

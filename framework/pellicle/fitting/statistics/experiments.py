@@ -153,7 +153,7 @@ def _duration(value: float, has_time: bool) -> str:
 def _separation(
     likelihood: Likelihood, measurement: Measurement, truth: Explanation, guess: Explanation
 ) -> float:
-    """Return the least χ² of a model on what another predicts, now and by a measurement.
+    """Return the least χ² of a model on curves that another predicts: this one and a planned one.
 
     A measurement that cannot be predicted, as by a cantilever that jumps, is worth nothing.
     """

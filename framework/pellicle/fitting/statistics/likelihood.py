@@ -58,7 +58,7 @@ class Likelihood(ChiSquared):
     segment: Segment = "approach"
     """Pass that was measured; rows of one are sorted by position, those of both by time."""
     condensation: Condensation | None = None
-    """Sum of squares over more rows, of which those here are the nodes."""
+    """Sum of squares over more rows; those here are its nodes."""
     memory: float = 0.0
     """Exponent d of noise whose power falls as f^(−2d); ``noise`` is that of the differences which
     make it independent."""
@@ -184,7 +184,7 @@ class Likelihood(ChiSquared):
         return [(self, parameters)]
 
     def joined(self, parts: Sequence[Mapping[Parameter, _Value]]) -> dict[Parameter, _Value]:
-        """Return what the one curve has by its parameters."""
+        """Return the values of the one curve."""
         (part,) = parts
         return dict(part)
 

@@ -280,7 +280,7 @@ def _adhesive_guesses(
 
 
 def _undecided(model: AdhesiveModel, likelihood: Likelihood) -> Rows:
-    """Return the rows of a retraction of which no jump decides if they touch, deeper and deeper."""
+    """Return the rows of a retraction that no jump tells to touch or not, by increasing depth."""
     rows = np.flatnonzero(likelihood.moves_out & (model.attached == 0))
     return rows[np.argsort(likelihood.base[rows], kind="stable")]
 
@@ -312,7 +312,7 @@ def _layer(likelihood: Likelihood) -> ForceModel:
 
 
 def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
-    """Yield what can bend the curves beside a tension."""
+    """Yield the effects, other than a tension, that can bend the curves."""
     if any(p not in member.free for member in members for p in (OFFSET, SLOPE)):
         yield Rival("baseline_slope", "a sloping baseline", False, _same, baseline=(OFFSET, SLOPE))
     if not all(isinstance(member.force_model, TensionModel) for member in members):
