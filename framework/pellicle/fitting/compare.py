@@ -18,7 +18,8 @@ from .statistics.chi_squared import ChiSquared, Minimum
 from .statistics.likelihood import Likelihood
 from .statistics.noise import FailedCheck
 from .statistics.profile import Ends, Estimate, curvature_interval, estimate_of, united
-from .statistics.rivals import NONE, TENSED, Rival, rivals
+from .statistics.rival import Rival
+from .statistics.rivals import NONE, TENSED, rivals
 from .verdict import MANY_MARGIN, judge
 
 _FIRST_TENSIONS = (0.03, 0.3)

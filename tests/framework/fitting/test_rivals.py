@@ -31,7 +31,8 @@ from pellicle.fitting.report.page import save_report
 from pellicle.fitting.report.sentences import sentence_of_fit
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.pooled_likelihood import Pool
-from pellicle.fitting.statistics.rivals import MARGIN, NONE, TENSED, Rival
+from pellicle.fitting.statistics.rival import Rival
+from pellicle.fitting.statistics.rivals import MARGIN, NONE, TENSED
 from pellicle.fitting.verdict import decision, judge
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid

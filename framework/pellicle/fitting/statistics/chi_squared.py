@@ -125,7 +125,7 @@ class ChiSquared(ABC):
 
     @abstractmethod
     def joined(self, parts: Sequence[Mapping[Parameter, _Value]]) -> dict[Parameter, _Value]:
-        """Return values by parameter from those of each curve; shared ones are the first curve's."""
+        """Return values by parameter from those of each curve, shared ones from the first."""
 
     def with_models(self, models: Sequence[ForceModel]) -> ChiSquared:
         """Return the same with other force models, one for each curve."""

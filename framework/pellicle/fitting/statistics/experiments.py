@@ -18,7 +18,8 @@ from pellicle.units import decimal, readable
 from .chi_squared import ChiSquared
 from .likelihood import Likelihood
 from .pooled_likelihood import Pool
-from .rivals import MARGIN, Rival
+from .rival import Rival
+from .rivals import MARGIN
 
 _ROWS = 150
 """Rows of a pass in a forecast."""
