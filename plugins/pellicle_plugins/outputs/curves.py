@@ -36,7 +36,7 @@ from .base import (
     scaled,
     set_scales,
 )
-from .curve_lines import NO_POINTS, Limit, Line, LineStyle, Points
+from .curve_lines import NO_POINTS, CurvePoints, Limit, Line, LineStyle
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -271,7 +271,7 @@ class Curves(XYFigure):
 
     def _points(
         self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray
-    ) -> tuple[Points, list[Leg]]:
+    ) -> tuple[CurvePoints, list[Leg]]:
         """Return the points of one curve, in the order of the table, and the legs of its path."""
         import xarray as xr
 
@@ -308,7 +308,7 @@ class Curves(XYFigure):
             path = legs(xr.broadcast(table["depth"], x)[0].values.ravel()[finite])
             # The many legs of an oscillation are not told apart by their style.
             path = path if has_interaction(table) or len(path) <= MOST_LEGS else []
-        return Points(*values[:, finite]), path
+        return CurvePoints(*values[:, finite]), path
 
 
 def _require_grids(x: xr.DataArray) -> None:

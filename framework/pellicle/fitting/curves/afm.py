@@ -19,7 +19,7 @@ from pellicle.units import Quantity
 from .cleaning import grows
 from .columns import Calibration
 from .curve import Axis, Curve, Site
-from .origin import Origin
+from .origin import CurveOrigin
 
 SUFFIXES = (
     ".jpk-force",
@@ -164,7 +164,7 @@ def _curve(
         rows = _rows_of(np.asarray(data["segment"]), tip, segment)
     used = {"position": f"{source} [m]", "force": "force [N]"}
     time = _time(data, rows)
-    origin = Origin(
+    origin = CurveOrigin(
         columns=used if time is None else used | {"time": "time [s]"},
         sensitivity=metadata.get("sensitivity", overrides.get("sensitivity")),
         library="afmformats",

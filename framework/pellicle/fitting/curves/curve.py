@@ -10,7 +10,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.units import axis_unit
 
-from .origin import Origin
+from .origin import CurveOrigin
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,7 +64,7 @@ class Curve:
     """Constant speed [m/s] of the base, from which the time follows if `time` is None."""
     site: Site | None = None
     """Where on the sample it was measured, if it belongs to a force map."""
-    origin: Origin = field(default_factory=Origin)
+    origin: CurveOrigin = field(default_factory=CurveOrigin)
     """Its file, with the hash, the columns and the calibration."""
 
     def plot(self, axes: Axes | None = None) -> Axes:
