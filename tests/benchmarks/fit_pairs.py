@@ -138,7 +138,7 @@ def score_of(name: str, number: int, seed: int) -> dict[str, Any]:
     """Return errors over bounds and coverage of one curve, or the verdict at one speed."""
     random = np.random.default_rng([seed, number, *name.encode()])
     if name == "one speed":
-        return {"verdict": one_speed(random)}
+        return one_speed(random)
     measured: ChiSquared
     right: ChiSquared
     if name == "retraction":
@@ -160,16 +160,26 @@ def score_of(name: str, number: int, seed: int) -> dict[str, Any]:
     return scores
 
 
-def one_speed(random: np.random.Generator) -> str:
-    """Return what the fit of an approach of a tensed power-law solid says."""
-    curve, _, _ = relaxing(random, (1.0,))
+def one_speed(random: np.random.Generator) -> dict[str, Any]:
+    """Return the verdict on an approach of a tensed power-law solid, and what its ranges hold.
+
+    The tension counts where one is said to be needed.
+    """
+    curve, _, truth = relaxing(random, (1.0,))
     assert isinstance(curve, Likelihood)
     sample = Sample(Truth(lambda rows: rows.depth, ("tension+power_law",)), random)
     assert curve.time is not None
     fit = fit_rivals.fitted(
         sample, fit_rivals.Curve(curve.position, curve.force, curve.time), "approach"
     )
-    return fit_rivals.verdict_of(fit)
+    tension = fit.rivals.tension if fit.rivals is not None else None
+    estimate = tension or fit.tension
+    low, high = estimate.low or 0.0, estimate.high or np.inf
+    return {
+        "verdict": fit_rivals.verdict_of(fit),
+        "modulus": fit_rivals.holds(fit_rivals.modulus_of(fit)),
+        "tension": bool(low <= truth[TENSION] <= high),
+    }
 
 
 def main() -> None:
@@ -182,6 +192,12 @@ def main() -> None:
             for verdict in sorted({value["verdict"] for value in values}):
                 count = sum(value["verdict"] == verdict for value in values)
                 print(f"{name} | {verdict} | {len(values)} | | {count}")
+            claimed = [value["tension"] for value in values if value["verdict"] == "needed"]
+            for parameter, flags in (
+                ("modulus over tied models", [value["modulus"] for value in values]),
+                ("tension over tied models", claimed),
+            ):
+                print(f"{name} | {parameter} | {len(flags)} | | {sum(flags)} held")
             continue
         for parameter in [key for key in values[0] if key != "points"]:
             errors, held = zip(*(value[parameter] for value in values), strict=True)

@@ -30,7 +30,7 @@ def print_fit(fit: FitResult, *, si: bool = False) -> None:
     from pellicle.fitting.report.sentences import sentence_of_fit
     from pellicle.fitting.wording import column_scale, interval_text
 
-    if fit.chosen is not None or fit.range_of_moduli():
+    if fit.chosen is not None or fit.range_of_models():
         echo(sentence_of_fit(fit, si=si))
     if fit.chosen is not None:
         echo("An elastic solid under tension instead:")

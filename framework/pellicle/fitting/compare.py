@@ -12,6 +12,7 @@ from pellicle.units import readable
 
 from .comparison import Comparison, Intervals, RivalFit
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
+from .models.relaxing import EXPONENT
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from .statistics.checks import judged
 from .statistics.chi_squared import ChiSquared, Minimum
@@ -21,12 +22,20 @@ from .statistics.profile import Ends, Estimate, curvature_interval, estimate_of,
 from .statistics.rival import Rival
 from .statistics.rivals import NONE, TENSED, rivals
 from .verdict import MANY_MARGIN, judge
+from .wording import words
 
 _FIRST_TENSIONS = (0.03, 0.3)
 """Tensions from which a search for one starts, over modulus and depth."""
 _FAR = 100.0
 """Difference of AIC beyond which intervals come from the curvature of χ²: their models describe the
 curves so badly that profiles, a third of the time of a comparison, would say nothing more."""
+_ONE_SPEED = 1.5
+"""Ratio of speeds up to which curves count as measured at one."""
+_UNSEEN = {
+    "tension+adhesion": (WORK_OF_ADHESION, "on approach {} would not show, on retraction it would"),
+    "tension+power_law": (EXPONENT, "at one speed {} would not show, at a second it would"),
+}
+"""By the code of a pair, the parameter of its effect and what of it a measurement does not show."""
 _NUISANCES = {CONTACT_POINT.name, OFFSET.name, SLOPE.name}
 """Parameters of every curve, whose values a comparison does not report."""
 _Minima = dict[str, tuple[Rival, Minimum]]
@@ -57,7 +66,7 @@ def compare(
         Whether all explanations get intervals; otherwise only the one that is chosen.
     pairs
         Whether a tension is compared beside each other effect; otherwise only if no single effect
-        passes its checks, or beside one that leads, and adhesion.
+        passes its checks, or beside one that leads, adhesion, and relaxation at one speed.
     report
         Called with the name of each explanation.
     """
@@ -65,10 +74,10 @@ def compare(
     quiet, failed = _at_its_noise(chi_squared, minima)
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
-    comparison = judge(quiet, fits, failed)
+    comparison = replace(judge(quiet, fits, failed), unseen=_unseen(chi_squared))
     if comparison.chosen is not None:
         comparison = _with_intervals(quiet, comparison, comparison.chosen, threshold)
-    return _with_modulus(quiet, comparison, threshold)
+    return _over_alternatives(quiet, comparison, threshold)
 
 
 def _minima(
@@ -99,8 +108,12 @@ def _minima(
     for rival in every:
         single = rival.code.partition("+")[2]
         # What leads alone may hide a tension beside it, as a tension may hide adhesion.
-        leads = single == min(alone, key=alone.__getitem__) or (
-            single == "adhesion" and alone.get(single, np.inf) + MANY_MARGIN <= alone[NONE.code]
+        leads = (
+            single == min(alone, key=alone.__getitem__)
+            or (
+                single == "adhesion" and alone.get(single, np.inf) + MANY_MARGIN <= alone[NONE.code]
+            )
+            or (single == "power_law" and rival.code in _unseen(chi_squared))
         )
         if single and (every_pair or leads):
             start = minima.get(single, (NONE, without))[1]
@@ -113,23 +126,73 @@ def _minima(
     return minima
 
 
-def _with_modulus(chi_squared: ChiSquared, comparison: Comparison, threshold: float) -> Comparison:
-    """Return the comparison with the interval of the modulus over all tied explanations."""
+def _unseen(chi_squared: ChiSquared) -> tuple[str, ...]:
+    """Return the codes of pairs that curves of this kind may need and do not show.
+
+    Beside a tension approaches do not show a weak adhesion, nor those of one speed relaxation.
+    """
+    curves = chi_squared.members
+    if any(curve.segment != "approach" for curve in curves):
+        return ()
+    speeds = [float(np.median(curve.history.velocity)) for curve in curves]
+    several = max(speeds) > _ONE_SPEED * min(speeds)
+    if several or any(curve.history.dwells for curve in curves):
+        return ("tension+adhesion",)
+    return tuple(_UNSEEN)
+
+
+def _over_alternatives(
+    chi_squared: ChiSquared, comparison: Comparison, threshold: float
+) -> Comparison:
+    """Return the comparison with the intervals of modulus and tension over all alternatives."""
     if len(comparison.alternatives) < 2:
         return comparison
-    moduli = {f.rival.code: _modulus(chi_squared, f, threshold) for f in comparison.alternatives}
     chosen = TENSED.code if comparison.chosen is None else comparison.chosen.rival.code
-    low, high = reduce(united, ((modulus.low, modulus.high) for modulus in moduli.values()))
-    return replace(comparison, modulus=replace(moduli[chosen], low=low, high=high))
+    is_needed = comparison.verdict == "needed"
+    searched = [MODULUS]
+    if is_needed:
+        searched += [TENSION, *(parameter for parameter, _ in _UNSEEN.values())]
+    estimates = {
+        fit.rival.code: _estimates_of(chi_squared, fit, threshold, searched)
+        for fit in comparison.alternatives
+    }
+
+    def over_all(name: str) -> Estimate:
+        own = [parts[name] for parts in estimates.values() if name in parts]
+        low, high = reduce(united, ((estimate.low, estimate.high) for estimate in own))
+        return replace(estimates[chosen][name], low=low, high=high)
+
+    comparison = replace(comparison, modulus=over_all(MODULUS.name))
+    if not is_needed:
+        return comparison
+    comparison = replace(comparison, tension=over_all(TENSION.name))
+    hidden = [
+        sentence.format(
+            _up_to(parameter.name, estimates[code][parameter.name].high, parameter.unit)
+        )
+        for code, (parameter, sentence) in _UNSEEN.items()
+        if code in comparison.unseen and code in estimates and code != chosen
+    ]
+    return replace(comparison, sentence="; ".join([comparison.sentence, *hidden]))
 
 
-def _modulus(chi_squared: ChiSquared, fit: RivalFit, threshold: float) -> Estimate:
-    """Return the modulus of an explanation with its interval."""
+def _up_to(name: str, high: float | None, unit: str) -> str:
+    """Return what a parameter may be at most beside a tension, in words."""
+    size = "of any size" if high is None else f"up to {readable(high, unit, 2)}"
+    return f"a {words(name)} {size} beside it"
+
+
+def _estimates_of(
+    chi_squared: ChiSquared, fit: RivalFit, threshold: float, searched: Sequence[Parameter]
+) -> dict[str, Estimate]:
+    """Return the estimates of an explanation, with intervals at least of those ``searched``."""
     if fit.intervals == "profile":
-        return fit.estimates[MODULUS.name]
+        return fit.estimates
+    of_rival = fit.rival.of(chi_squared)
     minimum = Minimum(fit.parameters, fit.chi_squared)
-    minimum, ends = fit.rival.intervals(chi_squared, minimum, threshold, [MODULUS])
-    return _estimates(fit.rival.of(chi_squared), minimum, ends)[MODULUS.name]
+    free = [p for p in searched if p in of_rival.free]
+    minimum, ends = fit.rival.intervals(chi_squared, minimum, threshold, free)
+    return _estimates(of_rival, minimum, ends)
 
 
 def _with_intervals(

@@ -69,8 +69,12 @@ class Comparison:
     """The explanation whose estimates count, if it is not an elastic solid under tension."""
     pull_off: str = ""
     """The pull-off force of an adhesive contact against its limits, in words."""
+    unseen: tuple[str, ...] = ()
+    """Codes of pairs whose effect a measurement of this kind does not show beside a tension."""
     modulus: Estimate | None = None
     """E* [Pa] with the least interval that contains those of all `alternatives`, if several."""
+    tension: Estimate | None = None
+    """The same of τ₀ [N/m], if a tension is needed."""
 
     @property
     def best(self) -> RivalFit:
@@ -87,14 +91,17 @@ class Comparison:
         """The explanation whose estimates count, and those that are tied with it.
 
         A pair, which is never far behind one of its effects, counts if both are less likely than
-        it.  Of curves that need no tension only other shapes count, which have no parameter more,
-        and what is better than no effect by the margin.
+        it, and always if its effect is `unseen`: that bends a curve as a tension does, so that
+        neither shows as long as the other is free.  Of curves that need no tension only other
+        shapes count, which have no parameter more, and what is better than no effect by the margin.
         """
         aic = {fit.rival.code: fit.aic for fit in self.fits}
 
         def counts(fit: RivalFit) -> bool:
             if self.verdict == "not shown":
                 return fit.rival.of_shape or fit.aic + EFFECT_MARGIN <= aic[NONE.code]
+            if fit.rival.code in self.unseen:
+                return True
             single = fit.rival.code.partition("+")[2]
             effects = aic[TENSED.code], aic.get(single, np.inf)
             return not single or fit.aic + _PAIR_MARGIN <= min(effects)
@@ -135,5 +142,6 @@ class Comparison:
             "pull_off": self.pull_off,
             "alternatives": [fit.rival.code for fit in self.alternatives],
             "reduced_modulus": None if self.modulus is None else self.modulus.to_dict(),
+            "tension": None if self.tension is None else self.tension.to_dict(),
             "models": [fit.to_dict() for fit in self.fits],
         }

@@ -5,16 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import fit_pairs
 import fit_rivals
 import numpy as np
 import pytest
-from fit_pairs import score_of
 from fit_rivals import KINDS, MODULUS_, RADIUS, Sample, fitted, path
 from numpy.typing import NDArray
 from scipy.special import beta
 
 import pellicle as pl
+from pellicle.fitting.compare import _unseen
 from pellicle.fitting.comparison import Comparison, RivalFit, Verdict
+from pellicle.fitting.curves.curve import Segment
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.effects import DRAG, DRIFT, DragModel, DriftModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
@@ -200,6 +202,25 @@ def test_two_speeds_show_relaxation() -> None:
     assert pool.rivals.best.rival.code == "power_law"
 
 
+def test_one_speed_does_not_tell_a_tension_from_relaxation_beside_it() -> None:
+    """A tensed power-law solid: modulus and tension of the elastic model miss by a factor of 2."""
+    random = np.random.default_rng([5, 19, *b"one speed"])
+    curve, _, truth = fit_pairs.relaxing(random, (1.0,))
+    assert isinstance(curve, Likelihood)
+    fit = pl.fit(curve.position, curve.force, time=curve.time, indenter="paraboloid", radius=RADIUS)
+    assert fit.tension_needed
+    assert fit.rivals is not None
+    tension = truth[TENSION]
+    assert (fit.tension.low or 0.0) > 1.5 * tension
+    for estimate, value in ((fit.rivals.tension, tension), (fit.rivals.modulus, 2e3)):
+        assert estimate is not None
+        assert estimate.low is not None
+        assert estimate.high is not None
+        assert estimate.low < value < estimate.high
+    assert "at one speed a relaxation exponent up to 0.3" in fit.comparison
+    assert "and the tension" in sentence_of_fit(fit)
+
+
 def test_comparison_in_full() -> None:
     """All explanations have intervals, a line of the table and JSON; the order is that of AIC."""
     solid = sample("tension, 5 errors of both passes", 4)
@@ -262,7 +283,7 @@ def test_retraction_whose_jump_is_not_seen() -> None:
 
     Without that, the work of adhesion was 5 bounds off, and its interval missed it.
     """
-    score = score_of("retraction", 5, 7)
+    score = fit_pairs.score_of("retraction", 5, 7)
     for name in ("reduced_modulus", "tension", "work_of_adhesion"):
         error, holds = score[name]
         assert abs(error) < 2
@@ -350,6 +371,45 @@ def test_models_whose_moduli_count(
     ]
     comparison = Comparison(tuple(fits), verdict, "", "", ())
     assert {fit.rival.code for fit in comparison.alternatives} == alternatives
+
+
+@pytest.mark.parametrize(("aic", "counts"), [(2.0, True), (4.0, False)])
+def test_relaxation_beside_a_tension_counts_at_one_speed(aic: float, counts: bool) -> None:
+    """Though curves of one speed need it no more than any other pair."""
+    ranked = {"tension": 0.0, "tension+power_law": aic, "power_law": 40.0, "none": 100.0}
+    fits = [
+        RivalFit(Rival(code, code, "tension" in code, TENSED.build), 0.0, lead, lead, {}, {})
+        for code, lead in ranked.items()
+    ]
+    comparison = Comparison(tuple(fits), "needed", "", "", (), unseen=("tension+power_law",))
+    codes = {fit.rival.code for fit in comparison.alternatives}
+    assert codes == {"tension"} | ({"tension+power_law"} if counts else set())
+
+
+def test_what_measurements_do_not_show() -> None:
+    """Adhesion in approaches; relaxation at one speed, without a dwell."""
+
+    def unseen(*rows: fit_rivals.Path, segment: Segment = "approach") -> tuple[str, ...]:
+        curves = [
+            Likelihood(
+                path.depth,
+                path.depth,
+                ELASTIC,
+                1.0,
+                (CONTACT_POINT,),
+                time=path.time,
+                segment=segment,
+            )
+            for path in rows
+        ]
+        return _unseen(Pool.of(curves) if len(curves) > 1 else curves[0])
+
+    adhesion, relaxation = "tension+adhesion", "tension+power_law"
+    assert unseen(path()) == (adhesion, relaxation)
+    assert unseen(path(), path(rate=1.2)) == (adhesion, relaxation)
+    assert unseen(path(), path(rate=10.0)) == (adhesion,)
+    assert unseen(path(dwell=True)) == (adhesion,)
+    assert unseen(path("both"), segment="both") == ()
 
 
 @pytest.mark.parametrize(("gain", "chosen"), [(1.2, None), (7.0, "tension+adhesion")])

@@ -72,9 +72,10 @@ def _of_models(rows: list[Row]) -> _Columns:
     for end in ("value", "low", "high"):
         name = f"chosen_reduced_modulus{'' if end == 'value' else f'_{end}'}"
         columns[name] = _numbers((e and e[end] for e in chosen), "Pa")
-    tied = [row.get("rivals", {}).get("reduced_modulus") or {} for row in rows]
-    for end in ("low", "high"):
-        columns[f"tied_reduced_modulus_{end}"] = _numbers((e.get(end) for e in tied), "Pa")
+    for name, unit in (("reduced_modulus", "Pa"), ("tension", "N/m")):
+        tied = [row.get("rivals", {}).get(name) or {} for row in rows]
+        for end in ("low", "high"):
+            columns[f"tied_{name}_{end}"] = _numbers((e.get(end) for e in tied), unit)
     columns["tension_needed"] = _numbers(row.get("tension_needed") for row in rows)
     for name in ("delta_chi_squared", "delta_aic"):
         columns[name] = _numbers(row.get("without_tension", {}).get(name) for row in rows)

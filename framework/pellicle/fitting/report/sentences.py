@@ -37,7 +37,7 @@ def sentence_of_fit(fit: FitResult, *, si: bool = False) -> str:
     text = f"{', '.join(parts[:-1])} and {parts[-1]}" if len(parts) > 1 else parts[0]
     by = "" if chosen is None else f", by {chosen.rival.words}"
     text = f"{text[0].upper()}{text[1:]}, with {100 * CONFIDENCE:.0f} % intervals{by}"
-    return f"{'; '.join(filter(None, [text, fit.range_of_moduli(si=si)]))}."
+    return f"{'; '.join(filter(None, [text, fit.range_of_models(si=si)]))}."
 
 
 def sentences_of_population(fits: ManyFits) -> str:
