@@ -30,10 +30,12 @@ from pellicle.fitting.parameters import (
     Coordinates,
 )
 from pellicle.fitting.statistics.checks import fit_single, judged
-from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood, Minimum
+from pellicle.fitting.statistics.chi_squared import ChiSquared, Minimum
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.pooled_likelihood import Pool
 from pellicle.fitting.statistics.profile import chi_squared_threshold
-from pellicle.fitting.statistics.rivals import Rival, rivals
+from pellicle.fitting.statistics.rival import Rival
+from pellicle.fitting.statistics.rivals import rivals
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 
@@ -107,15 +109,9 @@ def _joined(pool: Pool, part: Coordinates) -> Coordinates:
 
 def minimum_of(curve: ChiSquared, code: str) -> tuple[Rival, ChiSquared, Minimum, float]:
     """Return a rival, χ² at the noise of its residuals, its minimum, and the threshold."""
-    members = [member for member, _ in curve.curves(dict.fromkeys(curve.parameters, 0.0))]
-    singles = [fit_single(member, {OFFSET: 0.0, SLOPE: 0.0}) for member in members]
-    chi: Any = (
-        replace(curve, members=tuple(s.likelihood for s in singles))
-        if isinstance(curve, Pool)
-        else singles[0].likelihood
-    )
-    parts = [single.parameters for single in singles]
-    start = chi.joined(parts) if isinstance(chi, Pool) else parts[0]
+    singles = [fit_single(member, {OFFSET: 0.0, SLOPE: 0.0}) for member in curve.members]
+    chi = curve.with_members([single.likelihood for single in singles])
+    start = chi.joined([single.parameters for single in singles])
     by_code = {rival.code: rival for rival in rivals(chi, start)}
     rival, single = by_code[code], by_code[code.partition("+")[2]]
     without = single.minimum(chi, [start | {TENSION: 0.0}, start])
@@ -130,11 +126,9 @@ def minimum_of(curve: ChiSquared, code: str) -> tuple[Rival, ChiSquared, Minimum
     judgements = [judged(member, part)[0] for member, part in mine.curves(best.parameters)]
     quiet = [
         replace(member, noise=judgement.noise.deviation)
-        for (member, _), judgement in zip(
-            chi.curves(dict.fromkeys(chi.parameters, 0.0)), judgements, strict=True
-        )
+        for member, judgement in zip(chi.members, judgements, strict=True)
     ]
-    chi = replace(chi, members=tuple(quiet)) if isinstance(chi, Pool) else quiet[0]
+    chi = chi.with_members(quiet)
     freedom = sum(judgement.noise.freedom for judgement in judgements)
     best = rival.of(chi).minimise(best.parameters, rough=True)
     return rival, chi, best, chi_squared_threshold(freedom)
@@ -144,7 +138,7 @@ def score_of(name: str, number: int, seed: int) -> dict[str, Any]:
     """Return errors over bounds and coverage of one curve, or the verdict at one speed."""
     random = np.random.default_rng([seed, number, *name.encode()])
     if name == "one speed":
-        return {"verdict": one_speed(random)}
+        return one_speed(random)
     measured: ChiSquared
     right: ChiSquared
     if name == "retraction":
@@ -166,16 +160,26 @@ def score_of(name: str, number: int, seed: int) -> dict[str, Any]:
     return scores
 
 
-def one_speed(random: np.random.Generator) -> str:
-    """Return what the fit of an approach of a tensed power-law solid says."""
-    curve, _, _ = relaxing(random, (1.0,))
+def one_speed(random: np.random.Generator) -> dict[str, Any]:
+    """Return the verdict on an approach of a tensed power-law solid, and what its ranges hold.
+
+    The tension counts where one is said to be needed.
+    """
+    curve, _, truth = relaxing(random, (1.0,))
     assert isinstance(curve, Likelihood)
     sample = Sample(Truth(lambda rows: rows.depth, ("tension+power_law",)), random)
     assert curve.time is not None
     fit = fit_rivals.fitted(
         sample, fit_rivals.Curve(curve.position, curve.force, curve.time), "approach"
     )
-    return fit_rivals.verdict_of(fit)
+    tension = fit.rivals.tension if fit.rivals is not None else None
+    estimate = tension or fit.tension
+    low, high = estimate.low or 0.0, estimate.high or np.inf
+    return {
+        "verdict": fit_rivals.verdict_of(fit),
+        "modulus": fit_rivals.holds(fit_rivals.modulus_of(fit)),
+        "tension": bool(low <= truth[TENSION] <= high),
+    }
 
 
 def main() -> None:
@@ -188,6 +192,12 @@ def main() -> None:
             for verdict in sorted({value["verdict"] for value in values}):
                 count = sum(value["verdict"] == verdict for value in values)
                 print(f"{name} | {verdict} | {len(values)} | | {count}")
+            claimed = [value["tension"] for value in values if value["verdict"] == "needed"]
+            for parameter, flags in (
+                ("modulus over tied models", [value["modulus"] for value in values]),
+                ("tension over tied models", claimed),
+            ):
+                print(f"{name} | {parameter} | {len(flags)} | | {sum(flags)} held")
             continue
         for parameter in [key for key in values[0] if key != "points"]:
             errors, held = zip(*(value[parameter] for value in values), strict=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Grid
-from pellicle.numerics.problem import Equilibrium
+from pellicle.numerics.equilibrium import Equilibrium
 
 # Relative change of G(q) q² over a decade below which it is the limit of short waves.
 _CONSTANT = 0.05

@@ -11,11 +11,12 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.grid import Grid
+from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.numerics.gap_law import Law
 from pellicle.numerics.initial_guess import overlap_pressure
 from pellicle.numerics.operators import Operator
 from pellicle.numerics.path import PathPoint, start_of
-from pellicle.numerics.problem import Depth, Equilibrium, Force, Problem
+from pellicle.numerics.problem import Depth, Force, Problem
 from pellicle.numerics.solution import State
 from pellicle.results.variables import Variable
 from pellicle.units import Quantity

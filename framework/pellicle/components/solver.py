@@ -12,7 +12,8 @@ from pydantic import Field
 
 from pellicle.arrays import Array
 from pellicle.grid import Grid
-from pellicle.numerics.problem import Problem, round_off
+from pellicle.numerics.equilibrium import round_off
+from pellicle.numerics.problem import Problem
 from pellicle.numerics.solution import Progress, Solution, State, Stop
 from pellicle.units import Quantity
 

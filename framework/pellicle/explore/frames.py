@@ -15,7 +15,7 @@ from pellicle.arrays import Array
 from pellicle.components import Depth, Monitor, Setting
 from pellicle.components.calls import branches_of, target_of
 from pellicle.config.run import Run
-from pellicle.numerics.problem import Equilibrium
+from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.numerics.solution import State
 from pellicle.runs.compose import compose
 from pellicle.runs.runner import solve

@@ -128,22 +128,22 @@ class FitResult:
         pull_off = "" if self.rivals is None else self.rivals.pull_off
         return list(filter(None, [self.comparison, pull_off, self.advice]))
 
-    def range_of_moduli(self, *, si: bool = False) -> str:
+    def range_of_models(self, *, si: bool = False) -> str:
         """Return the modulus over all explanations that the curves cannot tell apart, in words.
 
-        It is Young's where Poisson's ratio is known, and empty if one explanation stands alone.
+        It is Young's where Poisson's ratio is known, followed by the tension if one is needed, and
+        empty if one explanation stands alone.
         """
         if self.rivals is None or self.rivals.modulus is None:
             return ""
         name, modulus = "the reduced modulus", self.rivals.modulus
         if self.poissons_ratio is not None:
             name, modulus = "Young's modulus", modulus.times(1 - self.poissons_ratio**2)
-        text = interval(modulus, si=si)
+        ranges = f"{name} is {_range(modulus, si)}"
+        if self.rivals.tension is not None:
+            ranges += f" and the tension {_range(self.rivals.tension, si)}"
         count = len(self.rivals.alternatives)
-        return (
-            f"over the {count} models that the data cannot tell apart, {name} is "
-            f"{scale(modulus, si=si).with_unit(text) if text != 'open' else 'not determined'}"
-        )
+        return f"over the {count} models that the data cannot tell apart, {ranges}"
 
     @property
     def all_messages(self) -> list[str]:
@@ -212,18 +212,15 @@ class FitResult:
         }
 
     def __repr__(self) -> str:
-        """Return the answer in two sentences; the arrays of a curve would fill a screen."""
-        from .report.answer import answer
+        """Return the result in two sentences; the arrays of a curve would fill a screen."""
+        from .report.sentences import sentence_of_fit
 
-        return f"<{type(self).__name__}: {answer(self)} {self.comparison}>"
+        return f"<{type(self).__name__}: {sentence_of_fit(self)} {self.comparison}>"
 
     def _repr_html_(self) -> str:
-        """Return HTML for a notebook: the answer, the estimates, and the curve with its fit."""
-        from .fit import Fit
-        from .pooled import PooledFit
+        """Return HTML for a notebook: a sentence, the estimates, and the curve with its fit."""
         from .report.notebook import html_of_fit
 
-        assert isinstance(self, (Fit, PooledFit)), "these are all fits that have panels"
         return html_of_fit(self)
 
     def plot(self) -> Figure:
@@ -245,3 +242,9 @@ class FitResult:
             The file cannot be written.
         """
         return write_json(self.to_dict(), Path(path))
+
+
+def _range(estimate: Estimate, si: bool) -> str:
+    """Return an interval with its unit."""
+    text = interval(estimate, si=si)
+    return scale(estimate, si=si).with_unit(text) if text != "open" else "not determined"

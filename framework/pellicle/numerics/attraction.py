@@ -11,6 +11,7 @@ import numpy as np
 from pellicle.arrays import Array, Cells, Mask
 from pellicle.grid import Boundary
 
+from .dilation import dilated
 from .gap_law import Law
 from .labels import labelled
 
@@ -112,9 +113,9 @@ def attraction(
         cells = np.flatnonzero(near & ~contact)[None]
         values = gap.ravel()[cells[0]]
         return Attraction(law, contact, contact, contact, cells, np.ones(1), values, 1.0)
-    closed = contact & ~_grown(~contact, boundary)
-    inner = closed & ~_grown(~closed, boundary)
-    acting = _grown(near, boundary) & np.isfinite(profile) & ~inner
+    closed = contact & ~dilated(~contact, boundary)
+    inner = closed & ~dilated(~closed, boundary)
+    acting = dilated(near, boundary) & np.isfinite(profile) & ~inner
     corners = np.concatenate(
         [_corners(acting, side, law, profile, boundary) for side in _QUARTERS], 1
     )
@@ -148,15 +149,3 @@ def _corners(
     heights = profile.ravel()
     step = np.abs(heights[corners] - heights[cell]) > _STEP * law.cutoff()
     return np.where(step, cell, corners)
-
-
-def _grown(mask: Mask, boundary: Boundary) -> Mask:
-    """Return the cells of ``mask`` and those beside them, across corners too."""
-    grown = mask
-    for axis in (0, 1):
-        before, after = np.roll(grown, 1, axis), np.roll(grown, -1, axis)
-        if boundary == "free":
-            np.moveaxis(before, axis, 0)[0] = False
-            np.moveaxis(after, axis, 0)[-1] = False
-        grown = grown | before | after
-    return grown

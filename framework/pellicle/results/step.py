@@ -10,15 +10,15 @@ import numpy as np
 from pellicle.analysis import ellipse, patches, perimeter
 from pellicle.arrays import Array
 from pellicle.grid import Grid
+from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.numerics.path import PathPoint
-from pellicle.numerics.problem import Equilibrium
 from pellicle.numerics.solution import State
 
 from . import storage
+from .variables import VARIABLES, Variable
 
 if TYPE_CHECKING:
     import xarray as xr
-from .variables import VARIABLES, Variable
 
 
 def step_dataset(

@@ -11,9 +11,10 @@ from pellicle.components import Force, Monitor, Setting, Solver
 from pellicle.components.calls import solution_of
 from pellicle.components.checked_law import law_of
 from pellicle.config.run import Run
+from pellicle.numerics.equilibrium import Equilibrium, equilibrium_of
 from pellicle.numerics.labels import labelled
 from pellicle.numerics.path import PathPoint
-from pellicle.numerics.problem import Depth, Equilibrium, equilibrium_of
+from pellicle.numerics.problem import Depth
 from pellicle.numerics.solution import State, Stop
 
 if TYPE_CHECKING:

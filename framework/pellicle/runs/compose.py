@@ -7,6 +7,7 @@ from pellicle.components import Force, Prescription, Search, Setting
 from pellicle.components.calls import (
     check_solver,
     check_value,
+    check_variables,
     instantaneous,
     profile_of,
     target_of,
@@ -28,6 +29,8 @@ def compose(run: Run) -> Setting:
     ConfigError
         The kernel, the indenter or the loading does not fit the grid, or the solver or the loading
         not the interaction.
+    PluginError
+        A component breaks its contract.
     """
     with errors_attributed_to(run.kernel):
         operator = make_operator(instantaneous(run.kernel), run.grid)
@@ -40,11 +43,13 @@ def compose(run: Run) -> Setting:
     setting = Setting(run.grid, operator, profile, run.indenter.footprint, law=law)
     if law:
         check_solver(run.solver, setting.problem(Force(0.0)))
+    prescription = run.loading.prescription
+    check_variables(prescription)
     for index, value in enumerate(run.loading.values):
         field = f"loading.{run.loading.field_of(index)}"
-        check_value(run.loading.prescription, setting, value, field)
+        check_value(prescription, setting, value, field)
         if law:
-            _check_search(run.loading.prescription, setting, value, field)
+            _check_search(prescription, setting, value, field)
     return setting
 
 

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from pellicle.components import Monitor, Setting, Solver
 from pellicle.components.calls import solution_of
-from pellicle.numerics.problem import Equilibrium, Problem, equilibrium_of
+from pellicle.numerics.equilibrium import Equilibrium, equilibrium_of
+from pellicle.numerics.problem import Problem
 from pellicle.numerics.solution import Solution, Stop
 
 from .adhesion import leaves_path

@@ -1,11 +1,9 @@
-"""Progress bars of a run or a study, and Ctrl-C while it is being solved."""
+"""Progress bars of a run or a study."""
 
 from __future__ import annotations
 
 import math
-import signal
 import sys
-import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
@@ -14,6 +12,8 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self, TextIO, cast
 
 from pellicle.components import Monitor, Say, Task
+
+from .interrupt import Interrupt
 
 if TYPE_CHECKING:
     import rich.console
@@ -77,7 +77,7 @@ class _BarContext(ABC):
 
     def __init__(self, bar: rich.progress.Progress | None) -> None:
         self._bar = bar
-        self._interrupt = _Interrupt()
+        self._interrupt = Interrupt()
 
     @abstractmethod
     def _begin(self, bar: rich.progress.Progress) -> None:
@@ -103,7 +103,7 @@ class _BarContext(ABC):
             self._interrupt.check()
 
 
-class Progress(_BarContext):
+class RunProgress(_BarContext):
     """Shows a bar on a terminal or in a notebook; elsewhere, or if not ``enabled``, nothing.
 
     The bar shows the step, the iteration, the residual and the time left. Ctrl-C takes effect at
@@ -220,37 +220,6 @@ def _monitor(index: int, steps: int, show: Callable[[ProgressMessage], None]) ->
         show(ProgressMessage(index, steps, iteration, residual_ratio, index + share))
 
     return monitor
-
-
-class _Interrupt:
-    """Defers the first Ctrl-C to the next `check`; the second acts at once.
-
-    An exception raised at an arbitrary point could be lost: Python drops exceptions in finalisers,
-    and every h5py object has one.
-    """
-
-    def __init__(self) -> None:
-        self._holds = self._pressed = False
-
-    def hold(self) -> None:
-        is_main = threading.current_thread() is threading.main_thread()
-        if is_main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            signal.signal(signal.SIGINT, self._press)
-            self._holds = True
-
-    def release(self) -> None:
-        if self._holds:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
-            self._holds = False
-
-    def _press(self, *_: object) -> None:
-        self.release()
-        self._pressed = True
-
-    def check(self) -> None:
-        if self._pressed:
-            self._pressed = False
-            raise KeyboardInterrupt
 
 
 @contextmanager

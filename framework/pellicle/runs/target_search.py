@@ -15,7 +15,8 @@ import numpy as np
 
 from pellicle.components import Monitor, Solver
 from pellicle.components.prescription import Search, Setting
-from pellicle.numerics.problem import Depth, Equilibrium
+from pellicle.numerics.equilibrium import Equilibrium
+from pellicle.numerics.problem import Depth
 from pellicle.numerics.solution import Solution, Stop
 
 from .following import followed

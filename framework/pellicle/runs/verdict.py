@@ -9,7 +9,8 @@ from pellicle.arrays import Mask
 from pellicle.components import Interaction
 from pellicle.components.prescription import Search
 from pellicle.config.run import Run
-from pellicle.numerics.problem import Equilibrium, Stiffness
+from pellicle.numerics.contact_stiffness import Stiffness
+from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.numerics.solution import Stop
 from pellicle.results.status import Status
 from pellicle.units import DIGITS, readable
@@ -36,9 +37,17 @@ def judge(
 ) -> tuple[Status, str]:
     """Return the status of a step, from its measured residuals, and the message to the user.
 
-    ``index`` counts the steps from 0; ``largest_area`` [m²] is that of the contact in this step and
-    those before; ``lost`` is the energy [J] that it lost because a part
-    of the contact jumped, 0 if that is not known; None without a jump.
+    Parameters
+    ----------
+    index
+        Of the step, counted from 0.
+    stiffness
+        Contact stiffness of the step, if it was asked for.
+    lost
+        Energy [J] that the step lost because a part of the contact jumped, 0 if it is not known;
+        None without a jump.
+    largest_area
+        Largest contact area [m²] of this step and those before.
     """
     verdict = _failure(run, index, step, stiffness)
     if verdict is None and step.search and (step.how != "met" or step.missed > _NEAR):
@@ -182,6 +191,6 @@ def _touches_edge(run: Run, contact: Mask) -> bool:
 
     A period one cell wide has no border in that direction: the problem is plane there.
     """
-    plane = run.grid.boundary == "periodic"
-    across = [axis for axis in (0, 1) if contact.shape[axis] > 1 or not plane]
+    free = run.grid.boundary == "free"
+    across = [axis for axis in (0, 1) if contact.shape[axis] > 1 or free]
     return any(np.take(contact, [0, -1], axis=axis).any() for axis in across)

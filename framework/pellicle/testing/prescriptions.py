@@ -7,10 +7,16 @@ from functools import cache
 from typing import Any
 
 from pellicle.components import Force, Prescription, Search, Setting, Solver
-from pellicle.components.calls import check_value, report_of, solution_of, target_of
+from pellicle.components.calls import (
+    check_value,
+    check_variables,
+    report_of,
+    solution_of,
+    target_of,
+)
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
-from pellicle.numerics.problem import Equilibrium, measure
+from pellicle.numerics.equilibrium import Equilibrium, measure
 from pellicle.results.step import step_dataset
 from pellicle.runs.compose import compose
 from pellicle.runs.target_search import reach
@@ -98,6 +104,7 @@ def _values(prescription: Prescription, candidates: Sequence[float]) -> list[flo
 
 def report_is_as_declared(prescription: Prescription, values: Sequence[float]) -> None:
     """report() returns numbers under the names of `variables`, the same in a second call."""
+    check_variables(prescription)
     setting, steps, _ = _reference_steps()
     for step in steps:
         report = report_of(prescription, setting, step)

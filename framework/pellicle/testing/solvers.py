@@ -10,8 +10,10 @@ import numpy as np
 from pellicle.components import IterativeSolver, Solver
 from pellicle.components.calls import solution_of
 from pellicle.config.run import Run
+from pellicle.numerics.contact_stiffness import measure_stiffness
+from pellicle.numerics.equilibrium import measure
 from pellicle.numerics.operators import make_operator
-from pellicle.numerics.problem import Depth, Force, Problem, measure, measure_stiffness
+from pellicle.numerics.problem import Depth, Force, Problem
 from pellicle.numerics.solution import State, Stop
 
 from .component import check

@@ -9,7 +9,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceCurve
-from pellicle_plugins.analytic.layer_curves import Layer, Profile, Punch
+from pellicle_plugins.analytic.layer_curves import Profile, Punch, TensedLayer
 from pellicle_plugins.analytic.master_curves import punch_radius
 
 
@@ -23,16 +23,14 @@ class Axisymmetric(Indenter):
 
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
         """Return P/E* and its partial derivatives at depths [m] and s = 2τ₀/E* [m]."""
-        curve = _kept_curve(self, np.asarray(depth, dtype=float).tobytes(), length)
-        return ForceCurve(*(part.copy() for part in curve))
+        return ForceCurve(*(part.copy() for part in self._curve(depth, length)))
 
     def contact_radius(self, depth: Array, length: float) -> ContactRadius:
         """Return the contact radius without adhesion at depths > 0 [m], and dk/da over E*.
 
         The stiffness dF/dδ is that of the flat punch of the same radius.
         """
-        curve = _kept_curve(self, np.asarray(depth, dtype=float).tobytes(), length)
-        return punch_radius(curve.by_depth, length)
+        return punch_radius(self._curve(depth, length).by_depth, length)
 
     def layer_depth_limit(self, thickness: float, poissons_ratio: float) -> float:
         """Return the depth [m] up to which the force curve holds on a bonded layer."""
@@ -43,8 +41,13 @@ class Axisymmetric(Indenter):
         self, depth: Array, length: float, thickness: float, poissons_ratio: float
     ) -> LayerForceCurve:
         """Return P/E* and its partial derivatives on a bonded layer, 0 ≤ ν ≤ ½."""
-        layer = Layer(length, thickness, poissons_ratio)
+        layer = TensedLayer(length, thickness, poissons_ratio)
         return _layer_curves(self).curve(depth, layer)
+
+    def _curve(self, depth: Array, length: float) -> ForceCurve:
+        """Return the force curve at depths of shape (n,), in arrays that calls share."""
+        depth = np.asarray(depth, dtype=float)
+        return _kept_curve(self, depth.tobytes(), depth.shape, length)
 
     @abstractmethod
     def _master_curve(self, depth: Array, length: float) -> ForceCurve: ...
@@ -56,8 +59,10 @@ class Axisymmetric(Indenter):
 
 # A fit with adhesion asks for the force curve and the contact radius at the same depths.
 @lru_cache(maxsize=1)
-def _kept_curve(indenter: Axisymmetric, depth: bytes, length: float) -> ForceCurve:
-    return indenter._master_curve(np.frombuffer(depth), length)
+def _kept_curve(
+    indenter: Axisymmetric, depth: bytes, shape: tuple[int, ...], length: float
+) -> ForceCurve:
+    return indenter._master_curve(np.frombuffer(depth).reshape(shape), length)
 
 
 @lru_cache(maxsize=64)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import io as streams
 import warnings
+from codecs import BOM_UTF8
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import lru_cache
@@ -21,7 +22,7 @@ from pellicle.errors import ConfigError
 from pellicle.files import is_file
 from pellicle.units import Quantity
 
-from .text_numbers import separated_by_blanks
+from .text_numbers import separated_by_blanks, word_in_row
 
 _ARRAYS = 9
 """Peak memory while a scan is read, in arrays of its points; 8 were measured at 2000² points."""
@@ -115,6 +116,8 @@ def _read(
             data = _channel(reader, path, channel)
             scale = _scale(data, path, unit)
             edges = _size(data, path, scale, size)
+            if reader.format() == "asc":
+                _require_all_rows(file, data.nb_grid_pts[0], path)
             heights = _heights(reader, data, edges, path)
         values = heights * scale
     values[~np.isfinite(values)] = np.nan
@@ -165,16 +168,32 @@ def _heights(reader: Any, data: Any, edges: tuple[float, float], path: Path) -> 
 def _with_blanks(file: BinaryIO) -> BinaryIO:
     """Return a text file with blanks between its numbers, as SurfaceTopography needs them.
 
-    It takes lines with other separators for lines of a header, and skips them.
+    It takes lines with other separators, and one that begins with a byte order mark, for lines of a
+    header, and skips them.
     """
     content = file.read()
     file.seek(0)
     # A header in text may precede binary data.
-    if b"\0" in content or not (b"," in content or b";" in content):
+    if b"\0" in content or not any(mark in content for mark in (b",", b";", b"\t", BOM_UTF8)):
         return file
-    # Headers may hold any byte; numbers are ASCII.
-    lines = separated_by_blanks(content.decode("latin-1").split("\n"))
-    return streams.BytesIO("\n".join(lines).encode("latin-1"))
+    return streams.BytesIO("\n".join(separated_by_blanks(_lines(content))).encode("latin-1"))
+
+
+def _lines(content: bytes) -> list[str]:
+    """Return the lines of a text; headers may hold any byte, and numbers are ASCII."""
+    return content.removeprefix(BOM_UTF8).decode("latin-1").split("\n")
+
+
+def _require_all_rows(file: BinaryIO, width: int, path: Path) -> None:
+    """Refuse a text of which SurfaceTopography skips a row of ``width`` entries, one a word."""
+    file.seek(0)
+    if in_row := word_in_row(_lines(file.read()), width):
+        number, word = in_row
+        raise ConfigError(
+            f"{path} has {word!r} among the numbers of line {number}; write nan for a missing "
+            "point, or, between other separators than blanks, nothing",
+            "path",
+        )
 
 
 def library() -> ModuleType:
@@ -310,10 +329,38 @@ def _size(
                 "size",
             )
         return size
-    x, y = (float(edge) * scale for edge in stated)
+    x, y = (
+        float(edge) * in_metres
+        for edge, in_metres in zip(stated, _scales_of_edges(channel, path, scale), strict=True)
+    )
     if size is not None:
         raise ConfigError(f"{path} states its own size, {x:g} × {y:g} m; leave this out", "size")
     return x, y
+
+
+def _scales_of_edges(channel: Any, path: Path, scale: float) -> tuple[float, float]:
+    """Return the lengths that 1 in the size stands for along x and y [m].
+
+    SurfaceTopography converts the size to the unit of the heights, but if a header states a unit of
+    the size alone, it leaves both as they are.
+    """
+    header = channel.info.get("raw_metadata", {}) if channel.unit is None else {}
+    along_x = header.get("xunit")
+    along_y = header.get("yunit") or along_x
+    return _scale_of_edge(along_x, path, scale), _scale_of_edge(along_y, path, scale)
+
+
+def _scale_of_edge(unit: str | None, path: Path, scale: float) -> float:
+    if not unit:
+        return scale
+    try:
+        return Quantity("m")(f"1 {unit}")
+    except ValueError:
+        raise ConfigError(
+            f"{path} states its size in {unit!r}, which is not a unit of length; in its header, "
+            "write decimals with a point and units such as um",
+            "path",
+        ) from None
 
 
 def require_content(points: int, path: Path) -> None:

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle import hookimpl
-from pellicle.analysis import Leg, extrapolate, legs
-from pellicle.arrays import Array
+from pellicle.analysis import Leg, legs
 from pellicle.components import Output, Runs
 from pellicle.errors import ConfigError
 from pellicle.model.base import Model
 from pellicle.model.expression import names_in
-from pellicle.report.legs import MOST_LEGS, RETRACTION, draw_legs
-from pellicle.report.style import LINES, MARKERS, colour, is_log_spaced
+from pellicle.report.legs import MOST_LEGS
+from pellicle.report.style import MARKERS, colour, is_log_spaced
 from pellicle.results.path import has_interaction, has_path, has_times
 from pellicle.results.variables import FIELDS, WALL_PRESSURE
 from pellicle.results.wording import wording
@@ -38,13 +36,18 @@ from .base import (
     scaled,
     set_scales,
 )
+from .curve_lines import NO_POINTS, CurvePoints, Limit, Line, LineStyle
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
 _GRIDS = 3
+"""Fewest grids from which a limit follows."""
 _LETTERS = 50
+"""Letters of a line of the label of an axis."""
+_EXACT = LineStyle("black", None, "")
+"""Style of a reference."""
 
 
 def _several(value: object) -> object:
@@ -199,52 +202,57 @@ class Curves(XYFigure):
 
     def _lines(
         self, runs: Runs, x: xr.DataArray, ys: Sequence[xr.DataArray]
-    ) -> Iterator[_Line | _Limit]:
+    ) -> Iterator[Line | Limit]:
         """Yield what is drawn, in order; entries that only the legend shows have no points."""
         reference = exact(runs) if self.reference else None
         directions: set[str] = set()
         many = runs.table.sizes[self.by] if self.by else 1
-        ordered = self.is_ordered(runs)
-        shared = "0.4" if max(many, len(ys)) > 1 else "C0"
         for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
             series = self.series[number] if self.series else text
             named = self.series[number] if self.series else self._named(text, runs.table)
-            exact_x, exact_y = (
-                (reference.column(self.x), reference.column(text)) if reference else (x, y)
-            )
+            of_reference = [reference.column(t) for t in (self.x, text)] if reference else []
             for index, point in enumerate(along(runs.table, self.by)):
                 part = runs.table.isel(point)
                 name = label(self.label, part, self.by, runs.table)
-                # Colours and markers distinguish the values of `by`, line styles those of `y`.
-                # Beside a reference there are no lines.
-                hue = colour(index, many, ordered=ordered) if self.by else colour(number, len(ys))
-                by_y = not self.by or (reference is not None and len(ys) > 1)
-                marker = MARKERS[(number if by_y else index) % len(MARKERS)]
-                style = _Style(hue, number, marker, scattered=reference is not None)
+                style = self._style(runs, number, index)
                 legend = "" if number else name.words
                 if not self.by and (self.series or len(ys) > 1):
                     legend = named
                 points, path = self._points(part, _at(x, point), _at(y, point))
                 directions |= {leg.direction for leg in path}
-                yield _Line(points, style, legend, name.key, series, path)
+                yield Line(points, style, legend, name.key, series, path)
                 if self.extrapolate:
                     _require_grids(_at(x, point))
                     # An interrupted study may lack some of them.
                     if np.unique(points.x).size >= _GRIDS:
-                        yield _Limit(points, style, name.key, f"{series}, extrapolated")
+                        yield Limit(points, style, name.key, f"{series}, extrapolated")
                 if reference:
-                    points, _ = self._points(part, _at(exact_x, point), _at(exact_y, point))
-                    thin = _Style("black", None, "")
-                    yield _Line(points.ordered(), thin, "", name.key, f"{series}, semi-analytic")
+                    points, _ = self._points(part, *(_at(axis, point) for axis in of_reference))
+                    yield Line(points.ordered(), _EXACT, "", name.key, f"{series}, semi-analytic")
             if self.by and len(ys) > 1:
                 marker = MARKERS[number % len(MARKERS)] if reference else ""
-                style = _Style("0.4", number, marker, scattered=reference is not None)
-                yield _Line(_NO_POINTS, style, named)
+                style = LineStyle("0.4", number, marker, scattered=reference is not None)
+                yield Line(NO_POINTS, style, named)
         if reference:
-            yield _Line(_NO_POINTS, _Style("black", None, ""), "semi-analytic")
+            yield Line(NO_POINTS, _EXACT, "semi-analytic")
         if len(directions) > 1:
-            yield _Line(_NO_POINTS, _Style(shared, 0, MARKERS[0]), "approach")
-            yield _Line(_NO_POINTS, _Style(shared, 0, MARKERS[0], retracts=True), "retraction")
+            shared = "0.4" if max(many, len(ys)) > 1 else "C0"
+            yield Line(NO_POINTS, LineStyle(shared, 0, MARKERS[0]), "approach")
+            yield Line(NO_POINTS, LineStyle(shared, 0, MARKERS[0], retracts=True), "retraction")
+
+    def _style(self, runs: Runs, number: int, index: int) -> LineStyle:
+        """Return the style of a curve: y of this number, and value of `by` of this index.
+
+        Colours and markers distinguish the values of `by`, line styles those of y. Beside a
+        reference there are no lines, so that markers distinguish several y.
+        """
+        if not self.by:
+            hue, mark = colour(number, len(self.y)), number
+        else:
+            hue = colour(index, runs.table.sizes[self.by], ordered=self.is_ordered(runs))
+            mark = number if self.reference and len(self.y) > 1 else index
+        marker = MARKERS[mark % len(MARKERS)]
+        return LineStyle(hue, number, marker, scattered=self.reference is not None)
 
     def _draw_published(self, axes: Axes) -> Iterator[dict[str, object]]:
         for number, other in enumerate(self.published):
@@ -263,7 +271,7 @@ class Curves(XYFigure):
 
     def _points(
         self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray
-    ) -> tuple[_Points, list[Leg]]:
+    ) -> tuple[CurvePoints, list[Leg]]:
         """Return the points of one curve, in the order of the table, and the legs of its path."""
         import xarray as xr
 
@@ -300,141 +308,7 @@ class Curves(XYFigure):
             path = legs(xr.broadcast(table["depth"], x)[0].values.ravel()[finite])
             # The many legs of an oscillation are not told apart by their style.
             path = path if has_interaction(table) or len(path) <= MOST_LEGS else []
-        return _Points(*values[:, finite]), path
-
-
-@dataclass(frozen=True)
-class _Style:
-    colour: Any
-    number: int | None
-    """Index of the line style; None for a plain thin line."""
-    marker: str
-    scattered: bool = False
-    """Whether only markers are drawn, beside the line of a reference."""
-    retracts: bool = False
-    """Whether it is the retraction of a path, with short dashes and filled markers."""
-
-    def keywords(self) -> dict[str, Any]:
-        """Return keywords of ``Axes.plot``."""
-        if self.number is None:
-            return {"color": self.colour, "linewidth": 1.0, "zorder": 1}
-        return {
-            "color": self.colour,
-            "marker": self.marker,
-            "linestyle": "none"
-            if self.scattered
-            else RETRACTION
-            if self.retracts
-            else LINES[self.number % len(LINES)],
-            "markersize": 4,
-            "markerfacecolor": self.colour if self.retracts else "white",
-            "linewidth": 1.2,
-        }
-
-
-@dataclass(frozen=True)
-class _Points:
-    x: Array
-    y: Array
-    low: Array
-    high: Array
-    good: Array
-    """1 where every run converged."""
-    runs: Array
-    """Number of runs that each point is the mean of."""
-
-    def ordered(self) -> _Points:
-        """Return the same points in the order of x."""
-        order = np.argsort(self.x)
-        return _Points(*(getattr(self, field.name)[order] for field in fields(self)))
-
-
-_NO_POINTS = _Points(*[np.empty(0)] * 6)
-
-
-@dataclass(frozen=True)
-class _Line:
-    """Points, as drawn and as written in columns ``curve`` and ``series``."""
-
-    points: _Points
-    style: _Style
-    legend: str
-    curve: str = ""
-    series: str = ""
-    path: Sequence[Leg] = ()
-    """The legs of a path, if approach and retraction are to be told apart."""
-
-    def draw(self, axes: Axes, factor_x: float, factor_y: float, log: bool) -> None:
-        points, style = self.points, self.style
-        x, y = points.x * factor_x, points.y * factor_y
-        if self.path:
-            draw_legs(
-                axes, self.path, x, y, arrows=not log, label=self.legend or None, **style.keywords()
-            )
-        else:
-            axes.plot(x, y, label=self.legend or None, **style.keywords())
-        if style.number is None:
-            return
-        bad = points.good < 1
-        axes.plot(x[bad], y[bad], "x", color="red", markersize=9, label="_not converged")
-        # The range of the first series only: several bands cannot be told apart.
-        if style.number == 0 and (points.runs > 1).any():
-            low, high = points.low * factor_y, points.high * factor_y
-            axes.fill_between(x, low, high, color=style.colour, alpha=0.2, linewidth=0)
-
-    def rows(self) -> Iterator[dict[str, object]]:
-        columns = (getattr(self.points, field.name) for field in fields(self.points))
-        # A turn belongs to the leg that reaches it.
-        directions = {
-            step: leg.direction
-            for leg in reversed(self.path)
-            for step in range(leg.steps.start, leg.steps.stop)
-        }
-        for step, (x, y, low, high, good, runs) in enumerate(zip(*columns, strict=True)):
-            row: dict[str, object] = {"curve": self.curve, "series": self.series, "x": x, "y": y}
-            if runs > 1:
-                row |= {"y_lowest": low, "y_highest": high, "runs": int(runs)}
-            if step in directions:
-                row["direction"] = directions[step]
-            yield row | {"converged": bool(good)}
-
-
-class _Limit:
-    """The limit of a curve for x → 0."""
-
-    def __init__(self, points: _Points, style: _Style, curve: str, series: str) -> None:
-        self._points, self._style = points, style
-        self._fit = extrapolate(points.x, points.y)
-        self._head = {"curve": curve, "series": series}
-
-    def draw(self, axes: Axes, factor_x: float, factor_y: float, _log: bool) -> None:
-        fit, colour = self._fit, self._style.colour
-        x = np.linspace(0, float(self._points.x.max()), 200)
-        y = np.append(fit.limit, fit(x[1:]))
-        axes.plot(x * factor_x, y * factor_y, color=colour, linewidth=0.8, zorder=1)
-        spread = [fit.limit - fit.lowest], [fit.highest - fit.limit]
-        axes.errorbar(
-            [0.0],
-            [fit.limit * factor_y],
-            np.maximum(spread, 0.0) * factor_y,
-            fmt="_",
-            color=colour,
-            markersize=12,
-            linewidth=0.8,
-            capsize=3,
-            clip_on=False,
-        )
-
-    def rows(self) -> Iterator[dict[str, object]]:
-        yield {
-            **self._head,
-            "x": 0.0,
-            "y": self._fit.limit,
-            "y_lowest": self._fit.lowest,
-            "y_highest": self._fit.highest,
-            "converged": bool((self._points.good == 1).all()),
-            "exponent": self._fit.exponent,
-        }
+        return CurvePoints(*values[:, finite]), path
 
 
 def _require_grids(x: xr.DataArray) -> None:

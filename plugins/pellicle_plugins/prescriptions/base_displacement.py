@@ -9,7 +9,7 @@ from pydantic import Field
 
 from pellicle import hookimpl
 from pellicle.components import Depth, Prescription, Setting
-from pellicle.numerics.problem import Equilibrium
+from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.results.variables import Variable
 from pellicle.units import Quantity
 

@@ -11,7 +11,7 @@ import numpy as np
 from pellicle import hookimpl
 from pellicle.components import Depth, Force, Prescription, Search, Setting
 from pellicle.errors import ConfigError
-from pellicle.numerics.problem import Equilibrium
+from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.results.variables import Variable
 from pellicle.units import readable
 

@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 from pellicle import hookimpl
 from pellicle.components import Depth, Prescription, Setting
 from pellicle.errors import ConfigError
-from pellicle.numerics.problem import Equilibrium
+from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.results.variables import Variable
 from pellicle.units import readable
 

@@ -7,7 +7,7 @@ from typing import Final, Protocol
 import numpy as np
 import scipy.sparse
 
-from pellicle.arrays import Mask
+from pellicle.numerics.dilation import dilated
 from pellicle.numerics.sharing import row_blocks, shared
 
 from .circulant_stiffness import Field
@@ -23,9 +23,9 @@ _DAMPINGS: Final = tuple(
     for pair in zip(_ROOTS[: _SWEEPS // 2], _ROOTS[::-1], strict=False)
     for root in pair
 )
-# Cells are relaxed up to 7 = 1 + 2 + 4 cells from the contact: beyond, interpolation is smooth
-# enough, and sweeps over all cells save no operator application.
-_SHIFTS: Final = (1, 2, 4)
+# Cells are relaxed up to this many cells from the contact: beyond, interpolation is smooth enough,
+# and sweeps over all cells save no operator application.
+_NEAR: Final = 7
 # Share of the cells above which sweeps over all of them are faster than a matrix of those to relax.
 _DENSE: Final = 0.2
 # Index of all cells except those at the ends, by the number of axes.
@@ -54,7 +54,7 @@ def sweeps_near(free: Field, stretch: tuple[float, float]) -> Sweeps:
     stretch
         The aspect ratio of the cells, see `stretch_of`.
     """
-    weight = np.where(_near(free < 1), free, np.float32(0))
+    weight = np.where(dilated(free < 1, cells=_NEAR), free, np.float32(0))
     if np.count_nonzero(weight) > _DENSE * weight.size:
         return _DenseSweeps(weight, stretch)
     return _SparseSweeps(weight, stretch)
@@ -119,14 +119,6 @@ class _DenseSweeps:
     def apply_transpose(self, field: Field) -> None:
         for damping in reversed(_DAMPINGS):
             _subtract_biharmonic(field, self._weight * field, damping, self._stretch)
-
-
-def _near(contact: Mask) -> Mask:
-    """Return the cells of a periodic plane that are near the contact."""
-    for axis in range(contact.ndim):
-        for shift in _SHIFTS:
-            contact = contact | np.roll(contact, shift, axis) | np.roll(contact, -shift, axis)
-    return contact
 
 
 def _stencil(axes: int, stretch: tuple[float, float]) -> dict[tuple[int, ...], float]:

@@ -78,83 +78,137 @@ def inner_solve(
             problem, preconditioner, nothing, none, problem.depth(none), goal
         )
         return InnerSolution(nothing, nothing, 0.0, penetrating)
-    uniform = _Uniform.of(problem, cells)
-    directions = _Directions(problem, preconditioner, uniform)
-    bends = preconditioner.preconditioner.bends
-    field = np.zeros(problem.grid.shape, dtype=np.float64 if bends else np.float32)
-    on_contact = pressure.ravel()[cells]
-    if u_minus_f is None:
-        u_minus_f = displacement.ravel()[cells] - problem.profile.ravel()[cells]
-    depth = problem.depth(u_minus_f)
-    residual = np.subtract(depth, u_minus_f, out=u_minus_f)
-    del u_minus_f
-    if uniform:
-        level = uniform.level(residual)
-        on_contact += level
-        displacement += level * uniform.displacement
-        residual -= level * uniform.inside
-    error = directions.error(residual)
+    iterate = _Iterate(problem, preconditioner, pressure, displacement, u_minus_f)
+    error = iterate.error
     goal = max(goal, max(_MAX_REDUCTION, reduction) * error)
     least, stagnant, iteration = np.inf, 0, 0
     misclassified: Cells | None = None
-    pending: _Change | None = None
-    direction = directions(residual)
-    descent = dot(residual, direction)
+    direction = iterate.steepest()
+    descent = dot(iterate.residual, direction)
     while descent > 0 and stagnant < _STAGNATION:
-        mean = float(direction.mean()) if uniform else 0.0
-        varying = direction - mean if uniform else direction
-        size = max(float(varying.max()), -float(varying.min())) or 1.0
-        _scatter(varying, size, cells, field)
-        change = problem.operator(field, out=field)
-        if uniform:
-            change += (mean / size) * uniform.displacement
-        inside = _gathered(change, cells)
-        inside *= size
-        curvature = dot(direction, inside)
+        curvature = iterate.advance(direction, descent)
         if curvature <= 0:
             break
-        length = descent / curvature
-        inside *= length
-        residual -= inside
-        direction *= length
-        on_contact += direction
-        error = directions.error(residual)
+        error = iterate.error
         least, stagnant = (error, 0) if error < least else (least, stagnant + 1)
         iteration += 1
-        pending = _Change(change, length * size)
         if error <= goal:
             break
         if np.isfinite(certainty) and iteration >= _MIN_ITERATIONS:
-            last = certainty, direction, directions.mean(inside)
-            current = depth - directions.mean(residual)
-            certain, others = _misclassified(
-                problem, preconditioner, displacement, on_contact, current, goal, pending, last
-            )
-            pending = None
-            if certain.size and others <= _UNCERTAIN * certain.size:
+            last = certainty, direction, iterate.depth_change
+            certain, uncertain = iterate.misclassified(goal, last)
+            del last
+            if certain.size and uncertain <= _UNCERTAIN * certain.size:
                 misclassified = certain
                 break
-            del last
         else:
-            pending.add_to(displacement)
-            pending = None
-        # On a large contact each of these arrays is as large as the grid.
-        del inside
-        ascent = directions(residual)
-        before, descent = descent, dot(residual, ascent)
+            iterate.update_displacement()
+        ascent = iterate.steepest()
+        before, descent = descent, dot(iterate.residual, ascent)
         # The direction was multiplied by its step length.
         direction *= curvature / before * (descent / before)
         direction += ascent
+        # On a large contact it is as large as the grid.
         del ascent
-    depth -= directions.mean(residual)
     if misclassified is None:
-        margin = max(error, goal)
-        misclassified, _ = _misclassified(
-            problem, preconditioner, displacement, on_contact, depth, margin, pending
-        )
-    # A start or a guess may be in Fortran order, of which ravel() would be a copy.
-    np.put(pressure, cells, on_contact)
+        misclassified, _ = iterate.misclassified(max(error, goal))
+    # A start or a guess may be in Fortran order, for which ravel() returns a copy.
+    np.put(pressure, cells, iterate.pressure)
     return InnerSolution(pressure, displacement, error, np.sort(misclassified))
+
+
+class _Iterate:
+    """Pressure, displacement and remaining gap of conjugate gradients on a contact."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        preconditioner: OnContact,
+        pressure: Array,
+        displacement: Array,
+        u_minus_f: Array | None,
+    ) -> None:
+        self._problem, self._preconditioner = problem, preconditioner
+        cells = self._cells = preconditioner.cells
+        uniform = self._uniform = _Uniform.of(problem, cells)
+        self._directions = _Directions(problem, preconditioner, uniform)
+        bends = preconditioner.preconditioner.bends
+        self._field = np.zeros(problem.grid.shape, dtype=np.float64 if bends else np.float32)
+        self.pressure = pressure.ravel()[cells]
+        """On the cells of the contact [Pa]."""
+        self._displacement = displacement
+        if u_minus_f is None:
+            u_minus_f = displacement.ravel()[cells] - problem.profile.ravel()[cells]
+        self._depth = problem.depth(u_minus_f)
+        self.residual = np.subtract(self._depth, u_minus_f, out=u_minus_f)
+        """Minus the gap on the contact [m], but for its mean under force control."""
+        self.depth_change = 0.0
+        """Change of the depth in the last iteration [m]; 0 at a given depth."""
+        self._pending: _Change | None = None
+        if uniform:
+            level = uniform.level(self.residual)
+            self.pressure += level
+            displacement += level * uniform.displacement
+            self.residual -= level * uniform.inside
+
+    @property
+    def error(self) -> float:
+        """The largest gap on the contact by magnitude [m]."""
+        return self._directions.error(self.residual)
+
+    def steepest(self) -> Array:
+        """Return the preconditioned residual [Pa], the direction of steepest descent."""
+        return self._directions(self.residual)
+
+    def advance(self, direction: Array, descent: float) -> float:
+        """Go along a direction to the least energy, and return ⟨direction, A direction⟩.
+
+        The direction is multiplied by the step length. Nothing changes if the result is not > 0.
+        """
+        uniform = self._uniform
+        mean = float(direction.mean()) if uniform else 0.0
+        varying = direction - mean if uniform else direction
+        size = max(float(varying.max()), -float(varying.min())) or 1.0
+        _scatter(varying, size, self._cells, self._field)
+        del varying
+        change = self._problem.operator(self._field, out=self._field)
+        if uniform:
+            change += (mean / size) * uniform.displacement
+        inside = _gathered(change, self._cells)
+        inside *= size
+        curvature = dot(direction, inside)
+        if curvature <= 0:
+            return curvature
+        length = descent / curvature
+        inside *= length
+        self.residual -= inside
+        direction *= length
+        self.pressure += direction
+        self.depth_change = self._directions.mean(inside)
+        self._pending = _Change(change, length * size)
+        return curvature
+
+    def update_displacement(self) -> None:
+        """Add the change of the last iteration to the displacement."""
+        if self._pending:
+            self._pending.add_to(self._displacement)
+        self._pending = None
+
+    def misclassified(
+        self, margin: float, last: tuple[float, Array, float] | None = None
+    ) -> tuple[Cells, int]:
+        """Return what `_misclassified` does, after which the displacement is up to date."""
+        pending, self._pending = self._pending, None
+        return _misclassified(
+            self._problem,
+            self._preconditioner,
+            self._displacement,
+            self.pressure,
+            self._depth - self._directions.mean(self.residual),
+            margin,
+            pending,
+            last,
+        )
 
 
 def _scatter(values: Array, unit: float, cells: Cells, field: NDArray[Any]) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Cells, Mask
+from pellicle.numerics.dilation import dilated
 from pellicle.numerics.initial_guess import with_force
 from pellicle.numerics.problem import Problem
 
@@ -41,7 +42,7 @@ def solved_on_few_cells(
     joined = np.flatnonzero(contact & (trial > 0))
     if not 0 < joined.size <= MOST_CELLS or 2 * joined.size > trial.size:
         return None
-    may_join = (_around(contact) | (gap < -margin)) & np.isfinite(problem.profile)
+    may_join = (dilated(contact, cells=_RINGS) | (gap < -margin)) & np.isfinite(problem.profile)
     cells = np.flatnonzero(may_join)
     unit = float(column[0, 0])
     system = _System(problem, column / unit, cells, unit)
@@ -128,11 +129,3 @@ class _System:
             return None
         depth = self._depth if self._total is None else float(solution[number])
         return solution[:number], depth
-
-
-def _around(contact: Mask) -> Mask:
-    """Return the contact on a periodic plane, and the cells around it."""
-    for _ in range(_RINGS):
-        for axis in (0, 1):
-            contact = contact | np.roll(contact, 1, axis) | np.roll(contact, -1, axis)
-    return contact

@@ -14,7 +14,7 @@ from pellicle.grid import Grid
 from pellicle.numerics.operators import Operator
 
 from .biharmonic import stretch_of
-from .circulant_stiffness import Field, Stiffness
+from .circulant_stiffness import CirculantStiffness, Field
 from .multilevel_extension import Extension, bends
 
 # Without a margin, contact at the edge of a free domain couples to the opposite edge.
@@ -47,7 +47,7 @@ class Preconditioner:
             self._padded = _round_up(grid.shape)
         else:
             self._plane = self._padded = _free_shape(grid)
-        self._stiffness = Stiffness(operator, self._plane)
+        self._stiffness = CirculantStiffness(operator, self._plane)
         levels = _levels(self._padded)
         orders = _stiffness_orders(operator, levels + 1)
         self.bends = bends(orders[0])
@@ -65,7 +65,7 @@ class Preconditioner:
         return self._stiffness.greatest
 
     @cached_property
-    def grid_stiffness(self) -> Stiffness:
+    def grid_stiffness(self) -> CirculantStiffness:
         """K on the grid itself, as if the grid were periodic; see `relaxed`."""
         return self._stiffness if self._plane == self._shape else self.stiffness(self._shape)
 
@@ -95,9 +95,9 @@ class Preconditioner:
         unit[0, 0] = 1
         return self._operator(unit)
 
-    def stiffness(self, shape: tuple[int, int]) -> Stiffness:
+    def stiffness(self, shape: tuple[int, int]) -> CirculantStiffness:
         """Return K on a periodic plane of as many cells of the grid's size."""
-        return Stiffness(self._operator, shape)
+        return CirculantStiffness(self._operator, shape)
 
     def on(self, contact: Mask) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""
@@ -227,16 +227,19 @@ def _free_shape(grid: Grid) -> tuple[int, int]:
 
 def _halvings(shape: tuple[int, int]) -> int:
     """Return how often the plane of the extension of a grid is to be halved."""
-    fewest = min((n for n in shape if n > 1), default=1)
-    return max(_HALVINGS, (fewest // _COARSEST).bit_length() - 1)
+    return max(_HALVINGS, (_fewest(shape) // _COARSEST).bit_length() - 1)
 
 
 def _round_up(shape: tuple[int, int]) -> tuple[int, int]:
     """Return the shape with axes of more than one cell rounded up to multiples of a power of 2."""
-    fewest = min((n for n in shape if n > 1), default=1)
-    multiple = 2 ** min(_halvings(shape), max(0, fewest.bit_length() - 2))
+    multiple = 2 ** min(_halvings(shape), max(0, _fewest(shape).bit_length() - 2))
     nx, ny = (-(-n // multiple) * multiple if n > 1 else 1 for n in shape)
     return nx, ny
+
+
+def _fewest(shape: tuple[int, int]) -> int:
+    """Return the number of cells along the shorter axis, among those of more than one cell."""
+    return min((n for n in shape if n > 1), default=1)
 
 
 def _levels(shape: tuple[int, int]) -> int:

@@ -207,7 +207,10 @@ def test_tie_names_its_look_alikes_and_what_would_tell() -> None:
     assert not result.tension_needed
     assert result.rivals is not None
     assert {"tension", "power_law"} <= {rival_fit.rival.code for rival_fit in result.rivals.tied}
-    assert result.range_of_moduli().startswith("over the 2 models that the data cannot tell apart")
+    alternatives = {rival_fit.rival.code for rival_fit in result.rivals.alternatives}
+    pairs = {"tension+power_law", "tension+adhesion"}
+    assert alternatives == {"tension", "power_law", *pairs}
+    assert result.range_of_models().startswith("over the 4 models that the data cannot tell apart")
     over, own = result.rivals.modulus, result.reduced_modulus
     assert over is not None
     assert None not in (over.low, own.low, own.high, over.high)

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from scipy.io import savemat
 
 import pellicle as pl
+from pellicle.fitting.curves.cleaning import clean
 from pellicle.fitting.curves.columns import Calibration
-from pellicle.fitting.curves.curve import Curve, clean
+from pellicle.fitting.curves.curve import Curve
 from pellicle.fitting.curves.readers import read
 from pellicle.fitting.curves.roles import column_map
 
@@ -96,11 +97,26 @@ def test_code_page_of_western_europe(tmp_path: Path) -> None:
     assert is_the_curve(curves(path)[""])
 
 
-def test_thousands_are_no_decimals(tmp_path: Path) -> None:
-    """Where a column has points, a comma is not decimal: the cell is no number, not a wrong one."""
+@pytest.mark.parametrize("mark", ["\t", ";", ","])
+def test_thousands_are_no_decimals(tmp_path: Path, mark: str) -> None:
+    """Where a column has points, a comma groups thousands, or the cell is no number."""
     path = tmp_path / "a.tsv"
-    path.write_text("position [nm]\tforce [nN]\n999.5\t1\n1,000\t2\n", encoding="utf-8")
-    assert np.isnan(curves(path)[""].position).tolist() == [False, True]
+    for grouped, expected in (("1,000", 1e-6), ("-1,234,567.5", -1.2345675e-3), ("1,5", np.nan)):
+        cell = f'"{grouped}"' if mark == "," else grouped
+        path.write_text(f"position [nm]{mark}force [nN]\n999.5{mark}1\n{cell}{mark}2\n")
+        position = curves(path)[""].position.tolist()
+        assert position == pytest.approx([0.9995e-6, expected], rel=1e-12, nan_ok=True)
+
+
+def test_thousands_that_may_be_decimals_are_refused(tmp_path: Path) -> None:
+    """Whole nanometres up to 1,200 are not read as 1.2 nm, which would leave the deep rows out."""
+    path = tmp_path / "a.tsv"
+    lines = [f"{z:,}\t{z**1.5 * 1e-3:.3f}" for z in range(0, 1250, 50)]
+    path.write_text("position [nm]\tforce [nN]\n" + "\n".join(lines))
+    with pytest.raises(pl.ConfigError, match="column position has '1,000' beside '50', so"):
+        curves(path)
+    path.write_text("position [um]\tforce [nN]\n0\t1\n0,125\t2\n1,125\t3\n")
+    assert curves(path)[""].position.tolist() == pytest.approx([0, 0.125e-6, 1.125e-6])
 
 
 @pytest.mark.parametrize("header", ["time [ms]", "time", "t [m]", "time [s]"])

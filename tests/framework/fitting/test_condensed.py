@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -81,7 +83,7 @@ def test_minimum_is_that_of_all_rows(segment: Segment, relaxes: bool) -> None:
     """A curve condensed to a quarter of its rows has the same χ² and the same minimum."""
     whole, start = curve(segment), BEST
     if relaxes:
-        whole = whole.with_models([PowerLawModel(MODEL, whole.history)])
+        whole = replace(whole, force_model=PowerLawModel(MODEL, whole.history))
         start = BEST | {EXPONENT: 0.05}
     thin = whole.condensed(start, 0.1)
     assert thin.force.size <= whole.force.size / 4
@@ -95,6 +97,6 @@ def test_minimum_is_that_of_all_rows(segment: Segment, relaxes: bool) -> None:
 def test_rows_stay_where_nodes_do_not_do() -> None:
     """Nearly exact forces and drag, which begins at once, keep all rows."""
     exact, sudden = curve(noise=1e-7), curve()
-    sudden = sudden.with_models([DragModel(MODEL, sudden.history)])
+    sudden = replace(sudden, force_model=DragModel(MODEL, sudden.history))
     assert exact.condensed(BEST, 0.1) is exact
     assert sudden.condensed(BEST, 0.1) is sudden

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 import pytest
 
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, Coordinates, Parameter
-from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood, Minimum, Range
+from pellicle.fitting.statistics.chi_squared import ChiSquared, Minimum, Range
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.profile import (
     ImprovedMinimum,
     chi_squared_threshold,
@@ -20,6 +22,7 @@ from pellicle.fitting.statistics.profile import (
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
+Value = TypeVar("Value")
 BEST = {CONTACT_POINT: 2.0, OFFSET: -1.0, MODULUS: 3.0}
 
 
@@ -41,9 +44,20 @@ class Linear(ChiSquared):
         """Wide limits, or ``limit``."""
         return dict.fromkeys(BEST, Range(1.0, -self.limit, self.limit))
 
+    members: tuple[Likelihood, ...] = ()
+    """No curve: there is only a quadric."""
+
+    def with_members(self, members: Sequence[Likelihood]) -> Linear:
+        """Return the same quadric."""
+        return self
+
     def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
-        """Return no curve: there is only a quadric."""
+        """Return no curve."""
         return []
+
+    def joined(self, parts: Sequence[Mapping[Parameter, Value]]) -> dict[Parameter, Value]:
+        """Return nothing, since no curve has anything."""
+        return {}
 
     def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return residuals and the design matrix."""
@@ -54,9 +68,6 @@ class Linear(ChiSquared):
     def accuracy(self) -> float:
         """The model is exact."""
         return 0.0
-
-    def coarse(self) -> None:
-        """Nothing is simulated."""
 
 
 def correlated(seed: int = 1) -> Array:

@@ -5,16 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import fit_pairs
 import fit_rivals
 import numpy as np
 import pytest
-from fit_pairs import score_of
 from fit_rivals import KINDS, MODULUS_, RADIUS, Sample, fitted, path
 from numpy.typing import NDArray
 from scipy.special import beta
 
 import pellicle as pl
-from pellicle.fitting.comparison import Comparison, RivalFit, Verdict, _judge, decision
+from pellicle.fitting.compare import _unseen
+from pellicle.fitting.comparison import Comparison, RivalFit, Verdict
+from pellicle.fitting.curves.curve import Segment
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
 from pellicle.fitting.models.effects import DRAG, DRIFT, DragModel, DriftModel
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
@@ -27,10 +29,13 @@ from pellicle.fitting.models.relaxing import (
     StandardLinearModel,
 )
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Values
-from pellicle.fitting.report.answer import answer
 from pellicle.fitting.report.page import save_report
+from pellicle.fitting.report.sentences import sentence_of_fit
 from pellicle.fitting.statistics.likelihood import Likelihood
-from pellicle.fitting.statistics.rivals import MARGIN, NONE, TENSED, Rival
+from pellicle.fitting.statistics.pooled_likelihood import Pool
+from pellicle.fitting.statistics.rival import Rival
+from pellicle.fitting.statistics.rivals import MARGIN, NONE, TENSED
+from pellicle.fitting.verdict import decision, judge
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 
@@ -197,6 +202,25 @@ def test_two_speeds_show_relaxation() -> None:
     assert pool.rivals.best.rival.code == "power_law"
 
 
+def test_one_speed_does_not_tell_a_tension_from_relaxation_beside_it() -> None:
+    """A tensed power-law solid: modulus and tension of the elastic model miss by a factor of 2."""
+    random = np.random.default_rng([5, 19, *b"one speed"])
+    curve, _, truth = fit_pairs.relaxing(random, (1.0,))
+    assert isinstance(curve, Likelihood)
+    fit = pl.fit(curve.position, curve.force, time=curve.time, indenter="paraboloid", radius=RADIUS)
+    assert fit.tension_needed
+    assert fit.rivals is not None
+    tension = truth[TENSION]
+    assert (fit.tension.low or 0.0) > 1.5 * tension
+    for estimate, value in ((fit.rivals.tension, tension), (fit.rivals.modulus, 2e3)):
+        assert estimate is not None
+        assert estimate.low is not None
+        assert estimate.high is not None
+        assert estimate.low < value < estimate.high
+    assert "at one speed a relaxation exponent up to 0.3" in fit.comparison
+    assert "and the tension" in sentence_of_fit(fit)
+
+
 def test_comparison_in_full() -> None:
     """All explanations have intervals, a line of the table and JSON; the order is that of AIC."""
     solid = sample("tension, 5 errors of both passes", 4)
@@ -259,7 +283,7 @@ def test_retraction_whose_jump_is_not_seen() -> None:
 
     Without that, the work of adhesion was 5 bounds off, and its interval missed it.
     """
-    score = score_of("retraction", 5, 7)
+    score = fit_pairs.score_of("retraction", 5, 7)
     for name in ("reduced_modulus", "tension", "work_of_adhesion"):
         error, holds = score[name]
         assert abs(error) < 2
@@ -297,12 +321,12 @@ def test_the_chosen_model_is_the_answer(tmp_path: Path) -> None:
     assert chosen["settled"]
     modulus = chosen["parameters"]["reduced_modulus"]
     assert modulus["low"] < MODULUS_ < modulus["high"]
-    assert answer(fit).endswith(", with 95 % intervals, by adhesion.")
+    assert sentence_of_fit(fit).endswith(", with 95 % intervals, by adhesion.")
     assert fit.rivals is not None
     assert "1.5 πWR: between the limits" in fit.rivals.pull_off
     save_report(fit, tmp_path / "page.html", "bead")
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
-    assert answer(fit).split(" (")[0] in page
+    assert sentence_of_fit(fit).split(" (")[0] in page
     assert fit.rivals.pull_off[1:] in page
     many = pl.fit_many(file, progress=False, **options)
     work = float(many["work_of_adhesion"][0])
@@ -349,6 +373,45 @@ def test_models_whose_moduli_count(
     assert {fit.rival.code for fit in comparison.alternatives} == alternatives
 
 
+@pytest.mark.parametrize(("aic", "counts"), [(2.0, True), (4.0, False)])
+def test_relaxation_beside_a_tension_counts_at_one_speed(aic: float, counts: bool) -> None:
+    """Though curves of one speed need it no more than any other pair."""
+    ranked = {"tension": 0.0, "tension+power_law": aic, "power_law": 40.0, "none": 100.0}
+    fits = [
+        RivalFit(Rival(code, code, "tension" in code, TENSED.build), 0.0, lead, lead, {}, {})
+        for code, lead in ranked.items()
+    ]
+    comparison = Comparison(tuple(fits), "needed", "", "", (), unseen=("tension+power_law",))
+    codes = {fit.rival.code for fit in comparison.alternatives}
+    assert codes == {"tension"} | ({"tension+power_law"} if counts else set())
+
+
+def test_what_measurements_do_not_show() -> None:
+    """Adhesion in approaches; relaxation at one speed, without a dwell."""
+
+    def unseen(*rows: fit_rivals.Path, segment: Segment = "approach") -> tuple[str, ...]:
+        curves = [
+            Likelihood(
+                path.depth,
+                path.depth,
+                ELASTIC,
+                1.0,
+                (CONTACT_POINT,),
+                time=path.time,
+                segment=segment,
+            )
+            for path in rows
+        ]
+        return _unseen(Pool.of(curves) if len(curves) > 1 else curves[0])
+
+    adhesion, relaxation = "tension+adhesion", "tension+power_law"
+    assert unseen(path()) == (adhesion, relaxation)
+    assert unseen(path(), path(rate=1.2)) == (adhesion, relaxation)
+    assert unseen(path(), path(rate=10.0)) == (adhesion,)
+    assert unseen(path(dwell=True)) == (adhesion,)
+    assert unseen(path("both"), segment="both") == ()
+
+
 @pytest.mark.parametrize(("gain", "chosen"), [(1.2, None), (7.0, "tension+adhesion")])
 def test_an_effect_beside_tension_has_to_beat_tension_alone(
     gain: float, chosen: str | None
@@ -360,8 +423,7 @@ def test_an_effect_beside_tension_has_to_beat_tension_alone(
         for code in ranked
     } | {rival.code: rival for rival in (NONE, TENSED)}
     fits = [RivalFit(rivals[code], 0.0, aic, aic, {}, {}) for code, aic in ranked.items()]
-    unused: Any = None
-    comparison = _judge(unused, fits, [])
+    comparison = judge(Pool.of([]), fits, [])
     assert comparison.verdict == "needed"
     assert (comparison.chosen and comparison.chosen.rival.code) == chosen
     assert ("beside it there is adhesion" in comparison.sentence) == (chosen is not None)

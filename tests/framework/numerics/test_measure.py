@@ -9,8 +9,10 @@ import pytest
 
 from pellicle import Grid
 from pellicle.arrays import Array
+from pellicle.numerics.contact_stiffness import measure_stiffness
+from pellicle.numerics.equilibrium import measure
 from pellicle.numerics.operators import make_operator
-from pellicle.numerics.problem import Depth, Force, Problem, measure, measure_stiffness
+from pellicle.numerics.problem import Depth, Force, Problem
 from pellicle_plugins.kernels.winkler import Winkler
 
 FOUNDATION, RADIUS, DEPTH = 2e8, 1e-3, 4e-6

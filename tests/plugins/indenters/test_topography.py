@@ -457,6 +457,10 @@ def test_size_and_slope_of_a_wrong_unit_are_remarked_on(
         "1,5;2;3;4;\n4;;-6;1;\n0;1;1;0;\n",
         "1,5\t2\t3\t4\n4\tnan\t-6,0\t1\n0\t1\t1\t0\n",
         "1.5,2,3,4\r\n4,,-6,1\r\n0,1,1,0\r\n",
+        "1.5\t2\t3\t4\t\n4\t\t-6\t1\t\n0\t1\t1\t0\n",
+        "1.5,2,3,4\n4,NAN,-6,1\n0,1,1,0\n",
+        "\ufeff1.5 2 3 4\n4 nan -6 1\n0 1 1 0\n",
+        "\ufeff1.5;2;3;4\n4;bad;-6;1\n0;1;1;0\n",
     ],
 )
 def test_numbers_between_commas_or_semicolons(tmp_path: Path, text: str) -> None:
@@ -468,6 +472,65 @@ def test_numbers_between_commas_or_semicolons(tmp_path: Path, text: str) -> None
         scan = pl.indenter("topography", path=path, unit="1 nm", size=["1 mm", "1 mm"], fill=0.2)
         heights.append(scan.profile(*pl.Grid(points=[4, 3], size="1 mm").coordinates()))
     assert heights[0] == pytest.approx(heights[1], abs=0)
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "# Width: 10 µm\n# Height: 8 µm",
+        "# Width: 10 μm\n# Height: 8000 nm",
+        "x-length = 10\ny-length = 8\nx-unit = um",
+        "# Width: 10 µm\n# Height: 8 µm\n# Value units: nm",
+    ],
+)
+def test_size_of_a_header_is_in_its_own_unit(tmp_path: Path, header: str) -> None:
+    """Nanometres of heights, given or stated, do not make a scan of micrometres a thousandth."""
+    path = tmp_path / "a.txt"
+    rows = "\n".join("1 2 3 4 5" for _ in range(4))
+    path.write_text(f"{header}\n{rows}", encoding="utf-8")
+    unit = {} if "Value" in header else {"unit": "1 nm"}
+    profile = _profile(pl.Grid(points=[5, 4], size=["10 um", "8 um"]), path, level="none", **unit)
+    assert profile == pytest.approx(1e-9 * np.tile(np.arange(-4, 1), (4, 1)).T, abs=1e-20)
+
+
+def test_size_with_decimal_commas_is_refused(tmp_path: Path) -> None:
+    """A width of 10,5 µm is not taken for 10."""
+    path = tmp_path / "a.txt"
+    path.write_text("# Width: 10,5 µm\n# Height: 8,2 µm\n1 2 3 4\n2 3 4 5\n3 4 5 6\n", "utf-8")
+    with pytest.raises(pl.ConfigError, match=r"^path: .* states its size in ',5 µm', which is"):
+        pl.indenter("topography", path=path, unit="1 nm")
+
+
+@pytest.mark.parametrize("mark", ["\t", ",", ";"])
+@pytest.mark.parametrize("column", [0, 2, 4])
+def test_missing_points_of_a_text_keep_their_place(tmp_path: Path, mark: str, column: int) -> None:
+    """One point missing in some rows, at an edge too: all others stay where they were measured."""
+    heights = np.random.default_rng(2).normal(size=(6, 5))
+    rows = [list(map(repr, row)) for row in heights.tolist()]
+    for row in rows[1::2]:
+        row[column] = ""
+    path = tmp_path / "a.txt"
+    path.write_text("\n".join(map(mark.join, rows)))
+    scan = pl.indenter(
+        "topography", path=path, unit=1e-9, size=["5 um", "6 um"], fill=0.5, level="none"
+    )
+    profile = scan.profile(*pl.Grid(points=[5, 6], size=["5 um", "6 um"]).coordinates())
+    measured = np.array([[bool(entry) for entry in row] for row in rows]).T
+    difference = (profile - heights.T * 1e-9)[measured]
+    assert np.ptp(difference) < 1e-20
+
+
+@pytest.mark.parametrize("mark", [" ", "\t", ",", ";"])
+@pytest.mark.parametrize("word", ["NA", "--", "#N/A"])
+@pytest.mark.parametrize("count", [1, 5])
+def test_no_row_of_a_text_is_lost(tmp_path: Path, mark: str, word: str, count: int) -> None:
+    """A word for a missing point is named with its line; below it the scan would move up."""
+    rows = [["1.5", "2", "3", "4", "-5"] for _ in range(6)]
+    rows[3][:count] = [word] * count
+    path = tmp_path / "a.txt"
+    path.write_text("# Size: 5 um\n" + "\n".join(map(mark.join, rows)))
+    with pytest.raises(pl.ConfigError, match=rf"^path: .*'{word}' among the numbers of line 5;"):
+        pl.indenter("topography", path=path, unit=1e-9, size="5 um")
 
 
 def test_any_file_of_the_right_length_is_no_terrain(tmp_path: Path) -> None:

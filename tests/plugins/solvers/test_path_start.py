@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from pellicle.numerics.equilibrium import Equilibrium, measure
 from pellicle.numerics.path import PathPoint, Start, start_of
-from pellicle.numerics.problem import Depth, Equilibrium, Force, measure
+from pellicle.numerics.problem import Depth, Force
 from pellicle.operators import Array, make_operator
 from pellicle_plugins.solvers.active_set import ActiveSet
 

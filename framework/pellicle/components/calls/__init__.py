@@ -9,13 +9,14 @@ from .executor import outcomes_of
 from .indenter import force_curve_of, layer_force_curve_of, profile_of
 from .kernel import branches_of, instantaneous
 from .output import files_of, require_files
-from .prescription import check_value, report_of, target_of
+from .prescription import check_value, check_variables, report_of, target_of
 from .solver import check_solver, response_of, solution_of
 
 __all__ = [
     "branches_of",
     "check_solver",
     "check_value",
+    "check_variables",
     "corrected_area",
     "files_of",
     "force_curve_of",

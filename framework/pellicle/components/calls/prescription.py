@@ -9,7 +9,8 @@ import numpy as np
 from pellicle.checks import component_name, errors_attributed_to, real_number
 from pellicle.components.prescription import Prescription, Search, Setting
 from pellicle.errors import ConfigError, PluginError, shown
-from pellicle.numerics.problem import Depth, Equilibrium, Force
+from pellicle.numerics.equilibrium import Equilibrium
+from pellicle.numerics.problem import Depth, Force
 from pellicle.results.variables import COORDINATES, VARIABLES
 
 
@@ -22,10 +23,7 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
     ------
     ConfigError
         The value is not allowed in this setting.
-    PluginError
-        A variable that the prescription adds has the name of another, or no name.
     """
-    _check_names(prescription)
     try:
         with errors_attributed_to(prescription):
             prescription.check(setting, value)
@@ -34,8 +32,14 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
         raise (error if named else error.within(field)) from None
 
 
-def _check_names(prescription: Prescription) -> None:
-    """Refuse variables that would replace others of a result, or have no name in Python."""
+def check_variables(prescription: Prescription) -> None:
+    """Refuse variables that would replace others of a result, or have no valid name in Python.
+
+    Raises
+    ------
+    PluginError
+        The message names the first such variable.
+    """
     reserved = {*VARIABLES, *COORDINATES}
     for variable in prescription.variables:
         name = variable.name

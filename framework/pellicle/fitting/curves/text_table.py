@@ -25,6 +25,9 @@ FILE = "file"
 _HEADER = re.compile(r"([^\[(]*)(?:[\[(]([^\])]*)[\])])?")
 _WORD = re.compile(r"[^\s\[(]+(?:\s?[\[(][^\])]*[\])])?")
 """A column's name and unit in a header whose columns are separated by spaces."""
+_WHOLE = re.compile(r"[-+]?[1-9]\d{0,2}")
+_GROUPED = re.compile(rf"{_WHOLE.pattern}(?:,\d{{3}})+(?:\.\d*)?")
+"""A number whose thousands are separated by commas."""
 _COMMENT = ("#", "%")
 _SPACE = " "
 _PREAMBLE = 200
@@ -82,17 +85,32 @@ class Cells:
         """Return the name of a column, or its number from 1."""
         return self.heads[index].name if self.heads else str(index + 1)
 
-    def numbers(self, rows: Sequence[Sequence[str]], index: int) -> Array:
+    def numbers(self, rows: Sequence[Sequence[str]], index: int, path: Path) -> Array:
         """Return a column of some rows; NaN where a cell is missing or holds no number.
 
-        In a column that has points, a comma is not decimal.
+        In a column that has points, a comma is not decimal, and may group thousands.
+
+        Raises
+        ------
+        ConfigError
+            Commas may be decimal or group thousands; ``path`` is named.
         """
-        cells = [row[index] if index < len(row) else "" for row in rows]
-        comma = self.comma and not any("." in cell for cell in cells)
+        cells = [row[index].strip() if index < len(row) else "" for row in rows]
+        commas = [cell for cell in cells if "," in cell]
+        decimal = self.comma and not any("." in cell for cell in cells)
+        grouped = all(map(_GROUPED.fullmatch, commas))
+        whole = next(filter(_WHOLE.fullmatch, cells), None) if commas and grouped else None
+        if decimal and whole:
+            raise ConfigError(
+                f"{path}: column {self.name(index)} has {commas[0]!r} beside {whole!r}, so its "
+                "commas may be those of decimals or of thousands; export it without separators "
+                "of thousands, and with decimals in all rows"
+            )
+        mark = "." if decimal else "" if grouped else ","
         values = np.full(len(rows), np.nan)
         for number, cell in enumerate(cells):
             with suppress(ValueError):
-                values[number] = float(cell.replace(",", ".", 1) if comma else cell)
+                values[number] = float(cell.replace(",", mark))
         return values
 
 
@@ -176,7 +194,7 @@ def _is_unit(text: str) -> bool:
 
 
 def _recogniser(mapped: Mapping[str, str]) -> Callable[[tuple[Head, ...]], bool]:
-    """Return a function that tells whether heads are those of the table that is sought."""
+    """Return a function that tells whether heads are those of the table sought."""
     named = [name for name in mapped if not name.isdecimal()]
     if named:
         return lambda heads: all(any(head.is_called(name) for head in heads) for name in named)
@@ -241,7 +259,7 @@ def curves_of(
             curves.setdefault(row[label].strip() if label < len(row) else "", []).append(row)
     return {
         text: {
-            role: Channel(units[role], cells.numbers(rows, index), cells.name(index))
+            role: Channel(units[role], cells.numbers(rows, index, path), cells.name(index))
             for role, index in indices.items()
         }
         for text, rows in curves.items()

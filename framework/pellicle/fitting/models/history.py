@@ -19,6 +19,8 @@ _WILD = 4.0
 """Standard deviations of noise below the largest position within which the indenter dwells."""
 _DWELL = 0.02
 """Distance from the largest position, over the range, within which the indenter dwells."""
+_RESTS = 0.1
+"""Share of the time of loading from which on the end of a pass is a dwell."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +68,12 @@ class History:
         deepest = loading[1][-1]
         near = loading[1] >= deepest - _DWELL * (deepest - loading[1][0])
         return cls(time, mask, velocity, loading, unloading, float(loading[0][np.argmax(near)]))
+
+    @property
+    def dwells(self) -> bool:
+        """Whether the indenter rests for more than a tenth of the time in which it moves in."""
+        times, _ = self.loading_path
+        return bool(times[-1] - self.top > _RESTS * (self.top - times[0]))
 
     def at_rows(self, rows: NDArray[np.intp]) -> History:
         """Return the same path with some of the rows."""

@@ -16,11 +16,11 @@ from pellicle.fitting.models.solid import lengths
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 from pellicle.units import decimal, readable
 
+from .chi_squared import ChiSquared, Minimum, best_minimum
 from .initial_guess import initial_guesses
-from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
+from .likelihood import Likelihood
 from .long_memory import exponent_of
 from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
-from .pooled_likelihood import Pool
 from .profile import CONFIDENCE
 
 _QUIET = 20
@@ -80,8 +80,8 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
         correlated = replace(likelihood, memory=memory)
         best = best_minimum(correlated, [minimum.parameters, *guesses])
         judgement = judged(correlated, best.parameters)
-        # A baseline that bends is not noise of the contact, of which its differences leave nothing:
-        # a measured curve with a clear contact got a modulus of 3e-14 Pa.
+        # A bent baseline is not noise, and its fractional differences would remove the contact: a
+        # measured curve with a clear contact got a modulus of 3e-14 Pa.
         if "misfit" not in {check.code for check in judgement[0].failed}:
             likelihood, minimum, (estimate, source) = correlated, best, judgement
             falls = f"power falls as f^{-2 * memory:.2g}"
@@ -265,9 +265,7 @@ def _misfit(code: str, finding: str, residuals: Residuals) -> FailedCheck:
     )
 
 
-def check_shape(
-    chi_squared: Likelihood | Pool, best: Minimum
-) -> tuple[list[str], list[FailedCheck]]:
+def check_shape(chi_squared: ChiSquared, best: Minimum) -> tuple[list[str], list[FailedCheck]]:
     """Return the effect of whole shapes in words, as a failed check if they replace the tension.
 
     They are those that the indenters of curves too deep for them approximate.  The check fails if
@@ -293,7 +291,7 @@ def check_shape(
         fails = _needs_no_tension(other, minimum, chi_squared, best)
     except ConvergenceError:
         return [], []
-    if isinstance(chi_squared, Pool):
+    if len(models) > 1:
         words = (
             f"{len(deep)} of {len(models)} curves go deeper than {SHALLOW:g} of the radius, and "
             "the shapes that their indenters approximate describe the curves equally well without "

@@ -15,9 +15,11 @@ from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.parameters import CONTACT_POINT, Coordinates
 from pellicle.units import decimal, readable
 
-from .likelihood import ChiSquared, Likelihood
+from .chi_squared import ChiSquared
+from .likelihood import Likelihood
 from .pooled_likelihood import Pool
-from .rivals import MARGIN, Rival
+from .rival import Rival
+from .rivals import MARGIN
 
 _ROWS = 150
 """Rows of a pass in a forecast."""
@@ -60,15 +62,13 @@ def advised(
     predicts, without noise, and the rest are fitted to this and to the curve itself; the least χ²
     among those that have to be told apart is what a measurement is worth.
     """
-    members = chi_squared.members if isinstance(chi_squared, Pool) else (chi_squared,)
-    likelihood = members[0]
-    assert isinstance(likelihood, Likelihood)
-    part = _part(chi_squared, tensed[1])
+    likelihood = chi_squared.members[0]
+    part = _of_first_curve(tensed[1])
     best: tuple[float, str] | None = None
     for measurement in _measurements(likelihood, part[CONTACT_POINT]):
         worth = np.inf
         for rival, parameters in others:
-            known = _part(chi_squared, parameters)
+            known = _of_first_curve(parameters)
             for truth, guess in (
                 ((tensed[0], part), (rival, known)),
                 ((rival, known), (tensed[0], part)),
@@ -89,11 +89,9 @@ def advised(
     return f"{count} curves of this kind would: {best[1]} (expected Δχ² = {best[0]:.2g} each)"
 
 
-def _part(chi_squared: ChiSquared, parameters: Coordinates) -> Coordinates:
-    """Return the coordinates of the first curve."""
-    if not isinstance(chi_squared, Pool):
-        return parameters
-    return {replace(p, curve=0): v for p, v in parameters.items() if p.curve == 0}
+def _of_first_curve(parameters: Coordinates) -> Coordinates:
+    """Return the coordinates of the first curve, the shared ones included."""
+    return {p: coordinate for p, coordinate in parameters.items() if p.curve == 0}
 
 
 def _measurements(likelihood: Likelihood, point: float) -> Iterator[Measurement]:
@@ -156,7 +154,7 @@ def _duration(value: float, has_time: bool) -> str:
 def _separation(
     likelihood: Likelihood, measurement: Measurement, truth: Explanation, guess: Explanation
 ) -> float:
-    """Return the least χ² of a model on what another predicts, now and by a measurement.
+    """Return the least χ² of a model on curves that another predicts: this one and a planned one.
 
     A measurement that cannot be predicted, as by a cantilever that jumps, is worth nothing.
     """
@@ -167,17 +165,11 @@ def _separation(
             _predicted(rival, likelihood.thinned(_ROWS), parameters),
             _predicted(rival, _planned(likelihood, measurement), parameters | {CONTACT_POINT: 0.0}),
         ]
-        pool = Pool.of([_member(other, curve) for curve in curves])
+        pool = Pool.of([other.of_curve(curve) for curve in curves])
         starts = [other.start(member, start) for member in pool.members]
         starts[1][CONTACT_POINT] = 0.0
         return pool.minimise(pool.joined(starts), rough=True).chi_squared
     return 0.0
-
-
-def _member(rival: Rival, curve: Likelihood) -> Likelihood:
-    member = rival.of(curve)
-    assert isinstance(member, Likelihood)
-    return member
 
 
 def _planned(likelihood: Likelihood, measurement: Measurement) -> Likelihood:
@@ -202,6 +194,6 @@ def _predicted(rival: Rival, curve: Likelihood, parameters: Coordinates) -> Like
     """Return a curve with the forces of a model at its positions of the base."""
     base = curve.base
     still = replace(curve, position=base, force=np.zeros_like(base))
-    member = _member(rival, still)
+    member = rival.of_curve(still)
     position, force = member.fitted(rival.start(member, parameters))
     return replace(curve, position=position, force=force)

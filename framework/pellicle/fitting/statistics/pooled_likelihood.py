@@ -11,11 +11,11 @@ from typing import TypeVar
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle.fitting.models.force_model import ForceModel
 from pellicle.fitting.parameters import Coordinates, Parameter
 
+from .chi_squared import ChiSquared, Minimum, Range, least
 from .initial_guess import GUESSES
-from .likelihood import ChiSquared, Likelihood, Minimum, Range, least
+from .likelihood import Likelihood
 
 _Value = TypeVar("_Value")
 
@@ -27,8 +27,7 @@ class Pool(ChiSquared):
     Each curve has its own values of the others: contact point, offset, slope.
     """
 
-    members: tuple[Likelihood, ...]
-    """One for each curve."""
+    _members: tuple[Likelihood, ...]
     free: tuple[Parameter, ...]
 
     @classmethod
@@ -36,6 +35,15 @@ class Pool(ChiSquared):
         """Return the pool in which the free parameters of each curve are free."""
         free = (p.of_curve(index) for index, member in enumerate(members) for p in member.free)
         return cls(tuple(members), tuple(dict.fromkeys(free)))
+
+    @property
+    def members(self) -> tuple[Likelihood, ...]:
+        """The likelihood of each curve."""
+        return self._members
+
+    def with_members(self, members: Sequence[Likelihood]) -> Pool:
+        """Return the pool of other likelihoods, whose free parameters are free."""
+        return Pool.of(members)
 
     @cached_property
     def _own(self) -> list[dict[Parameter, Parameter]]:
@@ -53,11 +61,6 @@ class Pool(ChiSquared):
     def curves(self, parameters: Coordinates) -> list[tuple[Likelihood, Coordinates]]:
         """Return likelihood and coordinates of each curve."""
         return list(zip(self.members, self.parts(parameters), strict=True))
-
-    def with_models(self, models: Sequence[ForceModel]) -> Pool:
-        """Return the same with another force model for each curve."""
-        pairs = zip(self.members, models, strict=True)
-        return Pool(tuple(member.with_models([model]) for member, model in pairs), self.free)
 
     @property
     def shared(self) -> list[Parameter]:
@@ -88,17 +91,10 @@ class Pool(ChiSquared):
         """Whether χ² of a curve jumps as a row touches."""
         return any(member.is_sudden for member in self.members)
 
-    def coarse(self) -> Pool | None:
-        """Return the same with force models of coarser grids, if there are any."""
-        models = [member.force_model for member in self.members]
-        if not any(model.coarse for model in models):
-            return None
-        return self.with_models([model.coarse or model for model in models])
-
     def condensed(self, parameters: Coordinates, tolerance: float) -> Pool:
         """Return the same χ² from models that are evaluated at fewer rows, if they are smooth."""
-        members = tuple(m.condensed(part, tolerance) for m, part in self.curves(parameters))
-        return self if all(map(operator.is_, members, self.members)) else Pool(members, self.free)
+        members = [m.condensed(part, tolerance) for m, part in self.curves(parameters)]
+        return self if all(map(operator.is_, members, self.members)) else self.with_members(members)
 
     def linearised(self, parameters: Coordinates) -> tuple[Array, Array]:
         """Return a QR-compressed residual vector, six entries per curve, and its Jacobian.

@@ -1,0 +1,336 @@
+"""Compare explanations of curves: an elastic solid under tension, and its rivals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial, reduce
+
+import numpy as np
+
+from pellicle.units import readable
+
+from .comparison import Comparison, Intervals, RivalFit
+from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
+from .models.relaxing import EXPONENT
+from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
+from .statistics.checks import judged
+from .statistics.chi_squared import ChiSquared, Minimum
+from .statistics.likelihood import Likelihood
+from .statistics.noise import FailedCheck
+from .statistics.profile import Ends, Estimate, curvature_interval, estimate_of, united
+from .statistics.rival import Rival
+from .statistics.rivals import NONE, TENSED, rivals
+from .verdict import MANY_MARGIN, judge
+from .wording import words
+
+_FIRST_TENSIONS = (0.03, 0.3)
+"""Tensions from which a search for one starts, over modulus and depth."""
+_FAR = 100.0
+"""Difference of AIC beyond which intervals come from the curvature of χ²: their models describe the
+curves so badly that profiles, a third of the time of a comparison, would say nothing more."""
+_ONE_SPEED = 1.5
+"""Ratio of speeds up to which curves count as measured at one."""
+_UNSEEN = {
+    "tension+adhesion": (WORK_OF_ADHESION, "on approach {} would not show, on retraction it would"),
+    "tension+power_law": (EXPONENT, "at one speed {} would not show, at a second it would"),
+}
+"""By the code of a pair, the parameter of its effect and what of it a measurement does not show."""
+_NUISANCES = {CONTACT_POINT.name, OFFSET.name, SLOPE.name}
+"""Parameters of every curve, whose values a comparison does not report."""
+_Minima = dict[str, tuple[Rival, Minimum]]
+"""Explanations with their minima of χ², by code."""
+
+
+def compare(
+    chi_squared: ChiSquared,
+    best: Minimum,
+    without: Minimum,
+    *,
+    threshold: float,
+    full: bool = True,
+    pairs: bool = True,
+    report: Callable[[str], None] = lambda stage: None,
+) -> Comparison:
+    """Return how rivals of a tension describe the curves.
+
+    Parameters
+    ----------
+    chi_squared
+        That of the elastic solid under tension, whose tension is free.
+    best, without
+        Its minima with and without tension.
+    threshold
+        Δχ² at the ends of intervals.
+    full
+        Whether all explanations get intervals; otherwise only the one that is chosen.
+    pairs
+        Whether a tension is compared beside each other effect; otherwise only if no single effect
+        passes its checks, or beside one that leads, adhesion, and relaxation at one speed.
+    report
+        Called with the name of each explanation.
+    """
+    minima = _minima(chi_squared, best, without, pairs=pairs, report=report)
+    quiet, failed = _at_its_noise(chi_squared, minima)
+    report("intervals")
+    fits = _ranked(quiet, minima, threshold if full else None)
+    comparison = replace(judge(quiet, fits, failed), unseen=_unseen(chi_squared))
+    if comparison.chosen is not None:
+        comparison = _with_intervals(quiet, comparison, comparison.chosen, threshold)
+    return _over_alternatives(quiet, comparison, threshold)
+
+
+def _minima(
+    chi_squared: ChiSquared,
+    best: Minimum,
+    without: Minimum,
+    *,
+    pairs: bool,
+    report: Callable[[str], None],
+) -> _Minima:
+    """Return the minima of all explanations that are compared; see `compare`."""
+    every = rivals(chi_squared, best.parameters)
+    minima: _Minima = {NONE.code: (NONE, without), TENSED.code: (TENSED, best)}
+
+    def add(rival: Rival, starts: Sequence[Coordinates]) -> None:
+        report(rival.words)
+        pair, known = rival.minimum(chi_squared, starts), minima.get(rival.code)
+        if pair and (known is None or pair[1].chi_squared < known[1].chi_squared):
+            minima[rival.code] = pair
+
+    for rival in every:
+        if rival.code not in minima and not rival.has_tension:
+            add(rival, [without.parameters, best.parameters])
+    _, failed = _at_its_noise(chi_squared, minima)
+    alone = {code: _criterion(chi_squared, pair) for code, pair in minima.items()}
+    singles = {rival.code: rival for rival in every if rival.is_single}
+    every_pair = pairs or any(check.of_model for check in failed)
+    for rival in every:
+        single = rival.code.partition("+")[2]
+        # What leads alone may hide a tension beside it, as a tension may hide adhesion.
+        leads = (
+            single == min(alone, key=alone.__getitem__)
+            or (
+                single == "adhesion" and alone.get(single, np.inf) + MANY_MARGIN <= alone[NONE.code]
+            )
+            or (single == "power_law" and rival.code in _unseen(chi_squared))
+        )
+        if single and (every_pair or leads):
+            start = minima.get(single, (NONE, without))[1]
+            add(rival, [best.parameters, *_tensed(chi_squared, start)])
+            pair = minima.get(rival.code)
+            # χ² of adhesion jumps as the contact point passes a row, and a search may stop there:
+            # so a pair with next to no tension had beaten the adhesion in it by 15.
+            if pair and single in minima and _criterion(chi_squared, pair) < alone[single]:
+                add(singles[single], [pair[1].parameters])
+    return minima
+
+
+def _unseen(chi_squared: ChiSquared) -> tuple[str, ...]:
+    """Return the codes of pairs that curves of this kind may need and do not show.
+
+    Beside a tension approaches do not show a weak adhesion, nor those of one speed relaxation.
+    """
+    curves = chi_squared.members
+    if any(curve.segment != "approach" for curve in curves):
+        return ()
+    speeds = [float(np.median(curve.history.velocity)) for curve in curves]
+    several = max(speeds) > _ONE_SPEED * min(speeds)
+    if several or any(curve.history.dwells for curve in curves):
+        return ("tension+adhesion",)
+    return tuple(_UNSEEN)
+
+
+def _over_alternatives(
+    chi_squared: ChiSquared, comparison: Comparison, threshold: float
+) -> Comparison:
+    """Return the comparison with the intervals of modulus and tension over all alternatives."""
+    if len(comparison.alternatives) < 2:
+        return comparison
+    chosen = TENSED.code if comparison.chosen is None else comparison.chosen.rival.code
+    is_needed = comparison.verdict == "needed"
+    searched = [MODULUS]
+    if is_needed:
+        searched += [TENSION, *(parameter for parameter, _ in _UNSEEN.values())]
+    estimates = {
+        fit.rival.code: _estimates_of(chi_squared, fit, threshold, searched)
+        for fit in comparison.alternatives
+    }
+
+    def over_all(name: str) -> Estimate:
+        own = [parts[name] for parts in estimates.values() if name in parts]
+        low, high = reduce(united, ((estimate.low, estimate.high) for estimate in own))
+        return replace(estimates[chosen][name], low=low, high=high)
+
+    comparison = replace(comparison, modulus=over_all(MODULUS.name))
+    if not is_needed:
+        return comparison
+    comparison = replace(comparison, tension=over_all(TENSION.name))
+    hidden = [
+        sentence.format(
+            _up_to(parameter.name, estimates[code][parameter.name].high, parameter.unit)
+        )
+        for code, (parameter, sentence) in _UNSEEN.items()
+        if code in comparison.unseen and code in estimates and code != chosen
+    ]
+    return replace(comparison, sentence="; ".join([comparison.sentence, *hidden]))
+
+
+def _up_to(name: str, high: float | None, unit: str) -> str:
+    """Return what a parameter may be at most beside a tension, in words."""
+    size = "of any size" if high is None else f"up to {readable(high, unit, 2)}"
+    return f"a {words(name)} {size} beside it"
+
+
+def _estimates_of(
+    chi_squared: ChiSquared, fit: RivalFit, threshold: float, searched: Sequence[Parameter]
+) -> dict[str, Estimate]:
+    """Return the estimates of an explanation, with intervals at least of those ``searched``."""
+    if fit.intervals == "profile":
+        return fit.estimates
+    of_rival = fit.rival.of(chi_squared)
+    minimum = Minimum(fit.parameters, fit.chi_squared)
+    free = [p for p in searched if p in of_rival.free]
+    minimum, ends = fit.rival.intervals(chi_squared, minimum, threshold, free)
+    return _estimates(of_rival, minimum, ends)
+
+
+def _with_intervals(
+    chi_squared: ChiSquared, comparison: Comparison, chosen: RivalFit, threshold: float
+) -> Comparison:
+    """Return the comparison with intervals of the chosen explanation, and its pull-off force."""
+    of_rival = chosen.rival.of(chi_squared)
+    fits, better = comparison.fits, chosen
+    if chosen.intervals != "profile":
+        minimum = Minimum(chosen.parameters, chosen.chi_squared)
+        minimum, ends = chosen.rival.intervals(chi_squared, minimum, threshold, _reported(of_rival))
+        better = replace(
+            chosen,
+            chi_squared=minimum.chi_squared,
+            parameters=minimum.parameters,
+            estimates=_estimates(of_rival, minimum, ends),
+            intervals="profile",
+        )
+        fits = tuple(better if fit is chosen else fit for fit in fits)
+    member, part = of_rival.curves(better.parameters)[0]
+    return replace(comparison, fits=fits, chosen=better, pull_off=_pull_off(member, part))
+
+
+def _pull_off(member: Likelihood, part: Coordinates) -> str:
+    """Return the pull-off force of an adhesive contact with a radius, over its limits."""
+    model = member.force_model
+    if not isinstance(model, AdhesiveModel):
+        return ""
+    radius = getattr(model.elastic.indenter, "radius", None)
+    if radius is None:
+        return ""
+    values = {p: p.value(part[p]) for p in model.parameters}
+    force = -model.pull_off(values)
+    share = force / (np.pi * values[WORK_OF_ADHESION] * radius)
+    where = "between" if 0.999 <= share <= 1.501 else "outside"
+    return (
+        f"under a dead load it pulls off at {readable(force, 'N', 3)}, {share:.3g} πWR: {where} "
+        "the limits of a paraboloid, 1 πWR where tension resists alone and 1.5 πWR where "
+        "elasticity does"
+    )
+
+
+def _tensed(chi_squared: ChiSquared, single: Minimum) -> list[Coordinates]:
+    """Return starts with some tension from a minimum without."""
+    scale = chi_squared.ranges[TENSION].scale
+    return [single.parameters | {TENSION: share * scale} for share in _FIRST_TENSIONS]
+
+
+def _criterion(chi_squared: ChiSquared, pair: tuple[Rival, Minimum]) -> float:
+    """Return Akaike's criterion for noise of unknown size, since models that fail widen it."""
+    rival, minimum = pair
+    of_rival = rival.of(chi_squared)
+    misfit = sum(
+        member.force.size * float(np.log(member.chi_squared(part) * member.noise**2))
+        for member, part in of_rival.curves(minimum.parameters)
+    )
+    return _aic(misfit, _size(rival, of_rival))
+
+
+def _aic(misfit: float, size: int) -> float:
+    """Return the criterion of Akaike (1974) of a misfit, −2 log L, by ``size`` parameters."""
+    return misfit + 2 * size
+
+
+def _at_its_noise(chi_squared: ChiSquared, minima: _Minima) -> tuple[ChiSquared, list[FailedCheck]]:
+    """Return χ² with the noise of each curve as the best explanation shows it, and failed checks.
+
+    Tolerances of searches are absolute in χ²: at the noise of a model that fails, a hundred times
+    as large, they would hide the minimum.
+    """
+    rival, minimum = min(minima.values(), key=partial(_criterion, chi_squared))
+    members: list[Likelihood] = []
+    failed: list[FailedCheck] = []
+    best = rival.of(chi_squared).curves(minimum.parameters)
+    for member, (of_rival, part) in zip(chi_squared.members, best, strict=True):
+        estimate, _ = judged(of_rival, part)
+        members.append(replace(member, noise=estimate.noise.deviation))
+        failed += estimate.failed
+    return chi_squared.with_members(members), failed
+
+
+def _ranked(chi_squared: ChiSquared, minima: _Minima, threshold: float | None) -> list[RivalFit]:
+    """Return the explanations, best first; with intervals if there is a threshold of them."""
+    points = sum(member.force.size for member in chi_squared.members)
+    rows = []
+    for rival, minimum in minima.values():
+        of_rival = rival.of(chi_squared)
+        start = minimum._replace(chi_squared=of_rival.chi_squared(minimum.parameters))
+        size = _size(rival, of_rival)
+        rows.append((rival, of_rival, start, size, _aic(start.chi_squared, size)))
+    least = min(aic for *_, aic in rows)
+    fits = []
+    for rival, of_rival, minimum, size, aic in rows:
+        ends: dict[Parameter, Ends] = {}
+        intervals: Intervals = "none"
+        if threshold is not None and aic - least <= _FAR:
+            reported = _reported(of_rival)
+            minimum, ends = rival.intervals(chi_squared, minimum, threshold, reported)
+            intervals = "profile"
+        elif threshold is not None:
+            bounds = of_rival.deviations(minimum.parameters)
+            ends = {
+                p: curvature_interval(p, minimum, bounds, threshold) for p in _reported(of_rival)
+            }
+            intervals = "curvature"
+        fits.append(
+            RivalFit(
+                rival,
+                minimum.chi_squared,
+                _aic(minimum.chi_squared, size),
+                minimum.chi_squared + float(np.log(points)) * size,
+                minimum.parameters,
+                _estimates(of_rival, minimum, ends),
+                intervals,
+            )
+        )
+    aic, bic = min(fit.aic for fit in fits), min(fit.bic for fit in fits)
+    fits = [replace(fit, aic=fit.aic - aic, bic=fit.bic - bic) for fit in fits]
+    return sorted(fits, key=lambda fit: fit.aic)
+
+
+def _size(rival: Rival, chi_squared: ChiSquared) -> int:
+    """Return the number of fitted parameters as criteria count them."""
+    return len(chi_squared.free) + rival.searched
+
+
+def _reported(chi_squared: ChiSquared) -> list[Parameter]:
+    """Return the fitted parameters whose values a comparison reports."""
+    return [p for p in chi_squared.parameters if p in chi_squared.free and p.name not in _NUISANCES]
+
+
+def _estimates(
+    chi_squared: ChiSquared, minimum: Minimum, ends: dict[Parameter, Ends]
+) -> dict[str, Estimate]:
+    """Return the estimates by name, without nuisances and a tension that is fixed."""
+    bounds = chi_squared.deviations(minimum.parameters)
+    return {
+        p.name: estimate_of(p, chi_squared, minimum, ends.get(p, (None, None)), bounds)
+        for p in chi_squared.parameters
+        if p.name not in _NUISANCES and (p in chi_squared.free or p != TENSION)
+    }

@@ -1,0 +1,225 @@
+"""A solution of a contact problem, measured: displacement, gap, energy and residuals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from pellicle.arrays import Array, Mask
+
+from .attraction import Attraction
+from .problem import Force, Problem, adhesive_scale
+from .solution import Solution, State
+
+# Traction over the strength of a law up to which a cell does not count as part of the zone.
+_ZONE = 1e-2
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """A pressure with its displacement, gap and residuals.
+
+    The first access to any of these applies the operator once.
+    """
+
+    problem: Problem
+    pressure: Array
+    """Traction on the surface [Pa]; without a law the contact pressure."""
+    adhesive: State | None = None
+    """The state that the solver found, if the problem has a law."""
+
+    @property
+    def wall(self) -> Array:
+        """Wall pressure [Pa]; without a law the contact pressure."""
+        return self.adhesive.wall if self.adhesive else self.pressure
+
+    @cached_property
+    def contact(self) -> Mask:
+        """The cells with wall pressure > 0, bool of the grid's shape."""
+        return self.wall > 0
+
+    @property
+    def state(self) -> State:
+        """The state from which the next step starts."""
+        return State(self.pressure, self.wall, self.depth)
+
+    @property
+    def residual(self) -> float:
+        """The largest of the residuals."""
+        return max(
+            self.residual_contact,
+            self.residual_penetration,
+            self.residual_complementarity,
+            self.residual_load,
+            self.residual_traction,
+        )
+
+    @cached_property
+    def total(self) -> float:
+        """Sum of the pressures [Pa]."""
+        return float(self.pressure.sum())
+
+    @property
+    def force(self) -> float:
+        """Force [N]."""
+        return self.total * self.problem.grid.cell_area
+
+    @cached_property
+    def displacement(self) -> Array:
+        """Displacement u of the surface [m]."""
+        left = self.problem.left
+        return self._by_pressure if left is None else self._by_pressure + left
+
+    @cached_property
+    def _by_pressure(self) -> Array:
+        """The displacement that the pressure causes [m], without that left behind."""
+        return self.problem.operator.with_spring(0.0)(self.pressure)
+
+    @property
+    def depth(self) -> float:
+        """Depth δ of the indenter [m]."""
+        return self._base - self.problem.operator.deflection(self.total)
+
+    @cached_property
+    def gap(self) -> Array:
+        """Gap u − δ − f [m]; +inf where there is no indenter."""
+        return self._by_pressure - self.problem.profile - self.depth
+
+    @cached_property
+    def attraction(self) -> Attraction | None:
+        """What the law of the problem exerts across the gap; None without a law."""
+        return self.problem.attraction(self.gap, self.contact) if self.problem.law else None
+
+    @cached_property
+    def zone(self) -> Mask:
+        """The cells off the contact where the traction exceeds 1 % of the strength of the law."""
+        strength = self.problem.law.strength() if self.problem.law else 0.0
+        zone: Mask = (np.abs(self.pressure) > _ZONE * strength) & ~self.contact
+        return zone
+
+    @cached_property
+    def zone_width(self) -> float:
+        """Mean width of the zone around the contact, where it has an outer edge [m].
+
+        It is the mean distance from the contact of the outermost cells of the zone; NaN if there
+        are none, as between asperities so close that the zone fills the gap between them, and 0 if
+        no cell beside the contact is in a zone.
+        """
+        from scipy.ndimage import binary_erosion, distance_transform_edt
+
+        contact, spacing = self.contact, self.problem.grid.spacing
+        beside = np.isfinite(self.problem.profile) & ~contact
+        if contact.any() and beside.any() and not self.zone.any():
+            return 0.0
+        reached = contact | self.zone
+        outermost = reached & ~binary_erosion(reached, border_value=1) & ~contact
+        if not contact.any() or not outermost.any():
+            return np.nan
+        return float(distance_transform_edt(~contact, sampling=spacing)[outermost].mean())
+
+    @property
+    def energy(self) -> float:
+        """Elastic energy and energy of the law [J]; the spring of a holder is not counted.
+
+        NaN where earlier steps have left a displacement behind: the energy that is stored in a
+        solid that relaxes does not follow from its surface.
+        """
+        if self.problem.left is not None:
+            return np.nan
+        elastic = 0.5 * float((self.pressure * self.displacement).sum())
+        bound = self.attraction.energy if self.attraction else 0.0
+        return (elastic + bound) * self.problem.grid.cell_area
+
+    @property
+    def residual_contact(self) -> float:
+        """Largest gap in contact by magnitude, over the height range of the indenter there."""
+        return float(self._inside.max(initial=0.0)) / self._scale
+
+    @property
+    def residual_penetration(self) -> float:
+        """max(0, −min gap) outside the contact, over the same."""
+        return max(0.0, -float(self.gap.min(initial=0.0, where=~self.contact))) / self._scale
+
+    @property
+    def residual_complementarity(self) -> float:
+        """Σ w|gap| / Σ|p|, over the same; with a law over the greater of Σ|p| and Σ|σ|."""
+        work = float((self.wall[self.contact] * self._inside).sum())
+        return work / self._acting / self._scale if work else 0.0
+
+    @property
+    def residual_load(self) -> float:
+        """|force − prescribed| over the prescribed force, with a law over Σ|p|; 0 at a depth."""
+        control = self.problem.control
+        missed = abs(self.force - control.value) if isinstance(control, Force) else 0.0
+        if self.problem.law:
+            scale = self._magnitude * self.problem.grid.cell_area
+            return missed / (scale or abs(control.value)) if missed else 0.0
+        return missed / control.value if missed else 0.0
+
+    @property
+    def residual_traction(self) -> float:
+        """Σ|p − w − σ(gap)| over the greater of Σ|p| and Σ|σ|; 0 without a law."""
+        if not self.attraction:
+            return 0.0
+        missed = float(np.abs(self.pressure - self.wall - self.attraction.traction).sum())
+        return missed / self._acting if missed else 0.0
+
+    @cached_property
+    def _magnitude(self) -> float:
+        return float(np.abs(self.pressure).sum()) if self.problem.law else self.total
+
+    @cached_property
+    def _acting(self) -> float:
+        """Σ|p|, or Σ|σ| if that is greater: a law attracts even where the wall bears it all."""
+        if not self.attraction:
+            return self._magnitude
+        return max(self._magnitude, float(np.abs(self.attraction.traction).sum()))
+
+    @cached_property
+    def _base(self) -> float:
+        # Without pressure the lowest point just touches, even if it lies between the cells.
+        contact = self.contact
+        if not contact.any():
+            if self.adhesive and self.problem.prescribed == "force":
+                return self.adhesive.depth
+            return self.problem.depth(np.full(1, self.problem.first_touch))
+        return self.problem.depth(self._by_pressure[contact] - self.problem.profile[contact])
+
+    @cached_property
+    def _scale(self) -> float:
+        if self.problem.law:
+            return adhesive_scale(self.problem, self.contact, self._by_pressure)
+        return self.problem.height_scale(self.contact, self._base, self.total)
+
+    @property
+    def _inside(self) -> Array:
+        return np.abs(self.gap[self.contact])
+
+
+def equilibrium_of(problem: Problem, solution: Solution) -> Equilibrium:
+    """Return the equilibrium of a solver's solution; its gap is computed on first access."""
+    state = solution.state
+    return Equilibrium(problem, solution.pressure, state if isinstance(state, State) else None)
+
+
+def measure(problem: Problem, pressure: Array) -> Equilibrium:
+    """Return the equilibrium of ``pressure`` [Pa], by one application of the operator."""
+    equilibrium = Equilibrium(problem, pressure)
+    _ = equilibrium.gap
+    return equilibrium
+
+
+def round_off(problem: Problem, pressure: Array) -> float:
+    """Return the rounding error of a displacement over the height scale, by two applications.
+
+    It is the difference of the displacement from three times that under a third of the pressure,
+    which would be 0 without rounding.
+    """
+    contact = pressure > 0
+    displacement = problem.operator(pressure)
+    rounded = float(np.abs(3 * problem.operator(pressure / 3) - displacement).max())
+    u_minus_f = displacement - problem.profile
+    depth = problem.depth(u_minus_f[contact] if contact.any() else np.zeros(1))
+    return rounded / problem.height_scale(contact, depth, float(pressure.sum()))
