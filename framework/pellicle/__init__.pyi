@@ -36,7 +36,7 @@ from .factories import kernel as kernel
 from .factories import solver as solver
 from .fitting.config import FitConfig as FitConfig
 from .fitting.curves.curve import Curve as Curve
-from .fitting.curves.readers import read_curves as read_curves
+from .fitting.curves.sources import read_curves as read_curves
 from .fitting.fit import Fit as Fit
 from .fitting.fit import fit as fit
 from .fitting.many import fit_many as fit_many

@@ -28,7 +28,8 @@ from pellicle.fitting.parameters import (
     TENSION,
     Coordinates,
 )
-from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
+from pellicle.fitting.statistics.chi_squared import ChiSquared
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.rivals import MARGIN, rivals
 from pellicle.plotting import save_figure
 

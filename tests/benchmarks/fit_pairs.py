@@ -30,10 +30,12 @@ from pellicle.fitting.parameters import (
     Coordinates,
 )
 from pellicle.fitting.statistics.checks import fit_single, judged
-from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood, Minimum
+from pellicle.fitting.statistics.chi_squared import ChiSquared, Minimum
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.pooled_likelihood import Pool
 from pellicle.fitting.statistics.profile import chi_squared_threshold
-from pellicle.fitting.statistics.rivals import Rival, rivals
+from pellicle.fitting.statistics.rival import Rival
+from pellicle.fitting.statistics.rivals import rivals
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 

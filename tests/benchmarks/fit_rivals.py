@@ -25,7 +25,7 @@ from scipy.special import beta, betainc
 import pellicle as pl
 from pellicle.components import HasForceCurve
 from pellicle.fitting.curves import curve as read_curve
-from pellicle.fitting.curves.readers import Source
+from pellicle.fitting.curves.sources import Source
 from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from pellicle.fitting.pooled import pool_sources

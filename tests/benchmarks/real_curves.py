@@ -24,8 +24,9 @@ import numpy as np
 
 import pellicle as pl
 from pellicle.errors import PellicleError
+from pellicle.fitting.curves.cleaning import clean
 from pellicle.fitting.curves.columns import Calibration
-from pellicle.fitting.curves.curve import Curve, clean
+from pellicle.fitting.curves.curve import Curve
 from pellicle.fitting.curves.readers import SUFFIXES, read
 
 RADIUS, RATIO = 10e-6, 0.5

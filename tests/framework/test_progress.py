@@ -10,10 +10,10 @@ from collections.abc import Iterator
 import pytest
 import rich.console
 
-from pellicle.runs.progress import Progress
+from pellicle.runs.progress import RunProgress
 
 
-def _iterate(progress: Progress) -> None:
+def _iterate(progress: RunProgress) -> None:
     with progress:
         for index in range(2):
             monitor = progress.step(index)
@@ -24,7 +24,7 @@ def _iterate(progress: Progress) -> None:
 @pytest.mark.parametrize("enabled", [True, False])
 def test_silent_without_a_terminal(enabled: bool, capfd: pytest.CaptureFixture[str]) -> None:
     """Where there is no terminal nothing at all is written."""
-    _iterate(Progress(2, enabled))
+    _iterate(RunProgress(2, enabled))
     assert capfd.readouterr() == ("", "")
 
 
@@ -34,7 +34,7 @@ def test_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     console = rich.console.Console(file=screen, force_terminal=True, width=200)
     monkeypatch.setattr("rich.console.Console", lambda **options: console)
     monkeypatch.setattr("pellicle.runs.progress._BETWEEN_UPDATES", 0.0)
-    _iterate(Progress(2, enabled=True))
+    _iterate(RunProgress(2, enabled=True))
     shown = screen.getvalue()
     for words in ("step 2/2", "iteration 2", "residual 5.0e-01 × tolerance", "left"):
         assert words in shown
@@ -47,7 +47,7 @@ def test_silent_on_a_terminal_when_not_enabled(monkeypatch: pytest.MonkeyPatch) 
         raise AssertionError("made a bar")
 
     monkeypatch.setattr("pellicle.runs.progress._make_bar", fail)
-    _iterate(Progress(2, enabled=False))
+    _iterate(RunProgress(2, enabled=False))
 
 
 @pytest.mark.parametrize("excess", [0.0, float("nan"), float("inf")])
@@ -56,7 +56,7 @@ def test_odd_residuals(excess: float, monkeypatch: pytest.MonkeyPatch) -> None:
     console = rich.console.Console(file=io.StringIO(), force_terminal=True)
     monkeypatch.setattr("rich.console.Console", lambda **options: console)
     monkeypatch.setattr("pellicle.runs.progress._BETWEEN_UPDATES", 0.0)
-    progress = Progress(1, enabled=True)
+    progress = RunProgress(1, enabled=True)
     with progress:
         monitor = progress.step(0)
         monitor(0, excess)
@@ -75,7 +75,7 @@ def default_handler() -> Iterator[None]:
 @pytest.mark.usefixtures("default_handler")
 def test_interrupt_waits_for_the_next_iteration() -> None:
     """Ctrl-C takes effect at the next iteration, where nothing can swallow it."""
-    with Progress(1, enabled=False) as progress:
+    with RunProgress(1, enabled=False) as progress:
         monitor = progress.step(0)
         signal.raise_signal(signal.SIGINT)
         with pytest.raises(KeyboardInterrupt):
@@ -87,7 +87,7 @@ def test_interrupt_waits_for_the_next_iteration() -> None:
 @pytest.mark.usefixtures("default_handler")
 def test_second_interrupt_acts_at_once() -> None:
     """Pressing Ctrl-C again does not wait."""
-    with Progress(1, enabled=False) as progress:
+    with RunProgress(1, enabled=False) as progress:
         signal.raise_signal(signal.SIGINT)
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
@@ -98,7 +98,7 @@ def test_second_interrupt_acts_at_once() -> None:
 @pytest.mark.usefixtures("default_handler")
 def test_interrupt_after_the_last_iteration() -> None:
     """Ctrl-C that comes too late for an iteration is not forgotten."""
-    with pytest.raises(KeyboardInterrupt), Progress(1, enabled=False):
+    with pytest.raises(KeyboardInterrupt), RunProgress(1, enabled=False):
         signal.raise_signal(signal.SIGINT)
 
 
@@ -107,7 +107,7 @@ def test_interrupt_hides_no_error() -> None:
     """An error on the way out is not replaced by the interruption."""
 
     def fail() -> None:
-        with Progress(1, enabled=False):
+        with RunProgress(1, enabled=False):
             signal.raise_signal(signal.SIGINT)
             raise ZeroDivisionError
 
@@ -123,7 +123,7 @@ def test_interrupts_are_left_alone_where_they_are_not_ours() -> None:
 
     before = signal.signal(signal.SIGINT, handle)
     try:
-        with Progress(1, enabled=False):
+        with RunProgress(1, enabled=False):
             assert signal.getsignal(signal.SIGINT) is handle
         assert signal.getsignal(signal.SIGINT) is handle
     finally:
@@ -131,7 +131,7 @@ def test_interrupts_are_left_alone_where_they_are_not_ours() -> None:
     seen: list[object] = []
 
     def work() -> None:
-        with Progress(1, enabled=False):
+        with RunProgress(1, enabled=False):
             seen.append(signal.getsignal(signal.SIGINT))
 
     thread = threading.Thread(target=work)

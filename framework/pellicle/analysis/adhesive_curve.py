@@ -15,8 +15,11 @@ from pellicle.errors import ConfigError
 STEPS = 8
 """Fewest steps of a path."""
 _STEPS_PER_PIECE = 3
+"""Steps between two knots of a spline."""
 _POINTS_PER_STEP = 32
+"""Points of a curve for each step."""
 _SCATTER = 1e-3
+"""Relative difference of stiffness and slope up to which a point counts as on the path."""
 
 
 class AdhesiveContact(NamedTuple):
@@ -60,13 +63,11 @@ class AdhesiveCurve:
         fixed_quantity = (
             self.depth if spring_constant == inf else self.force + spring_constant * self.depth
         )
-        lowest = (
-            np.flatnonzero((np.diff(fixed_quantity)[:-1] < 0) & (np.diff(fixed_quantity)[1:] >= 0))
-            + 1
-        )
+        rises = np.diff(fixed_quantity) >= 0
+        lowest = np.flatnonzero(~rises[:-1] & rises[1:])
         if not lowest.size:
             return AdhesiveContact(*np.full(3, nan))
-        middle = int(lowest[-1])
+        middle = int(lowest[-1]) + 1
         low, centre, high = fixed_quantity[middle - 1 : middle + 2]
         return self._near(middle, (low - high) / (2 * (low - 2 * centre + high)))
 
@@ -137,34 +138,29 @@ def adhesive_curve(
         raise ConfigError(
             f"must be positive and finite, got {work_of_adhesion!r}", "work_of_adhesion"
         )
-    steps = np.stack(
+    path = np.stack(
         [
             np.asarray(values, dtype=np.float64)
             for values in (depth, force, contact_radius, stiffness)
         ]
     )
-    if not np.all((steps > 0) & np.isfinite(steps)):
+    if not np.all((path > 0) & np.isfinite(path)):
         raise ConfigError("depth, force, contact radius and stiffness must be positive", "path")
-    steps = np.log(steps[:, np.unique(steps[0], return_index=True)[1]])
-    log_force = _Fit(steps[0], steps[1], np.exp(2 * steps[2]), "depth")
+    # Steps with the same depth count once.
+    path = np.log(path[:, np.unique(path[0], return_index=True)[1]])
+    by_depth = _Fit(path[0], path[1], np.exp(2 * path[2]), "depth")
     # Steps with the same cells in contact have the same stiffness but for rounding.
-    distinct = steps[:, np.unique(steps[2], return_index=True)[1]]
+    distinct = path[:, np.unique(path[2], return_index=True)[1]]
     distinct = distinct[:, np.argsort(distinct[3])]
-    log_radius = _Fit(distinct[3], distinct[2], np.exp(distinct[2]), "contact radius")
+    by_stiffness = _Fit(distinct[3], distinct[2], np.exp(distinct[2]), "contact radius")
 
-    log_depth = np.interp(
-        np.linspace(0, steps[0].size - 1, _POINTS_PER_STEP * (steps[0].size - 1) + 1),
-        np.arange(steps[0].size),
-        steps[0],
-    )
-    hard_depth, hard_force = np.exp(log_depth), np.exp(log_force.value(log_depth))
-    slope = hard_force / hard_depth * log_force.slope(log_depth)
+    hard_depth, hard_force, slope = _between_steps(path[0], by_depth)
     lowest, highest = np.exp(distinct[3, [0, -1]])
     # The slope of the force and the measured stiffness differ by 3e-4 on a grid.
     in_range = (slope >= lowest * (1 - _SCATTER)) & (slope <= highest * (1 + _SCATTER))
     hard_depth, hard_force, slope = hard_depth[in_range], hard_force[in_range], slope[in_range]
     log_slope = np.log(slope)
-    radius, growth = np.exp(log_radius.value(log_slope)), log_radius.slope(log_slope)
+    radius, growth = np.exp(by_stiffness.value(log_slope)), by_stiffness.slope(log_slope)
     # The smallest contacts, of few cells, may scatter too much.
     falling = np.flatnonzero((np.diff(radius, prepend=0.0) <= 0) | (growth <= 0))
     first = int(falling[-1]) + 1 if falling.size else 0
@@ -181,6 +177,16 @@ def adhesive_curve(
         depth=hard_depth[first:] - retraction,
         force=hard_force[first:] - slope[first:] * retraction,
     )
+
+
+def _between_steps(log_depth: Array, by_depth: _Fit) -> tuple[Array, Array, Array]:
+    """Return depth [m], force [N] and its slope [N/m] at points on and between the steps."""
+    steps = log_depth.size
+    log_depth = np.interp(
+        np.linspace(0, steps - 1, _POINTS_PER_STEP * (steps - 1) + 1), np.arange(steps), log_depth
+    )
+    depth, force = np.exp(log_depth), np.exp(by_depth.value(log_depth))
+    return depth, force, force / depth * by_depth.slope(log_depth)
 
 
 class _Fit:

@@ -74,9 +74,9 @@ def _run(file: Path | None, overrides: list[str]) -> Run:
 
 def _measured(path: Path) -> Measured:
     from pellicle.explore.measured import Measured
+    from pellicle.fitting.curves.cleaning import clean
     from pellicle.fitting.curves.columns import Calibration
-    from pellicle.fitting.curves.curve import clean
-    from pellicle.fitting.curves.readers import SourceStream, gather
+    from pellicle.fitting.curves.sources import SourceStream, gather
 
     source, *others = SourceStream(gather(path, "approach", Calibration(), {}))
     if others:

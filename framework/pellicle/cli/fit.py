@@ -232,7 +232,7 @@ def _fit(
     config: FitConfig, directory: Path | None, *, quiet: bool
 ) -> tuple[Fit | PooledFit | ManyFits, str, str]:
     """Return the fit of the curves, the name of its files and the title of its page."""
-    from pellicle.fitting.curves.readers import SourceStream
+    from pellicle.fitting.curves.sources import SourceStream
     from pellicle.fitting.fit import fit_source
     from pellicle.fitting.many import fit_sources
     from pellicle.fitting.pooled import pool_sources

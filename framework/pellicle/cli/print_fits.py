@@ -27,11 +27,11 @@ _LINES = 50
 
 def print_fit(fit: FitResult, *, si: bool = False) -> None:
     """Print the estimates of a fit, a line for each curve of a pool, and the fit in words."""
-    from pellicle.fitting.report.answer import answer
+    from pellicle.fitting.report.sentences import sentence_of_fit
     from pellicle.fitting.wording import column_scale, interval_text
 
     if fit.chosen is not None or fit.range_of_models():
-        echo(answer(fit, si=si))
+        echo(sentence_of_fit(fit, si=si))
     if fit.chosen is not None:
         echo("An elastic solid under tension instead:")
     rows = []

@@ -232,7 +232,7 @@ def _statuses(data: xr.Dataset) -> list[tuple[int, str, str]]:
 
 
 def _grouped(statuses: Sequence[tuple[int, str, str]]) -> list[tuple[str, str]]:
-    """Return steps and message of each kind of status; of several steps, that of the first."""
+    """Return the steps with each kind of status, and the message of the first of them."""
     groups: dict[str, list[tuple[int, str]]] = {}
     for number, code, message in statuses:
         groups.setdefault(code, []).append((number, message))

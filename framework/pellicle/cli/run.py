@@ -134,11 +134,11 @@ def _run_one(
     run: Run, stem: Path, display: _Display, *, threads: int | None, overwrite: bool
 ) -> None:
     from pellicle.runs.journal import Journal
-    from pellicle.runs.progress import Progress
+    from pellicle.runs.progress import RunProgress
     from pellicle.runs.runner import execute, standard_outputs
 
     steps = len(run.loading.values)
-    journal, bar = Journal(stem, run.identity, overwrite), Progress(steps, not display.quiet)
+    journal, bar = Journal(stem, run.identity, overwrite), RunProgress(steps, not display.quiet)
     try:
         executed = execute(run, journal, standard_outputs(run.outputs), bar, threads=threads)
     except KeyboardInterrupt:

@@ -99,7 +99,7 @@ def _require_attraction(interaction: Interaction, gaps: Array, traction: Array) 
 def _require_derivative(
     interaction: Interaction, gaps: Array, energy: Array, traction: Array
 ) -> None:
-    """Refuse a law without a work of adhesion, or whose traction is not the derivative of it."""
+    """Refuse a law without a work of adhesion, or with a traction that is not −dγ/dg."""
     name, depth = component_name(interaction), -float(energy[0])
     if not depth > 0:
         raise PluginError(

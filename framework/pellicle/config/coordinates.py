@@ -56,7 +56,7 @@ def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
 
 
 def tell_apart(axes: Mapping[str, Coordinate]) -> None:
-    """Add the name of their table to the words of axes that would have the same ones."""
+    """Add the name of their table to the words of axes that would otherwise have equal words."""
     words = [axis.attributes[WORDS] for axis in axes.values()]
     for key, axis in axes.items():
         if words.count(axis.attributes[WORDS]) > 1:

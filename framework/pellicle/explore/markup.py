@@ -1,4 +1,4 @@
-"""Text of the page: escaped, and in the colours of an answer, an error or a remark."""
+"""Text of the page: escaped, and in the style of a result, an error or a remark."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .frames import Frame
 
 ERROR: dict[str, str | None] = {"color": "#b00020"}
 """Style of errors."""
-ANSWER: dict[str, str | None] = {"font-size": "1.1rem"}
+RESULT: dict[str, str | None] = {"font-size": "1.1rem"}
 """Style of the numbers of a run."""
 REMARK: dict[str, str | None] = {"color": "#6b4e00"}
 """Style of the warnings of a run."""
@@ -28,7 +28,7 @@ def lines(texts: Iterable[str]) -> str:
     return "<br>".join(map(escaped, texts))
 
 
-def answer(frame: Frame) -> str:
+def result(frame: Frame) -> str:
     """Return the numbers of a run at its largest force as markup."""
     force, radius = float(frame.force[frame.step]), math.sqrt(frame.contact_area / math.pi)
     sign = "≈ " if frame.is_preview else ""

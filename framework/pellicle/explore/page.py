@@ -23,7 +23,7 @@ from pellicle.errors import ConfigError, PellicleError
 from .controls import Control, controls
 from .documents import changed, document, letting_go, sticking
 from .frames import Frame
-from .markup import ANSWER, ERROR, REMARK, answer, lines
+from .markup import ERROR, REMARK, RESULT, lines, result
 from .measured import Measured
 from .plots import Plots
 from .row import ControlRow
@@ -56,8 +56,8 @@ class Explorer:
         self._all_rows: dict[str, ControlRow] = {}
         self._rows: dict[str, ControlRow] = {}
         self._panel = column(sizing_mode="stretch_width")
-        self._answer, self._message, self._remarks = (
-            Div(styles=styles, sizing_mode="stretch_width") for styles in (ANSWER, ERROR, REMARK)
+        self._result, self._message, self._remarks = (
+            Div(styles=styles, sizing_mode="stretch_width") for styles in (RESULT, ERROR, REMARK)
         )
         self._text = PreText(sizing_mode="stretch_width")
         self._plots = Plots(measured)
@@ -77,7 +77,7 @@ class Explorer:
         save.js_on_click(CustomJS(args={"text": self._text}, code=_SAVE))
         panel = column(self._panel, *self._other_controls(), save, sizing_mode="stretch_width")
         parts = {
-            "answer": self._answer,
+            "result": self._result,
             "message": self._message,
             "remarks": self._remarks,
             "controls": panel,
@@ -159,7 +159,7 @@ class Explorer:
             self._show_error(outcome if isinstance(outcome, Exception) else None)
         if isinstance(outcome, Frame):
             self._plots.draw(outcome, self._share)
-            self._answer.text = answer(outcome)
+            self._result.text = result(outcome)
             self._text.text = tomli_w.dumps(configuration)
             if not outcome.is_preview:
                 _fill(self._remarks, lines(outcome.remarks))

@@ -15,10 +15,12 @@ from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
 from .models.relaxing import EXPONENT
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from .statistics.checks import judged
-from .statistics.likelihood import ChiSquared, Likelihood, Minimum
+from .statistics.chi_squared import ChiSquared, Minimum
+from .statistics.likelihood import Likelihood
 from .statistics.noise import FailedCheck
 from .statistics.profile import Ends, Estimate, curvature_interval, estimate_of, united
-from .statistics.rivals import NONE, TENSED, Rival, rivals
+from .statistics.rival import Rival
+from .statistics.rivals import NONE, TENSED, rivals
 from .verdict import MANY_MARGIN, judge
 from .wording import words
 
@@ -64,8 +66,7 @@ def compare(
         Whether all explanations get intervals; otherwise only the one that is chosen.
     pairs
         Whether a tension is compared beside each other effect; otherwise only if no single effect
-        passes its checks, or beside one that leads, adhesion, and relaxation at one
-        speed.
+        passes its checks, or beside one that leads, adhesion, and relaxation at one speed.
     report
         Called with the name of each explanation.
     """
@@ -187,11 +188,11 @@ def _estimates_of(
     """Return the estimates of an explanation, with intervals at least of those ``searched``."""
     if fit.intervals == "profile":
         return fit.estimates
-    mine = fit.rival.of(chi_squared)
+    of_rival = fit.rival.of(chi_squared)
     minimum = Minimum(fit.parameters, fit.chi_squared)
-    free = [p for p in searched if p in mine.free]
+    free = [p for p in searched if p in of_rival.free]
     minimum, ends = fit.rival.intervals(chi_squared, minimum, threshold, free)
-    return _estimates(mine, minimum, ends)
+    return _estimates(of_rival, minimum, ends)
 
 
 def _with_intervals(

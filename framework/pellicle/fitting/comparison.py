@@ -12,7 +12,8 @@ from pellicle.units import decimal
 from .parameters import Coordinates
 from .statistics.noise import FailedCheck
 from .statistics.profile import Estimate
-from .statistics.rivals import MARGIN, NONE, TENSED, Rival
+from .statistics.rival import Rival
+from .statistics.rivals import MARGIN, NONE, TENSED
 from .wording import in_words, words
 
 EFFECT_MARGIN = 6.0

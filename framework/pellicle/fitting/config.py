@@ -35,9 +35,10 @@ from pellicle.model.toml import read_toml
 from pellicle.plugins import registry
 from pellicle.units import PoissonsRatio, Quantity
 
+from .curves.cleaning import LARGEST
 from .curves.columns import Calibration
-from .curves.curve import LARGEST, Segment
-from .curves.readers import CurveFile, Curves, Source, expanded, gather
+from .curves.curve import Segment
+from .curves.sources import CurveFile, Curves, Source, expanded, gather
 from .models.force_model import ForceModel, described, tension_model
 from .models.layer import FreeLayerModel, known_layer
 from .models.simulation import GRID_POINTS, Simulation

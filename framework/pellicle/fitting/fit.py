@@ -18,15 +18,16 @@ from pellicle.units import readable
 from .compare import compare
 from .config import FitConfig
 from .curves.curve import Curve
-from .curves.readers import Source
+from .curves.sources import Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
 from .result import FitResult, thickness_of
 from .statistics.checks import check_plausible, fit_single
+from .statistics.chi_squared import Minimum, best_minimum
 from .statistics.design import advice
 from .statistics.initial_guess import initial_guesses
-from .statistics.likelihood import Likelihood, Minimum, best_minimum
+from .statistics.likelihood import Likelihood
 from .statistics.noise import doubt_of_tension
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 

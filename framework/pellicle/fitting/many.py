@@ -26,7 +26,7 @@ from pellicle.runs.lock import locked
 from pellicle.runs.progress import StudyProgress
 
 from .config import FitConfig
-from .curves.readers import Curves, Source, SourceStream
+from .curves.sources import Curves, Source, SourceStream
 from .fit import Fit, fit_problem
 from .models.adhesive import WORK_OF_ADHESION
 from .population.images import force_maps
@@ -108,7 +108,7 @@ class ManyFits:
         return summary(self.rows)
 
     def _repr_html_(self) -> str:
-        """Return HTML for a notebook: the answer, the quartiles of each group, a picture."""
+        """Return HTML for a notebook: sentences, the quartiles of each group, a picture."""
         from .report.notebook import html_of_population
 
         return html_of_population(self)

@@ -18,14 +18,15 @@ from pellicle.units import decimal
 from .compare import compare
 from .config import FitConfig
 from .curves.curve import Note
-from .curves.readers import Curves, Source
+from .curves.sources import Curves, Source
 from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
 from .result import FitResult, thickness_of
 from .statistics.checks import SingleFit, check_plausible, check_shape, fit_single
+from .statistics.chi_squared import Minimum, best_minimum
 from .statistics.design import pooled_advice
-from .statistics.likelihood import Likelihood, Minimum, best_minimum
+from .statistics.likelihood import Likelihood
 from .statistics.noise import FailedCheck, doubt_of_tension
 from .statistics.pooled_likelihood import Pool
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
@@ -214,7 +215,7 @@ def _fit_pool(
     report: Callable[[str], None],
     compared: bool,
 ) -> PooledFit:
-    """Return the pooled fit of curves, of which each was fitted on its own."""
+    """Return the pooled fit of curves that were each fitted on their own."""
     report("least squares")
     pool = Pool.of([single.likelihood for _, single in singles])
     start = pool.initial_minimum([single.parameters for _, single in singles])
@@ -303,7 +304,7 @@ def _curve(
 
 
 class _Excess(NamedTuple):
-    """Rise of χ² where all curves share the parameters, over each curve on its own."""
+    """Rise of χ² if the curves share parameters, over that of each curve on its own."""
 
     chi_squared: float
     degrees: int

@@ -10,8 +10,9 @@ import numpy as np
 from pellicle.errors import ConfigError, PellicleError
 
 from .config import FIXABLE, FitConfig
-from .curves.curve import Curve, Segment, clean
-from .curves.readers import Source
+from .curves.cleaning import clean
+from .curves.curve import Curve, Segment
+from .curves.sources import Source
 from .models.force_model import ForceModel
 from .models.simulation import Simulation, simulate
 from .parameters import CONTACT_POINT, OFFSET, SLOPE, Coordinates

@@ -88,7 +88,7 @@ def _components(config: FitConfig) -> set[type[Component]]:
 
 
 class Repetition(NamedTuple):
-    """A fit that is to be made again."""
+    """A fit to repeat."""
 
     config: FitConfig
     sha256: Mapping[str, str]

@@ -212,18 +212,15 @@ class FitResult:
         }
 
     def __repr__(self) -> str:
-        """Return the answer in two sentences; the arrays of a curve would fill a screen."""
-        from .report.answer import answer
+        """Return the result in two sentences; the arrays of a curve would fill a screen."""
+        from .report.sentences import sentence_of_fit
 
-        return f"<{type(self).__name__}: {answer(self)} {self.comparison}>"
+        return f"<{type(self).__name__}: {sentence_of_fit(self)} {self.comparison}>"
 
     def _repr_html_(self) -> str:
-        """Return HTML for a notebook: the answer, the estimates, and the curve with its fit."""
-        from .fit import Fit
-        from .pooled import PooledFit
+        """Return HTML for a notebook: a sentence, the estimates, and the curve with its fit."""
         from .report.notebook import html_of_fit
 
-        assert isinstance(self, (Fit, PooledFit)), "these are all fits that have panels"
         return html_of_fit(self)
 
     def plot(self) -> Figure:

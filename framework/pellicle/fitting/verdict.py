@@ -10,8 +10,8 @@ import numpy as np
 from pellicle.units import decimal
 
 from .comparison import EFFECT_MARGIN, Comparison, RivalFit, Verdict
+from .statistics.chi_squared import ChiSquared
 from .statistics.experiments import advised
-from .statistics.likelihood import ChiSquared
 from .statistics.noise import FailedCheck, doubt_of_tension
 from .statistics.rivals import MARGIN, NONE, TENSED
 

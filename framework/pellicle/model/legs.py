@@ -70,7 +70,7 @@ class Leg(Model):
 
 
 class Move(Leg):
-    """A straight way to a value: { to, time, num }."""
+    """A ramp to a value: { to, time, num }."""
 
     key: ClassVar[str] = "to"
     to: Annotated[float, Field(title="end value", description="value at the end of the leg")]
@@ -186,7 +186,7 @@ def fields_of(kind: type[Leg], unit: str) -> dict[str, FieldInfo]:
 
 
 def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
-    """Return the legs of a path, of whose values ``quantity`` is the unit and range.
+    """Return the legs of a path whose values have the unit and range of ``quantity``.
 
     Raises
     ------
@@ -280,7 +280,7 @@ def number_of_steps(values: Sequence[object]) -> int:
 
 
 def json_schema(value_schema: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the JSON schema of a list of legs; ``one`` is that of a prescribed value."""
+    """Return the JSON schema of a list of legs, from that of a prescribed value."""
     schemas = [kind.model_json_schema() for kind in KINDS]
     for name, properties in chain.from_iterable(
         ((name, schema["properties"]) for name in ("to", "amplitude")) for schema in schemas

@@ -231,8 +231,8 @@ def height_scale(
     """Return the length [m] to which gaps are compared: the indenter's height range in contact.
 
     If the indenter is flat over the contact (a punch, a single cell), the length is the depth or,
-    if greater, ``wave`` [m], of which both range and depth may be rounding errors. ``contact`` is a
-    mask or has flat indices.
+    if greater, ``wave`` [m], since both range and depth may be its rounding errors. ``contact`` is
+    a mask or has flat indices.
     """
     heights = profile.ravel()[contact.ravel()]
     in_contact = float(np.ptp(heights)) if heights.size else 0.0

@@ -45,7 +45,7 @@ class Text:
     kind: ClassVar[str] = "text"
     text: str
     lead: bool = False
-    """Whether it stands out as the answer."""
+    """Whether it stands out as the result."""
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -166,18 +166,9 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     Where steps have times, it is drawn against the time; where each run has one step only, against
     the first axis of numbers instead.
     """
-    dimensions = [str(d) for d in table["status"].dims if d != "step"]
-    numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
-    over_steps = table.sizes["step"] > 1 or not numbers
-    of_steps = "time" if has_times(table) else "depth"
-    against = of_steps if over_steps else numbers[0]
-    along = "step" if over_steps else against
-    # Seeds are repetitions, not values to compare.
-    rest = [d for d in dimensions if d != along]
-    compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
+    against, along, compared, stacked = _layout(table)
     y_axis, x_axis = wording(table[variable]), wording(table[against])
     named_by = wording(table[compared[0]]) if compared else None
-    stacked = [d for d in table["status"].dims if d not in (along, *compared)]
     many = table.sizes[compared[0]] if compared else 1
     ordered = bool(compared) and is_ordered(table, compared[0])
     pulls, paths = has_interaction(table), list[list[Leg]]()
@@ -198,11 +189,7 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
                 paths.append(path)
             _draw_line(axes, x, y, good, path, color=hue, marker=marker, linestyle="-", label=label)
             label = ""
-    axes.set(
-        xlabel=x_axis.head,
-        ylabel=y_axis.head,
-        title=table.attrs.get("title", ""),
-    )
+    axes.set(xlabel=x_axis.head, ylabel=y_axis.head, title=table.attrs.get("title", ""))
     if along != "step" and is_log_spaced(table[against].values):
         axes.set_xscale("log")
     if pulls:
@@ -215,6 +202,33 @@ def study_curves(table: xr.Dataset, axes: Axes, variable: str) -> None:
     if compared or axes.get_legend_handles_labels()[1]:
         # matplotlib takes long to find the best place among many curves.
         axes.legend(fontsize="small", loc="upper left" if many > _MOST_NAMED else "best")
+
+
+class _Layout(NamedTuple):
+    """What a figure of a study shows along which dimension of its table."""
+
+    against: str
+    """Variable of the horizontal axis."""
+    along: str
+    """Dimension along which each line goes."""
+    compared: list[str]
+    """Dimension whose values have colours of their own; empty if there is none."""
+    stacked: list[str]
+    """All others, whose values have lines of one colour."""
+
+
+def _layout(table: xr.Dataset) -> _Layout:
+    dimensions = [str(d) for d in table["status"].dims if d != "step"]
+    numbers = [d for d in dimensions if table[d].dtype.kind in "if" and table.sizes[d] > 1]
+    over_steps = table.sizes["step"] > 1 or not numbers
+    of_steps = "time" if has_times(table) else "depth"
+    against = of_steps if over_steps else numbers[0]
+    along = "step" if over_steps else against
+    # Seeds are repetitions, not values to compare.
+    rest = [d for d in dimensions if d != along]
+    compared = sorted(rest, key=lambda d: d.endswith("seed") or table.sizes[d] == 1)[:1]
+    stacked = [str(d) for d in table["status"].dims if d not in (along, *compared)]
+    return _Layout(against, along, compared, stacked)
 
 
 def _save(
@@ -230,7 +244,7 @@ def _save(
     return tuple(files)
 
 
-def _parts(table: xr.Dataset, dimensions: Sequence[Hashable]) -> Iterator[xr.Dataset]:
+def _parts(table: xr.Dataset, dimensions: Sequence[str]) -> Iterator[xr.Dataset]:
     """Yield the part of a table at each combination of indices along dimensions."""
     for index in np.ndindex(*(table.sizes[d] for d in dimensions)):
         yield table.isel(dict(zip(dimensions, index, strict=True)))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pellicle.analysis import Oscillation, oscillations, path_summary
+from pellicle.arrays import Array
 from pellicle.loading import OPTIONS
 from pellicle.units import DIGITS, readable
 
@@ -93,7 +94,7 @@ def with_path(table: xr.Dataset) -> xr.Dataset:
         return table
     dims = [dim for dim in table["converged"].dims if dim != "step"]
     shape = [table.sizes[dim] for dim in dims]
-    values: dict[str, np.ndarray[tuple[int, ...], np.dtype[np.float64]]] = {}
+    values: dict[str, Array] = {}
     for index in np.ndindex(*shape):
         run = table.isel(dict(zip(dims, index, strict=True)))
         for name, value in path_variables(run).items():

@@ -15,10 +15,10 @@ from pellicle.numerics.path import PathPoint
 from pellicle.numerics.solution import State
 
 from . import storage
+from .variables import VARIABLES, Variable
 
 if TYPE_CHECKING:
     import xarray as xr
-from .variables import VARIABLES, Variable
 
 
 def step_dataset(

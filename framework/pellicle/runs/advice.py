@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from pellicle.errors import ConfigError
 from pellicle.grid import Grid
 
 from .runner import solve
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _SHARES = 1 / 4, 1 / 3, 1 / 2
 """Cells along an edge of the coarser grids, over those of the run."""
@@ -108,13 +112,42 @@ def advise(run: Run, allowed: float) -> Advice:
         # Coarse grids warn of being coarse.
         warnings.simplefilter("ignore")
         results = [solve(_on(run, grid)).dataset for grid in grids]
-    finest = results[-1]
+    contacts = results[-1]["contact"].values
+    smooth = _is_smooth(run, grids[-1], contacts)
+    extents = [_extent(contact, grids[-1]) for contact in contacts]
+    steps = [
+        Expected(index + 1, force, max(extent) / run.grid.cell_size, *errors)
+        for index, (force, extent, errors) in enumerate(
+            zip(
+                results[-1]["force"].values.tolist(),
+                extents,
+                _errors_of_steps(run, grids, results, smooth=smooth),
+                strict=True,
+            )
+        )
+    ]
+    size = _fitting_size(run, np.max(extents, axis=0))
+    with_error = [step for step in steps if not math.isnan(step.error)]
+    worst = max((step.error / allowed for step in with_error), default=1.0)
+    # Fewer cells are advised only while the area, which errs most, stays known to a tenth.
+    of_areas = (min(1.0, step.area_error / _AREA_ERROR) for step in with_error)
+    order = (_SMOOTH if smooth else _OTHER).order
+    factor = max(worst ** (1 / order), *of_areas, 0.0)
+    return Advice(tuple(steps), _points(run.grid, size or run.grid.size, factor), size)
+
+
+def _errors_of_steps(
+    run: Run, grids: Sequence[Grid], results: Sequence[xr.Dataset], *, smooth: bool
+) -> list[list[float]]:
+    """Return the expected errors of force, depth and area of each step.
+
+    ``results`` are those of ``run`` on coarser ``grids``, the last on the finest.
+    """
     force, depth, area = (
         np.array([data[name].values for data in results], dtype=float)
         for name in ("force", "depth", "contact_area")
     )
     cells = np.where(area[-1] > 0, np.sqrt(area[-1]) / run.grid.cell_size, math.nan)
-    smooth = _is_smooth(run, grids[-1], finest["contact"].values)
     deepest = np.full(cells.shape, np.abs(depth[-1]).max())
     sizes = np.array([grid.cell_size for grid in grids]) / run.grid.cell_size
     errors = [
@@ -125,20 +158,8 @@ def advise(run: Run, allowed: float) -> Advice:
             (area, area[-1], _AREA),
         )
     ]
-    steps = []
-    for index, values in enumerate(np.transpose(errors).tolist()):
-        extent = _extent(finest["contact"].values[index], grids[-1])
-        across = max(extent) / run.grid.cell_size
-        steps.append(Expected(index + 1, float(force[-1, index]), across, *values))
-    widest = np.max([_extent(c, grids[-1]) for c in finest["contact"].values], axis=0)
-    size = _fitting_size(run, widest)
-    with_error = [step for step in steps if not math.isnan(step.error)]
-    worst = max((step.error / allowed for step in with_error), default=1.0)
-    # Fewer cells are advised only while the area, which errs most, stays known to a tenth.
-    of_areas = (min(1.0, step.area_error / _AREA_ERROR) for step in with_error)
-    order = (_SMOOTH if smooth else _OTHER).order
-    factor = max(worst ** (1 / order), *of_areas, 0.0)
-    return Advice(tuple(steps), _points(run.grid, size or run.grid.size, factor), size)
+    of_steps: list[list[float]] = np.transpose(errors).tolist()
+    return of_steps
 
 
 def _points(grid: Grid, size: tuple[float, float], factor: float) -> tuple[int, int]:

@@ -103,7 +103,7 @@ class _BarContext(ABC):
             self._interrupt.check()
 
 
-class Progress(_BarContext):
+class RunProgress(_BarContext):
     """Shows a bar on a terminal or in a notebook; elsewhere, or if not ``enabled``, nothing.
 
     The bar shows the step, the iteration, the residual and the time left. Ctrl-C takes effect at

@@ -66,8 +66,8 @@ class CarriedShare:
         return mean_compliance(self.whole) / solid if 0 < solid < math.inf else math.inf
 
 
-class Skin:
-    """The operators of a skin on a solid that relaxes, for each stiffness γ."""
+class SkinOperators:
+    """The operators of a skin on a solid that relaxes, for each stiffness γ of the solid."""
 
     def __init__(self, kernel: HasRelaxation, grid: Grid) -> None:
         solid = kernel.without_skin()
@@ -187,7 +187,7 @@ class Relaxation:
         branches: Sequence[Branch],
         durations: Sequence[float],
         grid: Grid,
-        skin: Skin | None = None,
+        skin: SkinOperators | None = None,
     ) -> None:
         # The solid is undeformed before the first step.
         self._steps = [TimeStep.of(branches, duration) for duration in durations]
@@ -205,7 +205,7 @@ class Relaxation:
         if not branches:
             return None
         assert isinstance(kernel, HasRelaxation)
-        skin = Skin(kernel, run.grid) if kernel.without_skin() != kernel else None
+        skin = SkinOperators(kernel, run.grid) if kernel.without_skin() != kernel else None
         return cls(branches, run.loading.durations, run.grid, skin)
 
     @property

@@ -27,7 +27,7 @@ from pellicle.results.step import Steps
 from .compose import compose
 from .journal import Journal
 from .lock import locked
-from .progress import Bar, Progress
+from .progress import Bar, RunProgress
 from .relaxation import history_arrays
 from .steps import solve_steps
 
@@ -86,7 +86,7 @@ def run(
     outputs = standard_outputs(run.outputs) if directory is not None else run.outputs or ()
     writes = directory is not None or bool(outputs)
     journal = Journal(Path(directory or ".") / name, run.identity, overwrite) if writes else None
-    bar = Progress(len(run.loading.values), progress)
+    bar = RunProgress(len(run.loading.values), progress)
     result = execute(run, journal, outputs, bar, threads=threads).result
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
@@ -100,7 +100,7 @@ def run(
 
 def solve(run: Run, bar: Bar | None = None) -> Result:
     """Return the result of ``run``; nothing is written, and shown only by ``bar``."""
-    hidden = Progress(len(run.loading.values), enabled=False)
+    hidden = RunProgress(len(run.loading.values), enabled=False)
     return execute(run, None, (), hidden if bar is None else bar).result
 
 

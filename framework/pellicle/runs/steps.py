@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pellicle.arrays import Mask
 from pellicle.components import Depth, Monitor, Search, Setting
 from pellicle.components.base import words_of_type
 from pellicle.components.calls import (
@@ -24,8 +25,8 @@ from pellicle.numerics.contact_stiffness import Stiffness, measure_stiffness
 from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.numerics.solution import Stop
 from pellicle.results.step import Steps, step_dataset
+from pellicle.results.variables import Variable, corrected_fraction
 from pellicle.results.variables import corrected_area as area_variable
-from pellicle.results.variables import corrected_fraction
 
 from .adhesion import asperity_jumped, force_limit, greatest_pull, jump_energy
 from .following import followed
@@ -78,15 +79,9 @@ def _solved_step(
     status, message = judge(run, index, step, stiffness, lost if in_part else None, largest_area)
     report = report_of(prescription, setting, step.equilibrium)
     report |= {v.name: step.missed for v in prescription.variables if v.name not in report}
-    areas = {
-        area_variable(
-            correction.type_name, words_of_type(type(correction), correction.type_name)
-        ): corrected_area(correction, step.equilibrium.contact, run.grid)
-        for correction in run.corrections
-    }
+    areas = _corrected_areas(run, step.equilibrium.contact)
     scalars = {
-        **{variable.name: area for variable, area in areas.items()},
-        **{corrected_fraction(v).name: area / run.grid.area for v, area in areas.items()},
+        **{variable.name: value for variable, value in areas.items()},
         **report,
         **({"stiffness": stiffness.value} if stiffness else {}),
         **({"time": run.loading.times[index]} if run.loading.times else {}),
@@ -100,7 +95,7 @@ def _solved_step(
         "status": message,
         "wall_time": time.perf_counter() - started,
     }
-    added = (*areas, *map(corrected_fraction, areas), *prescription.variables)
+    added = (*areas, *prescription.variables)
     solved = step_dataset(run.grid, index + 1, step.equilibrium, scalars, added)
     if setting.law and branches_of(run.kernel) and run.loading.durations[index] > 0:
         # The energy of a solid that has relaxed on its way does not follow from its surface.
@@ -120,6 +115,17 @@ def solve_step(run: Run, setting: Setting, value: float, monitor: Monitor) -> Re
         pull = greatest_pull(setting, run.solver, problem.control.value, monitor)
         step = step._replace(between=pull)
     return step
+
+
+def _corrected_areas(run: Run, contact: Mask) -> dict[Variable, float]:
+    """Return the contact area by each correction, and after these the shares of the domain."""
+    areas = {
+        area_variable(
+            correction.type_name, words_of_type(type(correction), correction.type_name)
+        ): corrected_area(correction, contact, run.grid)
+        for correction in run.corrections
+    }
+    return areas | {corrected_fraction(v): area / run.grid.area for v, area in areas.items()}
 
 
 def _stiffness(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> Stiffness:

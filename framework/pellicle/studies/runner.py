@@ -257,7 +257,7 @@ def _recorded_warnings() -> Iterator[list[warnings.WarningMessage]]:
 
     How warnings are shown belongs to the process: of two threads that record them at the same time
     the second would leave it to the record of the first, so that no warning is shown any more.
-    Those of another thread are recorded here, or shown as ever.
+    Warnings of another thread are recorded here, or shown as usual.
     """
     if not _recording.acquire(blocking=False):
         yield []

@@ -19,7 +19,7 @@ from pellicle.config.run import Run
 from pellicle.config.study import Study
 from pellicle.results.derived import FIRST_RUN
 from pellicle.runs.journal import Journal
-from pellicle.runs.progress import Progress
+from pellicle.runs.progress import RunProgress
 from pellicle.runs.runner import execute, solve
 from pellicle.studies import runner as studies
 
@@ -162,7 +162,7 @@ def works_in_a_run(output: Output) -> None:
         return
     with _stem() as stem:
         run = _run().model_copy(update={"outputs": (output,)})
-        journal, bar = Journal(stem, run.identity), Progress(_STEPS, enabled=False)
+        journal, bar = Journal(stem, run.identity), RunProgress(_STEPS, enabled=False)
         files = execute(run, journal, (output,), bar).files
         require(all(path.is_file() for path in files), f"files {files}")
 

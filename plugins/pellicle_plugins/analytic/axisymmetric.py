@@ -15,7 +15,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConfigError, ConvergenceError
 
 from .abel_transform import HasAbelTransform
-from .axisymmetric_equation import LEVELS, Solution, solve, without_negligible
+from .axisymmetric_equation import LEVELS, PanelSolution, solve, without_negligible
 from .checks import not_negative, positive, single
 
 TOLERANCE = 1e-10
@@ -36,7 +36,7 @@ class AxisymmetricContact:
     """E* [Pa]."""
     tension: float
     """τ₀ [N/m]."""
-    _solution: Solution = field(repr=False, compare=False)
+    _solution: PanelSolution = field(repr=False, compare=False)
 
     def pressure(self, r: ArrayLike) -> Array:
         """Return the pressure [Pa] at r ≥ 0 [m], of any shape; 0 for r > a.

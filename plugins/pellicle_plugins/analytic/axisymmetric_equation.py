@@ -32,7 +32,7 @@ _CHUNK = 2048
 
 
 @dataclass(frozen=True)
-class Solution:
+class PanelSolution:
     """χ dt = E* y(ψ) t^power dψ at the nodes of the panels, t = sin ψ in units of a."""
 
     panels: list[Panel]
@@ -75,7 +75,7 @@ class Solution:
         return out
 
 
-def solve(indenter: HasAbelTransform, a: float, ratio: float, level: int) -> Solution:
+def solve(indenter: HasAbelTransform, a: float, ratio: float, level: int) -> PanelSolution:
     """Solve for a contact radius a [m], s/a = ratio (zero included), on a mesh level."""
     order, finest = LEVELS[level]
     # Under tension a corner at the apex makes χ ~ 1/t; a smooth apex has χ ~ t.
@@ -99,7 +99,7 @@ def solve(indenter: HasAbelTransform, a: float, ratio: float, level: int) -> Sol
 
         matrix = collocation(panels, influence, clustering(ratio), -1)
         y = np.asarray(np.linalg.solve(matrix, slope), dtype=np.float64)
-    return Solution(panels, y.reshape(len(panels), order), power, ratio)
+    return PanelSolution(panels, y.reshape(len(panels), order), power, ratio)
 
 
 def without_negligible(ratio: float) -> float:

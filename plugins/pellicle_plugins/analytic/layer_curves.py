@@ -56,7 +56,7 @@ Shape = Literal["smooth", "pointed", "punch"]
 """An indenter of revolution with a smooth apex, with a corner there, or with a flat end."""
 
 
-class Layer(NamedTuple):
+class TensedLayer(NamedTuple):
     """A layer bonded to a rigid base, under surface tension."""
 
     length: float
@@ -89,10 +89,10 @@ class Profile:
         With tension it holds to a greater depth.
         """
         widest = np.array([min(WIDEST * thickness, _FILLED * self.limit)])
-        nodes = _nodes(self, Layer(0.0, thickness, poissons_ratio), widest)
+        nodes = _nodes(self, TensedLayer(0.0, thickness, poissons_ratio), widest)
         return min(float(nodes.depth[0]), thickness)
 
-    def curve(self, depth: Array, layer: Layer) -> LayerForceCurve:
+    def curve(self, depth: Array, layer: TensedLayer) -> LayerForceCurve:
         """Return P/E* and its derivatives at depths [m] of shape (n,), 0 without contact."""
         change, rates, last = _splines(self, layer)
         touching = depth > 0
@@ -132,7 +132,7 @@ class Punch:
         """Return the thickness [m], or 0 where the punch is too wide for the table."""
         return thickness if self.radius <= WIDEST * thickness else 0.0
 
-    def curve(self, depth: Array, layer: Layer) -> LayerForceCurve:
+    def curve(self, depth: Array, layer: TensedLayer) -> LayerForceCurve:
         """Return P/E* and its derivatives at depths [m] of shape (n,), 0 without contact."""
         confinement = np.array([self.radius / layer.thickness])
         change, by_length, by_confinement = (
@@ -235,7 +235,7 @@ def _layer(shape: Shape, poissons_ratio: float) -> Interpolant:
     return stretched_spline(LENGTHS, change, LENGTH_SCALE)
 
 
-def _changes(shape: Shape, layer: Layer, confinement: Array) -> tuple[Array, Array, Array]:
+def _changes(shape: Shape, layer: TensedLayer, confinement: Array) -> tuple[Array, Array, Array]:
     """Return the changes by a layer at each a/h, and their derivatives by s/h and by a/h."""
     length, last = layer.length / layer.thickness, float(LENGTHS[-1])
     change, by_length = _layer(shape, layer.poissons_ratio)(np.array([min(length, last)]))
@@ -262,7 +262,7 @@ def _radii(limit: float, thickness: float) -> Array:
     return radii
 
 
-def _nodes(profile: Profile, layer: Layer, a: Array) -> _Nodes:
+def _nodes(profile: Profile, layer: TensedLayer, a: Array) -> _Nodes:
     """Return the contacts of radii a [m], of shape (k,)."""
     length, thickness = layer.length, layer.thickness
     confinement = a / thickness
@@ -294,7 +294,7 @@ def _nodes(profile: Profile, layer: Layer, a: Array) -> _Nodes:
 
 
 @lru_cache(maxsize=64)
-def _splines(profile: Profile, layer: Layer) -> tuple[BSpline, BSpline, float]:
+def _splines(profile: Profile, layer: TensedLayer) -> tuple[BSpline, BSpline, float]:
     """Return the change of log P by the layer, its derivatives by s and h, and their last x."""
     from scipy.interpolate import make_interp_spline
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceCurve
-from pellicle_plugins.analytic.layer_curves import Layer, Profile, Punch
+from pellicle_plugins.analytic.layer_curves import Profile, Punch, TensedLayer
 from pellicle_plugins.analytic.master_curves import punch_radius
 
 
@@ -41,7 +41,7 @@ class Axisymmetric(Indenter):
         self, depth: Array, length: float, thickness: float, poissons_ratio: float
     ) -> LayerForceCurve:
         """Return P/E* and its partial derivatives on a bonded layer, 0 ≤ ν ≤ ½."""
-        layer = Layer(length, thickness, poissons_ratio)
+        layer = TensedLayer(length, thickness, poissons_ratio)
         return _layer_curves(self).curve(depth, layer)
 
     def _curve(self, depth: Array, length: float) -> ForceCurve:

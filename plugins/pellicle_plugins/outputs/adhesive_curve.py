@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
@@ -103,10 +103,7 @@ class AdhesiveCurve(TableFigure):
             self._drawn(name, colour(number, len(paths), ordered=self.is_ordered(runs)), run)
             for number, (name, run) in enumerate(paths)
         ]
-        files = self.save(
-            lambda figure: self._fill(figure.add_subplot(), drawn),
-            stem,
-        )
+        files = self.save(lambda figure: self._fill(figure.add_subplot(), drawn), stem)
         summary = stem.with_name(f"{stem.name}-summary")
         return (
             *files,
@@ -164,20 +161,8 @@ class AdhesiveCurve(TableFigure):
             path = drawing.path["depth"].values * length, drawing.path["force"].values * newton
             axes.plot(*path, "--", color=drawing.colour, linewidth=0.8)
         for number, (drawing, curve) in enumerate(curves):
-            points = drawing.points()
-            end = points["last at fixed depth"].contact_radius
-            # Without that point on the curve all of it is stable at a fixed depth.
-            stable = ~(curve.contact_radius < end)
-            for part, style in ((stable, "-"), (~stable, ":")):
-                x, y = curve.depth[part] * length, curve.force[part] * newton
-                name = drawing.name.words if style == "-" else ""
-                marked = sparse_marker(number) if len(drawn) > 1 and style == "-" else {}
-                axes.plot(
-                    x, y, style, color=drawing.colour, linewidth=1.4, label=name or None, **marked
-                )
-            for mark, contact in points.items():
-                x, y = contact.depth * length, contact.force * newton
-                axes.plot(x, y, _MARKERS[mark], color=drawing.colour, markersize=5, mfc="white")
+            marked = sparse_marker(number) if len(drawn) > 1 else {}
+            _draw(axes, drawing, curve, (length, newton), marked)
         hue = "0.4" if len(drawn) != 1 else drawn[0].colour
         if curves:
             axes.plot([], [], "-", color=hue, linewidth=1.4, label="with adhesion")
@@ -199,6 +184,32 @@ class AdhesiveCurve(TableFigure):
             fontsize="small",
             transform=axes.transAxes,
         )
+
+
+def _draw(
+    axes: Axes,
+    drawn: _Drawn,
+    curve: analysis.AdhesiveCurve,
+    factors: tuple[float, float],
+    marked: Mapping[str, Any],
+) -> None:
+    """Draw one curve, stable and unstable parts, and its points.
+
+    ``factors`` are those from m and N to the units of the axes; ``marked`` holds the markers of the
+    stable part.
+    """
+    points = drawn.points()
+    length, newton = factors
+    end = points["last at fixed depth"].contact_radius
+    # Without that point on the curve all of it is stable at a fixed depth.
+    stable = ~(curve.contact_radius < end)
+    x, y = curve.depth * length, curve.force * newton
+    shared = {"color": drawn.colour, "linewidth": 1.4}
+    axes.plot(x[stable], y[stable], "-", label=drawn.name.words or None, **shared, **marked)
+    axes.plot(x[~stable], y[~stable], ":", **shared)
+    for mark, contact in points.items():
+        x, y = contact.depth * length, contact.force * newton
+        axes.plot(x, y, _MARKERS[mark], color=drawn.colour, markersize=5, mfc="white")
 
 
 def _status(

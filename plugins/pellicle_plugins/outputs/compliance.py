@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 _MARKERS = 40
 _WORDS = {"q": "wavenumber q"}
+_HEADS = {"q": "wavenumber q [rad/m]", "compliance": "compliance [m/Pa]"}
+"""Labels of axes that show a variable alone."""
 
 
 class Compliance(XYFigure):
@@ -53,38 +55,28 @@ class Compliance(XYFigure):
             q, cells = of_cells_along_x(run)
             # A grid with a single cell along x has no waves.
             marked = np.unique(np.geomspace(1, max(1, q.size), _MARKERS).astype(int)) - 1
-            for values, series, marker in (
-                (cells, "cells", MARKERS[number % len(MARKERS)]),
-                (run.kernel.compliance(q), "symbol", ""),
-            ):
-                x, y = self._columns(picked, q, values)
-                axes.plot(
-                    x,
-                    y,
-                    marker=marker,
-                    color=hue if series == "cells" else "black",
-                    zorder=2 if series == "cells" else 1,
-                    markersize=3.5,
-                    markerfacecolor="white",
-                    linestyle="none" if series == "cells" else "-",
-                    markevery=list(marked) if series == "cells" else None,
-                    linewidth=1.0,
-                    label=(name.words or series) if series == "cells" else None,
-                )
-                for px, py in zip(x, y, strict=True):
-                    yield {"curve": name.key, "series": series, "x": px, "y": py}
+            of_cells = self._columns(picked, q, cells)
+            axes.plot(
+                *of_cells,
+                MARKERS[number % len(MARKERS)],
+                color=hue,
+                zorder=2,
+                markersize=3.5,
+                markerfacecolor="white",
+                linestyle="none",
+                markevery=list(marked),
+                label=name.words or "cells",
+            )
+            of_symbol = self._columns(picked, q, run.kernel.compliance(q))
+            axes.plot(*of_symbol, "-", color="black", zorder=1, linewidth=1.0)
+            for series, columns in (("cells", of_cells), ("symbol", of_symbol)):
+                for x, y in zip(*columns, strict=True):
+                    yield {"curve": name.key, "series": series, "x": x, "y": y}
         axes.plot([], [], color="black", linewidth=1.0, label="symbol")
-        axes.set(
-            xlabel=self.x_label
-            or ("wavenumber q [rad/m]" if self.x == "q" else in_words(self.x, runs.table, _WORDS)),
-            ylabel=self.y_label
-            or (
-                "compliance [m/Pa]"
-                if self.y == "compliance"
-                else in_words(self.y, runs.table, _WORDS)
-            ),
-            title=self.title,
+        x_label, y_label = (
+            _HEADS.get(text) or in_words(text, runs.table, _WORDS) for text in (self.x, self.y)
         )
+        axes.set(xlabel=self.x_label or x_label, ylabel=self.y_label or y_label, title=self.title)
         set_scales(axes, ("x", "y"))
         axes.legend(frameon=False, fontsize="small")
 

@@ -46,7 +46,7 @@ class LineStyle:
 
 
 @dataclass(frozen=True)
-class Points:
+class CurvePoints:
     """The points of one curve, each array of shape (points,)."""
 
     x: Array
@@ -61,20 +61,20 @@ class Points:
     runs: Array
     """Number of runs that each point is the mean of."""
 
-    def ordered(self) -> Points:
+    def ordered(self) -> CurvePoints:
         """Return the same points in the order of x."""
         order = np.argsort(self.x)
-        return Points(*(getattr(self, field.name)[order] for field in fields(self)))
+        return CurvePoints(*(getattr(self, field.name)[order] for field in fields(self)))
 
 
-NO_POINTS = Points(*[np.empty(0)] * 6)
+NO_POINTS = CurvePoints(*[np.empty(0)] * 6)
 
 
 @dataclass(frozen=True)
 class Line:
     """Points, as drawn and as written in columns ``curve`` and ``series``."""
 
-    points: Points
+    points: CurvePoints
     style: LineStyle
     legend: str
     curve: str = ""
@@ -122,7 +122,7 @@ class Line:
 class Limit:
     """The limit of a curve for x → 0."""
 
-    def __init__(self, points: Points, style: LineStyle, curve: str, series: str) -> None:
+    def __init__(self, points: CurvePoints, style: LineStyle, curve: str, series: str) -> None:
         self._points, self._style = points, style
         self._fit = extrapolate(points.x, points.y)
         self._head = {"curve": curve, "series": series}

@@ -36,14 +36,18 @@ from .base import (
     scaled,
     set_scales,
 )
-from .curve_lines import NO_POINTS, Limit, Line, LineStyle, Points
+from .curve_lines import NO_POINTS, CurvePoints, Limit, Line, LineStyle
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
 
 _GRIDS = 3
+"""Fewest grids from which a limit follows."""
 _LETTERS = 50
+"""Letters of a line of the label of an axis."""
+_EXACT = LineStyle("black", None, "")
+"""Style of a reference."""
 
 
 def _several(value: object) -> object:
@@ -203,23 +207,14 @@ class Curves(XYFigure):
         reference = exact(runs) if self.reference else None
         directions: set[str] = set()
         many = runs.table.sizes[self.by] if self.by else 1
-        ordered = self.is_ordered(runs)
-        shared = "0.4" if max(many, len(ys)) > 1 else "C0"
         for number, (text, y) in enumerate(zip(self.y, ys, strict=True)):
             series = self.series[number] if self.series else text
             named = self.series[number] if self.series else self._named(text, runs.table)
-            exact_x, exact_y = (
-                (reference.column(self.x), reference.column(text)) if reference else (x, y)
-            )
+            of_reference = [reference.column(t) for t in (self.x, text)] if reference else []
             for index, point in enumerate(along(runs.table, self.by)):
                 part = runs.table.isel(point)
                 name = label(self.label, part, self.by, runs.table)
-                # Colours and markers distinguish the values of `by`, line styles those of `y`.
-                # Beside a reference there are no lines.
-                hue = colour(index, many, ordered=ordered) if self.by else colour(number, len(ys))
-                by_y = not self.by or (reference is not None and len(ys) > 1)
-                marker = MARKERS[(number if by_y else index) % len(MARKERS)]
-                style = LineStyle(hue, number, marker, scattered=reference is not None)
+                style = self._style(runs, number, index)
                 legend = "" if number else name.words
                 if not self.by and (self.series or len(ys) > 1):
                     legend = named
@@ -232,18 +227,32 @@ class Curves(XYFigure):
                     if np.unique(points.x).size >= _GRIDS:
                         yield Limit(points, style, name.key, f"{series}, extrapolated")
                 if reference:
-                    points, _ = self._points(part, _at(exact_x, point), _at(exact_y, point))
-                    thin = LineStyle("black", None, "")
-                    yield Line(points.ordered(), thin, "", name.key, f"{series}, semi-analytic")
+                    points, _ = self._points(part, *(_at(axis, point) for axis in of_reference))
+                    yield Line(points.ordered(), _EXACT, "", name.key, f"{series}, semi-analytic")
             if self.by and len(ys) > 1:
                 marker = MARKERS[number % len(MARKERS)] if reference else ""
                 style = LineStyle("0.4", number, marker, scattered=reference is not None)
                 yield Line(NO_POINTS, style, named)
         if reference:
-            yield Line(NO_POINTS, LineStyle("black", None, ""), "semi-analytic")
+            yield Line(NO_POINTS, _EXACT, "semi-analytic")
         if len(directions) > 1:
+            shared = "0.4" if max(many, len(ys)) > 1 else "C0"
             yield Line(NO_POINTS, LineStyle(shared, 0, MARKERS[0]), "approach")
             yield Line(NO_POINTS, LineStyle(shared, 0, MARKERS[0], retracts=True), "retraction")
+
+    def _style(self, runs: Runs, number: int, index: int) -> LineStyle:
+        """Return the style of a curve: y of this number, and value of `by` of this index.
+
+        Colours and markers distinguish the values of `by`, line styles those of y. Beside a
+        reference there are no lines, so that markers distinguish several y.
+        """
+        if not self.by:
+            hue, mark = colour(number, len(self.y)), number
+        else:
+            hue = colour(index, runs.table.sizes[self.by], ordered=self.is_ordered(runs))
+            mark = number if self.reference and len(self.y) > 1 else index
+        marker = MARKERS[mark % len(MARKERS)]
+        return LineStyle(hue, number, marker, scattered=self.reference is not None)
 
     def _draw_published(self, axes: Axes) -> Iterator[dict[str, object]]:
         for number, other in enumerate(self.published):
@@ -262,7 +271,7 @@ class Curves(XYFigure):
 
     def _points(
         self, table: xr.Dataset, x: xr.DataArray, y: xr.DataArray
-    ) -> tuple[Points, list[Leg]]:
+    ) -> tuple[CurvePoints, list[Leg]]:
         """Return the points of one curve, in the order of the table, and the legs of its path."""
         import xarray as xr
 
@@ -299,7 +308,7 @@ class Curves(XYFigure):
             path = legs(xr.broadcast(table["depth"], x)[0].values.ravel()[finite])
             # The many legs of an oscillation are not told apart by their style.
             path = path if has_interaction(table) or len(path) <= MOST_LEGS else []
-        return Points(*values[:, finite]), path
+        return CurvePoints(*values[:, finite]), path
 
 
 def _require_grids(x: xr.DataArray) -> None:

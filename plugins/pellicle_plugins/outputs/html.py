@@ -6,6 +6,7 @@ import json
 import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -53,7 +54,6 @@ from pellicle.studies.summary import (
     runs_of,
 )
 
-from .answer import answer_of_path, answer_of_step, answer_of_study
 from .html_curves import curves_of_run, curves_of_study
 from .html_tables import (
     input_table,
@@ -66,6 +66,7 @@ from .html_tables import (
     study_path_tables,
 )
 from .methods import methods
+from .sentences import sentence_of_step, sentence_of_study, sentences_of_path
 from .setup_drawing import description, setup_drawing
 
 if TYPE_CHECKING:
@@ -120,41 +121,14 @@ class Html(Output):
         """Write the page."""
         table, path = runs.table, Path(f"{stem}.html")
         configuration = json.loads(runs.configuration)
+        varied: tuple[str, ...] = ()
         if runs.axes is None:
-            data, run = runs.open(), configuration
-            result = Result(data)
-            grid = Grid(**run["grid"])
-            maps, chosen = self._maps_of_steps(result, grid)
-            sections = [
-                Section("In short", [*_answer(result, grid), _status(result), _setup(run)]),
-                Section("Maps", [maps]),
-                Section("Curves", curves_of_run(result, chosen)),
-                Section(
-                    "Numbers",
-                    [*step_tables(data), *path_tables(result), *oscillation_tables(result)],
-                ),
-                Section("Inputs", [input_table(list(inputs(run)))]),
-            ]
-            varied: tuple[str, ...] = ()
+            run = configuration
+            sections = self._sections_of_run(Result(runs.open()), run)
         else:
             run = json.loads(table.attrs[FIRST_RUN])
-            rows = list(runs_of(table))
-            frames = dict(self._frames_of_runs(table, rows, stem.parent / "runs"))
             varied = tuple(str(name) for name in table.coords if name != "step")
-            answer = answer_of_study(table, len(rows))
-            lead = [Text(answer, lead=True)] if answer else []
-            sections = [
-                Section(
-                    "In short", [*lead, _status_of_study(table, len(rows)), _setup(run, varied)]
-                ),
-                Section("Maps", _maps_of_runs(table, list(frames.values()), len(rows))),
-                Section("Curves", curves_of_study(table)),
-                Section(
-                    "Numbers",
-                    [run_table(table, rows, list(frames)), *study_path_tables(table, rows)],
-                ),
-                Section("Inputs", [input_table(inputs_of_study(table, list(inputs(run))))]),
-            ]
+            sections = self._sections_of_study(table, run, varied, stem.parent / "runs")
         sections += [
             Section("Methods", [Text(methods(run, table.attrs["versions"], varied))]),
             Section("Provenance", [*origin_tables(table.attrs, run)]),
@@ -166,6 +140,45 @@ class Html(Output):
             text = page(table.attrs["title"] or stem.name, sections, f"{kind} of pellicle, {date}")
             part.write_text(text, encoding="utf-8")
         return (path,)
+
+    def _sections_of_run(self, result: Result, configuration: dict[str, Any]) -> list[Section]:
+        """Return what the page of a run shows before methods and provenance."""
+        grid = Grid(**configuration["grid"])
+        maps, chosen = self._maps_of_steps(result, grid)
+        sentences = _sentences(result, grid)
+        numbers = step_tables(result.dataset), path_tables(result), oscillation_tables(result)
+        return [
+            Section("In short", [*sentences, _status(result), _setup(configuration)]),
+            Section("Maps", [maps]),
+            Section("Curves", curves_of_run(result, chosen)),
+            Section("Numbers", [*chain.from_iterable(numbers)]),
+            Section("Inputs", [input_table(list(inputs(configuration)))]),
+        ]
+
+    def _sections_of_study(
+        self,
+        table: xr.Dataset,
+        first_run: dict[str, Any],
+        varied: tuple[str, ...],
+        folder: Path,
+    ) -> list[Section]:
+        """Return what the page of a study shows before methods and provenance.
+
+        ``folder`` holds the files of its runs.
+        """
+        rows = list(runs_of(table))
+        frames = dict(self._frames_of_runs(table, rows, folder))
+        sentence = sentence_of_study(table, len(rows))
+        lead = [Text(sentence, lead=True)] if sentence else []
+        status, setup = _status_of_study(table, len(rows)), _setup(first_run, varied)
+        numbers = [run_table(table, rows, list(frames)), *study_path_tables(table, rows)]
+        return [
+            Section("In short", [*lead, status, setup]),
+            Section("Maps", _maps_of_runs(table, list(frames.values()), len(rows))),
+            Section("Curves", curves_of_study(table)),
+            Section("Numbers", numbers),
+            Section("Inputs", [input_table(inputs_of_study(table, list(inputs(first_run))))]),
+        ]
 
     def _maps_of_steps(self, result: Result, grid: Grid) -> tuple[Maps, list[int]]:
         """Return the maps of load steps, and the indices of the steps."""
@@ -179,7 +192,7 @@ class Html(Output):
             step = without_round_off(data.isel(step=index))
             label = f"{index + 1}: {label_of_step(data, index, result.configuration)}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
-            note = answer_of_step(data, index, grid.boundary, result.configuration)
+            note = sentence_of_step(data, index, grid.boundary, result.configuration)
             frames.append(replace(_frame(label, grid, step, mapped, points), note=note))
         step_shown = default_step(data) % steps
         begin = int(np.searchsorted(chosen, step_shown, side="right")) - 1
@@ -264,12 +277,12 @@ def _share_in_words(number: int, count: int, noun: str) -> str:
     return f"each {noun}" if number == count else f"{number} of {count} {noun}s"
 
 
-def _answer(result: Result, grid: Grid) -> list[Text]:
-    """Return the answer of a run in a sentence or two."""
+def _sentences(result: Result, grid: Grid) -> list[Text]:
+    """Return the result of a run in a sentence or two."""
     data = result.dataset
     step_shown = default_step(data) % data.sizes["step"]
-    first = answer_of_step(data, step_shown, grid.boundary, result.configuration)
-    rest = answer_of_path(data, result.path_summary)
+    first = sentence_of_step(data, step_shown, grid.boundary, result.configuration)
+    rest = sentences_of_path(data, result.path_summary)
     return [Text(first, lead=True), *([Text(rest)] if rest else [])]
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import ceil
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -75,31 +75,19 @@ class Maps(TableFigure):
         down: int,
         across: int,
     ) -> None:
-        from matplotlib.colors import ListedColormap
-
         all_axes = figure.subplots(down, across, squeeze=False).ravel()
         for axes in all_axes[len(panels) :]:
             axes.set_axis_off()
         if not panels:
             return
-        values = np.concatenate([field.values.ravel() for *_, field in panels])
-        is_bool = panels[0][2].dtype == bool
+        fields = [field for *_, field in panels]
+        is_bool = fields[0].dtype == bool
         factor, name = 1.0, ""
         if not is_bool:
-            fields = [field for *_, field in panels]
             factor, name = scaled(self.field, fields, self.field_label, panels[0][1])
-        values = values[np.isfinite(values)] * factor
-        low, high = (values.min(), values.max()) if values.size and not is_bool else (0.0, 1.0)
-        if low == high:
-            # matplotlib would centre a scale without range on its only value.
-            low, high = min(low, 0.0), max(high, 0.0 if low else 1.0)
         blank = self.field.strip() in _ONLY_IN_CONTACT
-        colours = {"cmap": "viridis", "vmin": low, "vmax": high}
-        if is_bool:
-            colours["cmap"] = ListedColormap([NO_CONTACT, "black"])
         pulls = any(has_interaction(run) for _, run, _ in panels) and not is_bool
-        if pulls and low < 0 and "pressure" in names_in(self.field):
-            colours = diverging(values)
+        colours = self._colours(fields, factor, pulls=pulls)
         for axes, (title, run, field) in zip(all_axes, panels, strict=False):
             length, unit = axis_unit(np.append(run["x"].values, run["y"].values), "m")
             values_shown = field.transpose("y", "x").values * factor
@@ -125,6 +113,27 @@ class Maps(TableFigure):
         else:
             add_colour_bar(all_axes[min(across, len(panels)) - 1], image, name)
         figure.suptitle(self.title)
+
+    def _colours(
+        self, fields: Sequence[xr.DataArray], factor: float, *, pulls: bool
+    ) -> dict[str, Any]:
+        """Return the colours of fields times ``factor``, as keywords of ``Axes.imshow``.
+
+        ``pulls`` says whether an interaction acts in a run, so that a pressure may be negative.
+        """
+        from matplotlib.colors import ListedColormap
+
+        if fields[0].dtype == bool:
+            return {"cmap": ListedColormap([NO_CONTACT, "black"]), "vmin": 0.0, "vmax": 1.0}
+        values = np.concatenate([field.values.ravel() for field in fields])
+        values = values[np.isfinite(values)] * factor
+        low, high = (values.min(), values.max()) if values.size else (0.0, 1.0)
+        if pulls and low < 0 and "pressure" in names_in(self.field):
+            return diverging(values)
+        if low == high:
+            # matplotlib would centre a scale without range on its only value.
+            low, high = min(low, 0.0), max(high, 0.0 if low else 1.0)
+        return {"cmap": "viridis", "vmin": low, "vmax": high}
 
 
 def _name_colours(figure: Figure, field: str) -> None:

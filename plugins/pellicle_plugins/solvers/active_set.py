@@ -54,7 +54,7 @@ _RELAXATION_STAGNATION: Final = 10
 
 
 @dataclass(frozen=True)
-class History:
+class ContactHistory:
     """The contacts since the number of misclassified cells was least, to detect cycles."""
 
     contacts: frozenset[bytes] = frozenset()
@@ -69,13 +69,13 @@ class History:
         """Whether the last outer iteration left fewer misclassified cells than any before."""
         return len(self.contacts) <= 1 and self.returns == 0
 
-    def after(self, contact: Mask, misclassified: int) -> History:
+    def after(self, contact: Mask, misclassified: int) -> ContactHistory:
         """Return the history after an inner solve on a contact with its misclassified cells."""
         packed = np.packbits(contact).tobytes()
         if misclassified < self.fewest:
-            return History(frozenset({packed}), misclassified)
+            return ContactHistory(frozenset({packed}), misclassified)
         if packed in self.contacts:
-            return History(frozenset({packed}), self.fewest, self.returns + 1)
+            return ContactHistory(frozenset({packed}), self.fewest, self.returns + 1)
         return replace(self, contacts=self.contacts | {packed})
 
 
@@ -94,7 +94,7 @@ class _Iterate:
     """Height range of the indenter in contact [m]."""
     error: float
     """max(|gap| under pressure, penetration) of ``trial`` [m]."""
-    history: History
+    history: ContactHistory
     progress: Progress
     """Progress of the error over `scale` and of the least number of misclassified cells."""
     may_relax: bool
@@ -185,7 +185,7 @@ class ActiveSet(ScaledSolver):
         if not inner.misclassified.size:
             if state.bends:
                 # The same contact again, with a smaller gap, is not a cycle.
-                history = History(returns=state.history.returns)
+                history = ContactHistory(returns=state.history.returns)
             return _iterate(problem, state.on_contact, inner.pressure, history, state)
         relaxes &= history.returns == 0 and len(history.contacts) <= _RELAXATION_STAGNATION
         if relaxes and inner.pressure.any():
@@ -304,7 +304,7 @@ def _without_pits(problem: Problem, state: _Iterate) -> _Iterate:
 
 
 def _changed(
-    problem: Problem, state: _Iterate, inner: InnerSolution, history: History
+    problem: Problem, state: _Iterate, inner: InnerSolution, history: ContactHistory
 ) -> OnContact:
     """Return the contact after changing the misclassified cells, or one of them in a cycle."""
     contact, cells = state.on_contact.contact, inner.misclassified
@@ -324,7 +324,7 @@ def _iterate(
     problem: Problem,
     on_contact: OnContact,
     trial: Array,
-    history: History | None = None,
+    history: ContactHistory | None = None,
     before: _Iterate | None = None,
 ) -> _Iterate:
     """Return the iterate of a pressure [Pa], scaled to the prescribed force if any.
@@ -332,7 +332,7 @@ def _iterate(
     The pressure is 0 off the contact. It is overwritten, and so is the displacement of the iterate
     ``before``, which is not used any more.
     """
-    history = history or History()
+    history = history or ContactHistory()
     trial = with_force(problem, trial, out=trial)
     cells, width = on_contact.cells, trial.shape[1]
     u_minus_f, lowest = np.empty(cells.size), [np.inf]

@@ -12,7 +12,7 @@ from pellicle.numerics.operators import Operator
 Field = NDArray[np.float32]
 
 
-class Stiffness:
+class CirculantStiffness:
     """K, the multiplication by k(q) = 1/G(q) over its greatest value, in single precision.
 
     Parameters

@@ -112,7 +112,7 @@ def inner_solve(
         del ascent
     if misclassified is None:
         misclassified, _ = iterate.misclassified(max(error, goal))
-    # A start or a guess may be in Fortran order, of which ravel() would be a copy.
+    # A start or a guess may be in Fortran order, for which ravel() returns a copy.
     np.put(pressure, cells, iterate.pressure)
     return InnerSolution(pressure, displacement, error, np.sort(misclassified))
 

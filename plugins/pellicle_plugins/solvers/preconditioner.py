@@ -14,7 +14,7 @@ from pellicle.grid import Grid
 from pellicle.numerics.operators import Operator
 
 from .biharmonic import stretch_of
-from .circulant_stiffness import Field, Stiffness
+from .circulant_stiffness import CirculantStiffness, Field
 from .multilevel_extension import Extension, bends
 
 # Without a margin, contact at the edge of a free domain couples to the opposite edge.
@@ -47,7 +47,7 @@ class Preconditioner:
             self._padded = _round_up(grid.shape)
         else:
             self._plane = self._padded = _free_shape(grid)
-        self._stiffness = Stiffness(operator, self._plane)
+        self._stiffness = CirculantStiffness(operator, self._plane)
         levels = _levels(self._padded)
         orders = _stiffness_orders(operator, levels + 1)
         self.bends = bends(orders[0])
@@ -65,7 +65,7 @@ class Preconditioner:
         return self._stiffness.greatest
 
     @cached_property
-    def grid_stiffness(self) -> Stiffness:
+    def grid_stiffness(self) -> CirculantStiffness:
         """K on the grid itself, as if the grid were periodic; see `relaxed`."""
         return self._stiffness if self._plane == self._shape else self.stiffness(self._shape)
 
@@ -95,9 +95,9 @@ class Preconditioner:
         unit[0, 0] = 1
         return self._operator(unit)
 
-    def stiffness(self, shape: tuple[int, int]) -> Stiffness:
+    def stiffness(self, shape: tuple[int, int]) -> CirculantStiffness:
         """Return K on a periodic plane of as many cells of the grid's size."""
-        return Stiffness(self._operator, shape)
+        return CirculantStiffness(self._operator, shape)
 
     def on(self, contact: Mask) -> OnContact:
         """Return Eᵀ K E on ``contact``, bool of the grid's shape."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pellicle.arrays import Array, Mask
 from pellicle.numerics.problem import Problem
 
-from .circulant_stiffness import Field, Stiffness
+from .circulant_stiffness import CirculantStiffness, Field
 from .contact_cg import InnerSolution
 from .preconditioner import OnContact
 
@@ -84,7 +84,7 @@ def relaxed(
 
 
 def _minimised(
-    stiffness: Stiffness,
+    stiffness: CirculantStiffness,
     floor: Field,
     load: Field,
     *,

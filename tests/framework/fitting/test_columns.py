@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from scipy.io import savemat
 
 import pellicle as pl
+from pellicle.fitting.curves.cleaning import clean
 from pellicle.fitting.curves.columns import Calibration
-from pellicle.fitting.curves.curve import Curve, clean
+from pellicle.fitting.curves.curve import Curve
 from pellicle.fitting.curves.readers import read
 from pellicle.fitting.curves.roles import column_map
 

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from pellicle.fitting.models.force_model import ForceModel, ModelForce
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, Parameter, Values
+from pellicle.fitting.statistics.chi_squared import best_minimum
 from pellicle.fitting.statistics.initial_guess import initial_guesses
-from pellicle.fitting.statistics.likelihood import Likelihood, best_minimum
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.pooled_likelihood import Pool
 from pellicle.fitting.statistics.profile import confidence_interval
 

@@ -15,7 +15,8 @@ from click.testing import Result
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle.fitting.curves.curve import Curve, clean
+from pellicle.fitting.curves.cleaning import clean
+from pellicle.fitting.curves.curve import Curve
 from pellicle.fitting.curves.readers import read
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from tests.pictures import drawn_width

@@ -12,7 +12,8 @@ import pytest
 
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, Coordinates, Parameter
-from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood, Minimum, Range
+from pellicle.fitting.statistics.chi_squared import ChiSquared, Minimum, Range
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.profile import (
     ImprovedMinimum,
     chi_squared_threshold,

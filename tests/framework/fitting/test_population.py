@@ -20,7 +20,7 @@ import pellicle as pl
 from pellicle.errors import ConfigError, StorageError
 from pellicle.fitting import many
 from pellicle.fitting.curves.curve import Curve
-from pellicle.fitting.curves.readers import Source
+from pellicle.fitting.curves.sources import Source
 from pellicle.fitting.many import ManyFits, fit_sources
 from pellicle.fitting.population.judgement import (
     group_of,

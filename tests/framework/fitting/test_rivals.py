@@ -29,11 +29,12 @@ from pellicle.fitting.models.relaxing import (
     StandardLinearModel,
 )
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Values
-from pellicle.fitting.report.answer import answer
 from pellicle.fitting.report.page import save_report
+from pellicle.fitting.report.sentences import sentence_of_fit
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.pooled_likelihood import Pool
-from pellicle.fitting.statistics.rivals import MARGIN, NONE, TENSED, Rival
+from pellicle.fitting.statistics.rival import Rival
+from pellicle.fitting.statistics.rivals import MARGIN, NONE, TENSED
 from pellicle.fitting.verdict import decision, judge
 from pellicle_plugins.analytic.adhesion import Adhesion
 from pellicle_plugins.indenters.paraboloid import Paraboloid
@@ -217,7 +218,7 @@ def test_one_speed_does_not_tell_a_tension_from_relaxation_beside_it() -> None:
         assert estimate.high is not None
         assert estimate.low < value < estimate.high
     assert "at one speed a relaxation exponent up to 0.3" in fit.comparison
-    assert "and the tension" in answer(fit)
+    assert "and the tension" in sentence_of_fit(fit)
 
 
 def test_comparison_in_full() -> None:
@@ -320,12 +321,12 @@ def test_the_chosen_model_is_the_answer(tmp_path: Path) -> None:
     assert chosen["settled"]
     modulus = chosen["parameters"]["reduced_modulus"]
     assert modulus["low"] < MODULUS_ < modulus["high"]
-    assert answer(fit).endswith(", with 95 % intervals, by adhesion.")
+    assert sentence_of_fit(fit).endswith(", with 95 % intervals, by adhesion.")
     assert fit.rivals is not None
     assert "1.5 πWR: between the limits" in fit.rivals.pull_off
     save_report(fit, tmp_path / "page.html", "bead")
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
-    assert answer(fit).split(" (")[0] in page
+    assert sentence_of_fit(fit).split(" (")[0] in page
     assert fit.rivals.pull_off[1:] in page
     many = pl.fit_many(file, progress=False, **options)
     work = float(many["work_of_adhesion"][0])

@@ -16,7 +16,8 @@ import pellicle as pl
 from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Parameter
 from pellicle.fitting.report.figures import save_figure
-from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
+from pellicle.fitting.statistics.chi_squared import ChiSquared
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.flat_punch import FlatPunch
 from pellicle_plugins.indenters.paraboloid import Paraboloid

@@ -18,7 +18,7 @@ from matplotlib.text import Text
 
 import pellicle as pl
 from pellicle.config.coordinates import Coordinate, tell_apart
-from pellicle.fitting.curves.readers import SourceStream
+from pellicle.fitting.curves.sources import SourceStream
 from pellicle.fitting.many import fit_sources
 from pellicle.fitting.report.page import save_report
 from pellicle.model.paths import walk

@@ -21,7 +21,7 @@ from pellicle.operators import Array, make_operator
 from pellicle.problem import Equilibrium, measure
 from pellicle_plugins.indenters.self_affine import SelfAffine
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
-from pellicle_plugins.solvers.active_set import ActiveSet, History
+from pellicle_plugins.solvers.active_set import ActiveSet, ContactHistory
 from pellicle_plugins.solvers.conjugate_gradient import ConjugateGradient
 from pellicle_plugins.solvers.contact_cg import inner_solve
 from pellicle_plugins.solvers.preconditioner import Preconditioner
@@ -545,7 +545,7 @@ def test_a_contact_that_all_cells_have_left_is_joined_by_what_penetrates() -> No
 def test_history_counts_contacts_that_come_back_until_fewer_are_wrong() -> None:
     """Four contacts, of which the third is the first again."""
     first, second = np.eye(4, dtype=bool), np.eye(4, dtype=bool)[::-1]
-    history = History().after(first, 5).after(second, 5)
+    history = ContactHistory().after(first, 5).after(second, 5)
     assert history.returns == 0
     assert history.after(first, 4).returns == 0
     again = history.after(first, 5)
@@ -558,11 +558,11 @@ def test_history_counts_contacts_that_come_back_until_fewer_are_wrong() -> None:
 def test_history_makes_progress_until_no_fewer_are_wrong() -> None:
     """As long as each contact has fewer wrong cells than any before."""
     first, second = np.eye(4, dtype=bool), np.eye(4, dtype=bool)[::-1]
-    assert History().makes_progress
-    assert History().after(first, 5).after(second, 4).makes_progress
-    assert not History().after(first, 5).after(second, 5).makes_progress
-    assert not History().after(first, 5).after(first, 5).makes_progress
-    assert History().after(first, 5).after(second, 5).after(~first, 4).makes_progress
+    assert ContactHistory().makes_progress
+    assert ContactHistory().after(first, 5).after(second, 4).makes_progress
+    assert not ContactHistory().after(first, 5).after(second, 5).makes_progress
+    assert not ContactHistory().after(first, 5).after(first, 5).makes_progress
+    assert ContactHistory().after(first, 5).after(second, 5).after(~first, 4).makes_progress
 
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)

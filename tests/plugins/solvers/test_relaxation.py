@@ -10,7 +10,7 @@ from pellicle import Grid, Problem
 from pellicle.operators import make_operator
 from pellicle_plugins.kernels.bending_skin import BendingSkin
 from pellicle_plugins.solvers import relaxation
-from pellicle_plugins.solvers.circulant_stiffness import Stiffness
+from pellicle_plugins.solvers.circulant_stiffness import CirculantStiffness
 from pellicle_plugins.solvers.contact_cg import InnerSolution
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 from pellicle_plugins.solvers.relaxation import relaxed
@@ -37,7 +37,7 @@ def settle(
 
 def stiffness_matrix(problem: Problem) -> Array:
     """Return K between the cells [Pa/m]."""
-    stiffness = Stiffness(problem.operator, problem.grid.shape)
+    stiffness = CirculantStiffness(problem.operator, problem.grid.shape)
     units = np.eye(stiffness.shape[0] * stiffness.shape[1], dtype=np.float32)
     columns = [stiffness(unit).ravel() for unit in units.reshape(-1, *stiffness.shape)]
     return np.array(columns, dtype=np.float64) * stiffness.greatest
@@ -62,7 +62,7 @@ def test_stiffness_undoes_the_operator() -> None:
         problem = plate(*spacing)
         pressure = random.standard_normal(SHAPE)
         pressure -= pressure.mean()
-        stiffness = Stiffness(problem.operator, SHAPE)
+        stiffness = CirculantStiffness(problem.operator, SHAPE)
         again = stiffness(problem.operator(pressure).astype(np.float32)) * stiffness.greatest
         np.testing.assert_allclose(again, pressure, atol=2e-4)
 

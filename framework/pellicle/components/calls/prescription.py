@@ -33,7 +33,7 @@ def check_value(prescription: Prescription, setting: Setting, value: float, fiel
 
 
 def check_variables(prescription: Prescription) -> None:
-    """Refuse variables that would replace others of a result, or whose name is none in Python.
+    """Refuse variables that would replace others of a result, or have no valid name in Python.
 
     Raises
     ------

@@ -16,9 +16,10 @@ from pellicle.arrays import Array, Mask
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
+from .cleaning import grows
 from .columns import Calibration
-from .curve import Axis, Curve, Site, grows
-from .origin import Origin
+from .curve import Axis, Curve, Site
+from .origin import CurveOrigin
 
 SUFFIXES = (
     ".jpk-force",
@@ -32,7 +33,7 @@ SUFFIXES = (
 """Suffixes that only instrument files have; .h5, .csv and .txt may be an instrument's too."""
 INSTALL = "such files are read by afmformats: install it with pip install 'pellicle[afm]'"
 _FAR = 0.5
-"""Least motion of a segment that is no pause, over the largest motion."""
+"""Least motion of a segment that is not a pause, over the largest motion."""
 _SPRING, _TIP = "spring constant", "tip position"
 _HEIGHTS = ("height (measured)", "height (piezo)")
 
@@ -163,7 +164,7 @@ def _curve(
         rows = _rows_of(np.asarray(data["segment"]), tip, segment)
     used = {"position": f"{source} [m]", "force": "force [N]"}
     time = _time(data, rows)
-    origin = Origin(
+    origin = CurveOrigin(
         columns=used if time is None else used | {"time": "time [s]"},
         sensitivity=metadata.get("sensitivity", overrides.get("sensitivity")),
         library="afmformats",

@@ -13,8 +13,9 @@ from pellicle.errors import ConfigError, shown
 from pellicle.model.base import Model
 from pellicle.units import Quantity
 
-from .curve import Curve, grows
-from .origin import Origin
+from .cleaning import grows
+from .curve import Curve
+from .origin import CurveOrigin
 from .roles import EXAMPLE, OF_BASE, POSITIONS, SIGNALS, TIME, ColumnMap, factor, is_voltage
 
 SpringConstant = Annotated[float, Quantity("N/m", above=0, noun="a spring constant")]
@@ -119,7 +120,7 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
         stiffness=calibration.spring_constant,
         time=_time(columns, np.isfinite(position) & np.isfinite(force)),
         speed=calibration.speed,
-        origin=Origin(
+        origin=CurveOrigin(
             columns={role: f"{c.name or role} [{c.unit}]" for role, c in columns.items()},
             sensitivity=calibration.sensitivity,
         ),

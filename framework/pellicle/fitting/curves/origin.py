@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Origin:
+class CurveOrigin:
     """Where a curve comes from; without a file it was given by its numbers."""
 
     file: str | None = None

@@ -194,7 +194,7 @@ def _is_unit(text: str) -> bool:
 
 
 def _recogniser(mapped: Mapping[str, str]) -> Callable[[tuple[Head, ...]], bool]:
-    """Return a function that tells whether heads are those of the table that is sought."""
+    """Return a function that tells whether heads are those of the table sought."""
     named = [name for name in mapped if not name.isdecimal()]
     if named:
         return lambda heads: all(any(head.is_called(name) for head in heads) for name in named)

@@ -238,7 +238,7 @@ class RelaxingModel(ABC):
         return _Loading(t, z, g, _filled(np.log(np.maximum(ratio, 1e-12))))
 
     def _unloading(self, course: Course, loading: _Loading, point: float, values: Values) -> Course:
-        """Return the response with that of the rows at which the contact shrinks."""
+        """Return the response, completed at the rows at which the contact shrinks."""
         history, times = self.history, self.history.time
         t, z, g, log_modulus = loading
         end, (back_times, back_positions) = history.loading_path[0][-1], history.unloading_path

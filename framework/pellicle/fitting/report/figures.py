@@ -27,7 +27,8 @@ from pellicle.fitting.parameters import (
 from pellicle.fitting.pooled import PooledFit
 from pellicle.fitting.population.judgement import Row
 from pellicle.fitting.result import FitResult
-from pellicle.fitting.statistics.likelihood import ChiSquared, Likelihood
+from pellicle.fitting.statistics.chi_squared import ChiSquared
+from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.profile import Estimate
 from pellicle.report.saving import save_figure as save_drawing
 from pellicle.report.style import LINES
@@ -71,18 +72,13 @@ class Panel(NamedTuple):
     """Width and height [inch]; None for `SIZE`."""
 
 
-def panels(fit: Fit | PooledFit | ManyFits) -> list[Panel]:
+def panels(fit: FitResult | ManyFits) -> list[Panel]:
     """Return the panels of a fit, of a pooled fit, or of many fits.
 
     The likelihood map needs a fitted modulus and tension; many fits need a fitted curve.
     """
-    if isinstance(fit, Fit):
-        caption = "Data, fit, and the fit without tension; below, the residuals of both."
-        drawings = [Panel(partial(_with_residuals, fit), caption)]
-        if not (fit.reduced_modulus.held or fit.tension.held):
-            caption = "The pairs of modulus and tension that describe the curve."
-            drawings.append(Panel(lambda part: likelihood_map(fit, part.add_subplot()), caption))
-        return drawings
+    if isinstance(fit, ManyFits):
+        return _panels_of_population(fit)
     if isinstance(fit, PooledFit):
         data = "Data and fit of each curve, relative to largest depth and force; below, residuals."
         profiles = (
@@ -92,26 +88,37 @@ def panels(fit: Fit | PooledFit | ManyFits) -> list[Panel]:
             Panel(partial(_with_residuals, fit), data),
             Panel(partial(_profiles, fit), profiles),
         ]
-    if not any("tension" in row for row in fit.rows):
+    assert isinstance(fit, Fit)
+    caption = "Data, fit, and the fit without tension; below, the residuals of both."
+    drawings = [Panel(partial(_with_residuals, fit), caption)]
+    if not (fit.reduced_modulus.held or fit.tension.held):
+        caption = "The pairs of modulus and tension that describe the curve."
+        drawings.append(Panel(lambda part: likelihood_map(fit, part.add_subplot()), caption))
+    return drawings
+
+
+def _panels_of_population(fits: ManyFits) -> list[Panel]:
+    """Return bars of the estimates, their distributions and the images of force maps."""
+    if not any("tension" in row for row in fits.rows):
         return []
     caption = "A bar is the interval: down to 0, or up to a triangle, where an end is open."
     drawings = []
-    if len(fit.rows) <= _BARS:
-        drawings.append(Panel(partial(_estimates, fit.rows), caption))
-    if distributions.drawable(fit.rows):
+    if len(fits.rows) <= _BARS:
+        drawings.append(Panel(partial(_estimates, fits.rows), caption))
+    if distributions.drawable(fits.rows):
         caption = (
             "Accepted curves, by group; dashed, the median; ringed, a modulus that stands out."
         )
-        draw = partial(distributions.distributions, fit.rows)
+        draw = partial(distributions.distributions, fits.rows)
         drawings.append(Panel(draw, caption, distributions.SIZE))
-    for name, images in fit.maps.items():
+    for name, images in fits.maps.items():
         title = Path(name).name
         caption = f"{title}: grey where there is no accepted fit, or an interval is open."
         drawings.append(Panel(map_figure(images, title), caption, figure_size(images)))
     return drawings
 
 
-def save_figure(fit: Fit | PooledFit, path: Path) -> Path:
+def save_figure(fit: FitResult, path: Path) -> Path:
     """Write the panels of a fit beside each other as png, pdf or svg, and return the file.
 
     Raises
@@ -134,7 +141,6 @@ def plot(fit: FitResult) -> Figure:
 
     from .pyplot_figure import PyplotFigure
 
-    assert isinstance(fit, (Fit, PooledFit)), "these are all fits that have panels"
     beside = panels(fit)
     figure = pyplot.figure(FigureClass=PyplotFigure, figsize=_size(beside), layout="constrained")
     _beside(beside, figure)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from io import BytesIO
-from typing import TYPE_CHECKING
 
 from pellicle.fitting.many import ManyFits
 from pellicle.fitting.result import FitResult
@@ -12,25 +11,21 @@ from pellicle.model.html import summary
 from pellicle.report.style import FigureStyle
 from pellicle.units import decimal
 
-from .answer import answer, answer_of_population
 from .figures import SIZE, Panel, panels
-
-if TYPE_CHECKING:
-    from pellicle.fitting.fit import Fit
-    from pellicle.fitting.pooled import PooledFit
+from .sentences import sentence_of_fit, sentences_of_population
 
 _DOTS_PER_INCH = 60
 
 
-def html_of_fit(fit: Fit | PooledFit) -> str:
-    """Return the answer, the estimates with their intervals, and the curve with its fit."""
+def html_of_fit(fit: FitResult) -> str:
+    """Return a sentence, the estimates with their intervals, and the curve with its fit."""
     rows = []
     for name, estimate in fit.estimates().items():
         factor, unit = scale(estimate)
         rows.append([words(name), decimal(estimate.value * factor, 4), interval(estimate), unit])
     count = len(fit.curve_rows())
     title = f"Fit of {count} curves" if count else "Fit of a curve"
-    sentence = f"{answer(fit)} {_state(fit)}"
+    sentence = f"{sentence_of_fit(fit)} {_state(fit)}"
     heads = "parameter", "value", "95 % interval", "unit"
     return summary(title, sentence, heads, rows, picture=_picture(panels(fit)))
 
@@ -61,7 +56,7 @@ def html_of_population(fits: ManyFits) -> str:
     heads = "parameter", "group", "accepted", "median", "lower quartile", "upper quartile"
     title = f"Fits of {len(fits.rows)} curves"
     picture = _picture(panels(fits)[-1:])
-    return summary(title, answer_of_population(fits), heads, rows, picture=picture)
+    return summary(title, sentences_of_population(fits), heads, rows, picture=picture)
 
 
 def _picture(shown: list[Panel]) -> bytes:

@@ -24,9 +24,9 @@ from pellicle.report.page import page as render
 from pellicle.report.saving import svg
 from pellicle.units import axis_unit, decimal, readable
 
-from .answer import answer, answer_of_population
 from .contact_sheet import LEGEND, PAGE, sheets
 from .figures import SIZE, panels
+from .sentences import sentence_of_fit, sentences_of_population
 
 _LISTED = 8
 """Values of an input that are listed side by side."""
@@ -95,7 +95,7 @@ def save_report(fit: Fit | PooledFit | ManyFits, path: Path, title: str) -> Path
 def _fit(fit: Fit | PooledFit) -> tuple[list[Block], list[Block]]:
     """Return results and inputs of a fit or a pooled fit."""
     results: list[Block] = [
-        Text(answer(fit), lead=True),
+        Text(sentence_of_fit(fit), lead=True),
         Notice(_sentence(fit.comparison), good=not fit.doubt),
         *_rivals(fit),
     ]
@@ -115,7 +115,7 @@ def _many(fits: ManyFits) -> tuple[list[Block], list[Block]]:
     lost = f"{len(failed)} of {len(rows)} curves could not be fitted:"
     messages = [f"{row['curve']}: {text}" for row in rows for text in row.get("messages", ())]
     models = [row["model"] for row in rows if "model" in row]
-    blocks: list[Block] = [Text(answer_of_population(fits), lead=True)]
+    blocks: list[Block] = [Text(sentences_of_population(fits), lead=True)]
     if failed:
         blocks.append(Notice(lost, good=False, details=_first(failed)))
     elif good:

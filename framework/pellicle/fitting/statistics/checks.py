@@ -16,8 +16,9 @@ from pellicle.fitting.models.solid import lengths
 from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
 from pellicle.units import decimal, readable
 
+from .chi_squared import ChiSquared, Minimum, best_minimum
 from .initial_guess import initial_guesses
-from .likelihood import ChiSquared, Likelihood, Minimum, best_minimum
+from .likelihood import Likelihood
 from .long_memory import exponent_of
 from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
 from .profile import CONFIDENCE
@@ -79,8 +80,8 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
         correlated = replace(likelihood, memory=memory)
         best = best_minimum(correlated, [minimum.parameters, *guesses])
         judgement = judged(correlated, best.parameters)
-        # A baseline that bends is not noise of the contact, of which its differences leave nothing:
-        # a measured curve with a clear contact got a modulus of 3e-14 Pa.
+        # A bent baseline is not noise, and its fractional differences would remove the contact: a
+        # measured curve with a clear contact got a modulus of 3e-14 Pa.
         if "misfit" not in {check.code for check in judgement[0].failed}:
             likelihood, minimum, (estimate, source) = correlated, best, judgement
             falls = f"power falls as f^{-2 * memory:.2g}"

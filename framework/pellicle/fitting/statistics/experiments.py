@@ -15,9 +15,11 @@ from pellicle.fitting.models.force_model import ClosedFormModel
 from pellicle.fitting.parameters import CONTACT_POINT, Coordinates
 from pellicle.units import decimal, readable
 
-from .likelihood import ChiSquared, Likelihood
+from .chi_squared import ChiSquared
+from .likelihood import Likelihood
 from .pooled_likelihood import Pool
-from .rivals import MARGIN, Rival
+from .rival import Rival
+from .rivals import MARGIN
 
 _ROWS = 150
 """Rows of a pass in a forecast."""
@@ -152,7 +154,7 @@ def _duration(value: float, has_time: bool) -> str:
 def _separation(
     likelihood: Likelihood, measurement: Measurement, truth: Explanation, guess: Explanation
 ) -> float:
-    """Return the least χ² of a model on what another predicts, now and by a measurement.
+    """Return the least χ² of a model on curves that another predicts: this one and a planned one.
 
     A measurement that cannot be predicted, as by a cantilever that jumps, is worth nothing.
     """

@@ -77,7 +77,7 @@ class Noise(NamedTuple):
     """Degrees of freedom."""
 
     def excess(self, other: Noise) -> float:
-        """Return the variance over that of ``other``."""
+        """Return the ratio of the variance to that of ``other``."""
         return (self.deviation / other.deviation) ** 2
 
     def exceeds(self, other: Noise) -> bool:

@@ -13,8 +13,9 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import Coordinates, Parameter
 
+from .chi_squared import ChiSquared, Minimum, Range, least
 from .initial_guess import GUESSES
-from .likelihood import ChiSquared, Likelihood, Minimum, Range, least
+from .likelihood import Likelihood
 
 _Value = TypeVar("_Value")
 

@@ -14,7 +14,7 @@ from pellicle.errors import ConvergenceError
 from pellicle.fitting.parameters import TENSION, Coordinates, Parameter
 from pellicle.units import decimal
 
-from .likelihood import REACH, ChiSquared, Minimum, least
+from .chi_squared import ChiSquared, Minimum, least
 
 Ends = tuple[float | None, float | None]
 """Ends of a confidence interval; None for one that the curve does not determine."""
@@ -22,6 +22,8 @@ OPEN: Ends = (None, None)
 """An interval that the curve does not determine."""
 
 CONFIDENCE = 0.95
+_REACH = np.log(100.0)
+"""Change of a logarithm, E* or τ₀, up to which an end of an interval is sought."""
 _ACCURACY = 2e-3
 """Accuracy of an end, relative to its distance from the best value."""
 _FIRST = 1e-2
@@ -241,7 +243,7 @@ def curvature_interval(
 ) -> Ends:
     """Return the ends that the curvature of χ² gives; None for one beyond the limits."""
     value, width = best.parameters[parameter], float(np.sqrt(threshold)) * bounds[parameter]
-    if not np.isfinite(width) or (parameter.logarithmic and width > REACH):
+    if not np.isfinite(width) or (parameter.logarithmic and width > _REACH):
         return None, None
     return value - width if value - width > parameter.minimum else None, value + width
 
@@ -287,9 +289,9 @@ def confidence_interval(
     """
     value, (scale, low, high) = best.parameters[parameter], likelihood.ranges[parameter]
     if parameter.logarithmic and not parameter.is_length:
-        low, high = value - REACH, value + REACH
+        low, high = value - _REACH, value + _REACH
     else:
-        farthest = float(np.exp(REACH)) * max(abs(value), scale)
+        farthest = float(np.exp(_REACH)) * max(abs(value), scale)
         low, high = (
             limit if np.isfinite(limit) else sign * farthest
             for limit, sign in ((low, -1), (high, 1))

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from pellicle.results.variables import VARIABLES
-from pellicle_plugins.outputs.answer import answer_of_study
+from pellicle_plugins.outputs.sentences import sentence_of_study
 
 RADII = {"contact_radius": [[1e-6, 6.33e-6], [1e-6, 4.62e-6]], "patches": [[1, 1], [1, 1]]}
 
@@ -48,16 +48,16 @@ def test_a_study_answers_at_what_its_runs_share(
     values: dict[str, list[list[float]]], sentence: str
 ) -> None:
     """Numbers are those of the last step, in the order of the runs."""
-    assert answer_of_study(table(**values), 2) == f"2 runs with tension 0, 8 mN/m; {sentence}"
+    assert sentence_of_study(table(**values), 2) == f"2 runs with tension 0, 8 mN/m; {sentence}"
 
 
 def test_many_runs_are_a_range() -> None:
     """More than five numbers are not listed."""
     values = {"depth": [[1e-6, 3e-6]] * 2, "force": [[1e-9, 47.6e-9], [1e-9, 118e-9]]}
-    assert "at depth 3 µm: force from 47.6 to 118 nN" in answer_of_study(table(**values), 6)
+    assert "at depth 3 µm: force from 47.6 to 118 nN" in sentence_of_study(table(**values), 6)
 
 
-def test_without_numbers_there_is_no_answer() -> None:
+def test_without_numbers_there_is_no_sentence() -> None:
     """Runs that all failed are not described."""
     nothing = [[1e-9, np.nan]] * 2
-    assert answer_of_study(table(depth=nothing, force=nothing), 2) == ""
+    assert sentence_of_study(table(depth=nothing, force=nothing), 2) == ""

@@ -1,4 +1,4 @@
-"""The answer of a fit in one sentence, with units that read well."""
+"""The results of fits in sentences, with units that read well."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _GROUPS = 4
 _NAMES = "youngs_modulus", "reduced_modulus", "tension"
 
 
-def answer(fit: FitResult, *, si: bool = False) -> str:
+def sentence_of_fit(fit: FitResult, *, si: bool = False) -> str:
     """Return the estimates of the chosen model with their intervals as a sentence.
 
     It has the modulus, tension and contact point of an elastic solid under tension, and the
@@ -40,7 +40,7 @@ def answer(fit: FitResult, *, si: bool = False) -> str:
     return f"{'; '.join(filter(None, [text, fit.range_of_models(si=si)]))}."
 
 
-def answer_of_population(fits: ManyFits) -> str:
+def sentences_of_population(fits: ManyFits) -> str:
     """Return how many curves were fitted and accepted, with the medians of each group.
 
     Of curves in groups the median over all means little, so it is left to the table. A median is

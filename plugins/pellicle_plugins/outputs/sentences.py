@@ -1,4 +1,4 @@
-"""The answer of a run or a study in a sentence or two."""
+"""The result of a run or a study in a sentence or two."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from pellicle.units import readable
 if TYPE_CHECKING:
     import xarray as xr
 
-_ANSWER_DIGITS = 3
+_DIGITS = 3
 _FEW = 5
 """Number of runs up to which the sentence of a study lists their numbers."""
 _SAME = 1e-9
 """Relative difference up to which numbers count as equal."""
 
 
-def answer_of_step(
+def sentence_of_step(
     data: xr.Dataset, index: int, boundary: str, configuration: Mapping[str, Any]
 ) -> str:
     """Return a sentence like "At depth 3 µm: force 904 nN, contact radius 4.5 µm" for a load step.
@@ -53,10 +53,10 @@ def answer_of_step(
 
 
 def _value(variable: xr.DataArray) -> str:
-    return replace(wording(variable), digits=_ANSWER_DIGITS).text(variable.item())
+    return replace(wording(variable), digits=_DIGITS).text(variable.item())
 
 
-def answer_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
+def sentences_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
     """Return the range of the force over the load steps, and the pull-off force; may be empty."""
     sentences = []
     if data.sizes["step"] > 1 and not has_interaction(data):
@@ -68,8 +68,8 @@ def answer_of_path(data: xr.Dataset, summary: Mapping[str, float]) -> str:
     return " ".join(sentences)
 
 
-def answer_of_study(table: xr.Dataset, count: int) -> str:
-    """Return what the runs of a study answer in their last step; empty if there is none.
+def sentence_of_study(table: xr.Dataset, count: int) -> str:
+    """Return the results of a study in its last step; empty if there is none.
 
     Of force, depth and contact radius, the one that all runs share there, if any, comes first.
     """
@@ -84,11 +84,11 @@ def answer_of_study(table: xr.Dataset, count: int) -> str:
     names = ["depth", "force", *["contact_radius"] * has_one_shape(table)]
     known = [name for name in names if name in end and np.isfinite(end[name].values).any()]
     shared = [name for name in known if _is_one_value(end[name].values)][:1]
-    answers = [_values(end[name], count) for name in known if name not in shared][:2]
-    if not answers:
+    results = [_values(end[name], count) for name in known if name not in shared][:2]
+    if not results:
         return ""
     at = f"at {_values(end[shared[0]], count)}" if shared else "in the last step"
-    return f"{count} runs{over}; {at}: {', '.join(answers)}."
+    return f"{count} runs{over}; {at}: {', '.join(results)}."
 
 
 def _is_one_value(values: Array) -> bool:
@@ -101,12 +101,12 @@ def _values(variable: xr.DataArray, count: int) -> str:
     values = variable.values.ravel()
     if count > _FEW or variable.ndim > 1 or not np.isfinite(values).all() or _is_one_value(values):
         return _range(variable)
-    shown = replace(wording(variable), digits=_ANSWER_DIGITS)
+    shown = replace(wording(variable), digits=_DIGITS)
     return f"{shown.words} {shown.listing(values.tolist())}"
 
 
 def _range(variable: xr.DataArray) -> str:
-    shown = replace(wording(variable), digits=_ANSWER_DIGITS)
+    shown = replace(wording(variable), digits=_DIGITS)
     finite = variable.values[np.isfinite(variable.values)]
     if not finite.size:
         return f"no {shown.words}"
@@ -117,4 +117,4 @@ def _range(variable: xr.DataArray) -> str:
 
 
 def _number(value: float, name: str) -> str:
-    return readable(value, VARIABLES[name].unit, _ANSWER_DIGITS)
+    return readable(value, VARIABLES[name].unit, _DIGITS)

@@ -1,0 +1,285 @@
+"""Measured curves from folders, files, patterns and tables of files."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, NamedTuple, cast
+
+from numpy.typing import ArrayLike
+
+from pellicle.arrays import Array
+from pellicle.errors import ConfigError, PellicleError
+from pellicle.units import Quantity
+
+from .columns import Calibration
+from .curve import Curve, Segment, Site
+from .readers import SUFFIXES, TEXT, read
+from .text_table import FILE, read_cells
+
+_PATTERN = re.compile(r"[*?[]")
+
+Curves = str | Path | Sequence[str | Path] | Mapping[str, tuple[ArrayLike, ArrayLike]]
+"""A folder, a file, a table that lists files, several of these; or position and force by name."""
+
+
+class Source(NamedTuple):
+    """One curve with its name, or the error of reading it."""
+
+    name: str
+    """File, and label in the file."""
+    curve: Curve | PellicleError
+    fields: Mapping[str, Any]
+    """Fields of the indenter that this curve alone has."""
+    file: str = ""
+    """The file, or the name of a curve that was given by its numbers."""
+    group: str = ""
+    """Text of the column of a table of files by which curves are grouped."""
+    map: str = ""
+    """File of the force map that the curve belongs to: its own, or the table of files."""
+
+    def reason(self, error: Exception) -> str:
+        """Return the message of an error without the name of the source in front."""
+        return str(error).removeprefix(f"{self.name}: ")
+
+    def named(self, error: ConfigError, hint: str = "") -> ConfigError:
+        """Return an error with the name of the source in front and a hint at the end."""
+        return ConfigError(f"{self.name}: {self.reason(error)}{hint}")
+
+
+@dataclass(frozen=True)
+class CurveFile:
+    """A file of curves, or one curve given by its numbers; it is read only when it is opened."""
+
+    path: Any
+    """The file, or the name of the curve."""
+    numbers: tuple[ArrayLike, ArrayLike] | None
+    """Position [m] and force [N] of a curve that is given by its numbers."""
+    fields: Mapping[str, Any]
+    """Calibration, fields of the indenter, x and y that belong to this file alone."""
+    group: str
+    """Text of the column of a table of files by which curves are grouped."""
+    table: Path | None
+    """The table of files that lists it."""
+    segment: str
+    calibration: Calibration
+
+    def open(self) -> Sources:
+        """Return its curves; those of a force map are read only as they are iterated over."""
+        own, fields = Calibration.model_fields, dict(self.fields)
+        settings = {name: getattr(self.calibration, name) for name in own}
+        settings |= {name: fields.pop(name) for name in own if name in fields}
+        contents: Mapping[str, Curve | PellicleError]
+        try:
+            site = _site(fields)
+            calibration = Calibration(**settings)
+            if self.numbers is not None:
+                # `clean` checks the arrays.
+                position, force = (cast("Array", values) for values in self.numbers)
+                stiffness, speed = calibration.spring_constant, calibration.speed
+                contents = {"": Curve(position, force, stiffness=stiffness, speed=speed)}
+            else:
+                contents = read(self.path, calibration, self.segment)
+        except PellicleError as error:
+            contents, site = {"": error}, None
+        return Sources(self, fields, contents, site)
+
+
+@dataclass(frozen=True)
+class Sources:
+    """The curves of one file."""
+
+    file: CurveFile
+    fields: Mapping[str, Any]
+    contents: Mapping[str, Curve | PellicleError]
+    site: Site | None
+    """Where on the sample the file was recorded, if a table of files says so."""
+
+    @property
+    def is_single(self) -> bool:
+        """Whether the file holds one curve without a label."""
+        return list(self.contents) == [""]
+
+    def __len__(self) -> int:
+        return len(self.contents)
+
+    def __iter__(self) -> Iterator[Source]:
+        path = self.file.path
+        for label, curve in self.contents.items():
+            name = f"{path}:{label}" if label else str(path)
+            whole = str(path)
+            if self.site is not None and isinstance(curve, Curve):
+                curve, whole = replace(curve, site=self.site), str(self.file.table or path)
+            yield Source(name, curve, self.fields, str(path), self.file.group, whole)
+
+
+class SourceStream:
+    """The curves of many files, which are opened one after the other.
+
+    ``operator.length_hint`` counts a file that has not been opened yet as one curve.
+    """
+
+    def __init__(self, files: Sequence[CurveFile]) -> None:
+        self._files = files
+        self._count = len(files)
+
+    def __length_hint__(self) -> int:
+        return self._count
+
+    def __iter__(self) -> Iterator[Source]:
+        self._count = len(self._files)
+        for file in self._files:
+            sources = file.open()
+            self._count += len(sources) - 1
+            yield from sources
+
+
+def gather(
+    curves: Curves,
+    segment: str,
+    calibration: Calibration,
+    per_file: Mapping[str, Sequence[Any]],
+    label: str = "",
+    is_field: bool = False,
+) -> list[CurveFile]:
+    """Return all files, in order.
+
+    Each list in ``per_file`` has one value for each file (or for each curve that is given by its
+    numbers); spring_constant and sensitivity among them, and in a table that lists files, replace
+    those of the calibration.  In such a table, the columns x and y are the place on the sample, and
+    the column ``label`` holds the group of each curve, and may be a field of the indenter as well.
+
+    Raises
+    ------
+    ConfigError
+        There is no curve, or a list of values does not have one for each file.
+    StorageError
+        A folder or a list of files cannot be read.
+    """
+    arrays = curves if isinstance(curves, Mapping) else {}
+    if isinstance(curves, Mapping):
+        files: list[tuple[Any, dict[str, str], Path | None]] = [(n, {}, None) for n in curves]
+    else:
+        paths = [curves] if isinstance(curves, (str, Path)) else curves
+        files = [file for text in paths for path in expanded(text) for file in _files(path)]
+    if not files:
+        raise ConfigError("holds no curve; give files, or a folder of them", "curves")
+    for name, values in per_file.items():
+        if len(values) != len(files):
+            raise ConfigError(
+                f"{len(values)} values for {len(files)} files; give one, or one for each file in "
+                "order",
+                name,
+            )
+    gathered = []
+    for number, (file, listed, table) in enumerate(files):
+        group = listed.get(label.lower(), "")
+        if not is_field:
+            listed.pop(label.lower(), None)
+        fields = {name: values[number] for name, values in per_file.items()} | listed
+        numbers = arrays.get(file)
+        gathered.append(CurveFile(file, numbers, fields, group, table, segment, calibration))
+    return gathered
+
+
+def _site(fields: dict[str, Any]) -> Site | None:
+    """Return where a curve was measured, and remove x and y from the fields of its file."""
+    if not {"x", "y"} <= fields.keys():
+        return None
+    try:
+        x, y = (Quantity("m")(fields.pop(name)) for name in ("x", "y"))
+    except ValueError as error:
+        raise ConfigError(f"x and y: {error}") from None
+    return Site(x, y)
+
+
+def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
+    """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is."""
+    path = Path(folder, pattern)
+    if path.exists() or not _PATTERN.search(str(pattern)):
+        return [path]
+    anchor, files = Path(pattern).anchor, []
+    # Before Python 3.13, a pattern such as "**.csv" is a ValueError.
+    with suppress(ValueError):
+        files = sorted(Path(anchor or folder).glob(str(Path(pattern).relative_to(anchor))))
+    if not files:
+        raise ConfigError(f"{pattern}: matches no file; give files, or a folder of them", "curves")
+    return files
+
+
+def _files(path: Path) -> list[tuple[Path, dict[str, str], Path | None]]:
+    """Return the files that a path stands for, each with its fields in a list of files, and that.
+
+    A list of files is a table with a header such as ``file,radius [um]``; its values get their
+    units, and empty cells are left out.
+    """
+    if path.is_dir():
+        files = sorted(
+            file
+            for file in path.iterdir()
+            if file.suffix.lower() in SUFFIXES and not file.name.startswith(".")
+        )
+        if not files:
+            raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(SUFFIXES)})")
+        return [(file, {}, None) for file in files]
+    cells = read_cells(path) if path.suffix.lower() in TEXT and path.is_file() else None
+    if cells is None or FILE not in cells.names:
+        return [(path, {}, None)]
+    listed: list[tuple[Path, dict[str, str], Path | None]] = []
+    for row in cells.rows:
+        fields = {
+            head.name.lower(): f"{cell.strip()} {head.unit}".strip()
+            for head, cell in zip(cells.heads, row, strict=False)
+            if cell.strip()
+        }
+        if FILE not in fields:
+            raise ConfigError(f"{path}: has a row without a file; name one in each row")
+        listed.append((path.parent / fields.pop(FILE), fields, path))
+    return listed
+
+
+def read_curves(
+    path: str | Path, *, segment: Segment = "both", **calibration: Any
+) -> dict[str, Curve]:
+    """Return the curves of a file, a folder, a pattern or a table of files by their names.
+
+    Position, force and time are in SI; a curve draws itself with `Curve.plot`.
+
+    Parameters
+    ----------
+    path
+        As the curves of `fit_many`.
+    segment
+        Segment of the files of instruments that label segments; both are all rows.
+    **calibration
+        Options of `fit` that say how files are read: ``spring_constant``, ``sensitivity``,
+        ``speed``, ``columns``.
+
+    Returns
+    -------
+    dict[str, Curve]
+        In order; a curve that cannot be read is left out with a warning.
+
+    Raises
+    ------
+    ConfigError
+        No curve can be read, or an argument is not allowed.
+    StorageError
+        A folder or a list of files cannot be read.
+    """
+    curves: dict[str, Curve] = {}
+    errors: list[PellicleError] = []
+    for source in SourceStream(gather(path, segment, Calibration(**calibration), {})):
+        if isinstance(source.curve, Curve):
+            curves[source.name] = source.curve
+        else:
+            errors.append(source.named(ConfigError(source.reason(source.curve))))
+    if not curves:
+        raise ConfigError("\n".join(map(str, errors)))
+    for error in errors:
+        warnings.warn(str(error), stacklevel=2)
+    return curves
