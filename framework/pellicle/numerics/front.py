@@ -32,8 +32,11 @@ class Traction(NamedTuple):
 
 
 def same_patches(one: Mask, other: Mask, boundary: Boundary) -> bool:
-    """Return whether each patch of one mask meets one patch of the other, and conversely."""
-    labels = [labelled(mask, boundary, 4) for mask in (one, other)]
+    """Return whether each patch of one mask meets one patch of the other, and conversely.
+
+    Cells that meet in a corner belong to one patch.
+    """
+    labels = [labelled(mask, boundary, 8) for mask in (one, other)]
     both = one & other
     pairs = np.unique(np.stack([label[both] for label, _ in labels]), axis=1)
     return all(
