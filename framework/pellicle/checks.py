@@ -81,14 +81,16 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
 
 def read_only_dataset(dataset: xr.Dataset) -> xr.Dataset:
     """Return a dataset that shares the arrays of ``dataset`` and cannot be used to change them."""
-    copy = dataset.copy()
-    for name, variable in dataset.variables.items():
-        # xarray replaces a view of texts by a writable array; coordinates share one with an index.
-        if name in dataset.coords or variable.dtype.kind == "O":
-            copy[name] = variable.copy(deep=True)
-        else:
-            copy[name] = variable.copy(data=read_only(np.asarray(variable.data)))
-    return copy
+    # xarray replaces a view of texts by a writable array; coordinates share one with an index.
+    data = {
+        name: variable.copy(deep=True).data
+        if variable.dtype.kind == "O"
+        else read_only(np.asarray(variable.data))
+        for name, variable in dataset.data_vars.items()
+    }
+    coordinates = {name: dataset.variables[name].copy(deep=True) for name in dataset.coords}
+    # One by one, each variable would be aligned with all others: nine times as long for 34.
+    return dataset.copy(data=data).assign_coords(coordinates)
 
 
 def real_array(component: object, call: str, value: object, shape: tuple[int, ...]) -> Array:

@@ -25,6 +25,7 @@ from pellicle.cli import app
 from pellicle.components import AreaCorrection, Executor, Indenter, Kernel, Output, Solver
 from pellicle.model import ranges as axes
 from tests.docs.blocks import DOCS, PAGES, ROOT, Block, blocks
+from tests.shared_fits import share_fits
 
 LANGUAGES = {"python", "pycon", "toml", "console", "sh"}
 DIRECTIVES = {"{eval-rst}", "{include}", "{toctree}"}
@@ -274,6 +275,7 @@ def reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Reader]:
         shutil.copy(table, tmp_path)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("PELLICLE_DISABLE_PLUGINS", raising=False)
+    share_fits(monkeypatch)
     reader = Reader(tmp_path, monkeypatch)
     yield reader
     monkeypatch.undo()

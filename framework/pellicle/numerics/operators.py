@@ -8,90 +8,35 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable
-from typing import Any, Protocol, Self, TypeVar, runtime_checkable
+from typing import Any, Self, TypeVar
 
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array
-from pellicle.checks import component_name, errors_attributed_to, read_only, real_array, real_number
-from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.checks import component_name, read_only
+from pellicle.errors import ConfigError, shown
 from pellicle.grid import Grid
 
-from .closed_form import disagreement
 from .convolution import Workspace, convolve
 from .grid_checks import warn_of_cells
 from .hankel import Tabulated
 from .influence import cell_coefficients
+from .kernel_calls import (
+    HasClosedForm,
+    HasCompliance,
+    checked_call,
+    mean_compliance,
+    positive_compliance,
+    refuse_contradiction,
+    refuse_growth,
+)
 
 Float = TypeVar("Float", np.float32, np.float64)
 
 # Least displacement of a cell under its own pressure, over that of the finest wave.
 _LEAST_OWN = 0.25
-# Factors on the grid's largest q at which G(q) is checked for growth.
-_SHORTER = np.geomspace(1.0, 1e12, 13)
-_GROWTH = 1e-6  # relative; less is rounding
-
-
-class HasCompliance(Protocol):
-    """The part of a kernel that every operator needs."""
-
-    def compliance(self, q: Array) -> Array:
-        """Return G(q) [m/Pa] for wavenumbers q > 0 [rad/m]."""
-        ...
-
-
-@runtime_checkable
-class HasClosedForm(HasCompliance, Protocol):
-    """A kernel with formulas in real space; other kernels are tabulated on a free boundary."""
-
-    def greens_function(self, r: Array) -> Array:
-        """Return the displacement at distances r > 0 [m] from a unit force [m/N]."""
-        ...
-
-    def radial_primitive(self, r: Array) -> Array:
-        """Return ∫₀^r G(r') r' dr' [m³/N] for r ≥ 0 [m]."""
-        ...
-
-
-@runtime_checkable
-class HasMeanCompliance(HasCompliance, Protocol):
-    """A kernel that states the displacement of its surface under a uniform pressure."""
-
-    def mean_compliance(self) -> float:
-        """Return G(0) [m/Pa], the displacement per uniform pressure on a periodic domain.
-
-        If it is infinite, the mean displacement is set to 0 and depths are measured from the mean
-        plane.
-        """
-        ...
-
-
-def mean_compliance(kernel: HasCompliance) -> float:
-    """Return G(0) [m/Pa] of a kernel; ∞ if it does not state G(0), as for a half-space."""
-    if not isinstance(kernel, HasMeanCompliance):
-        return math.inf
-    with errors_attributed_to(kernel):
-        value = kernel.mean_compliance()
-    return real_number(kernel, "mean_compliance()", value)
-
-
-def checked_call(kernel: HasCompliance, name: str) -> Callable[[Array], Array]:
-    """Return a method of a kernel, wrapped to protect its argument and check its values.
-
-    The function raises PluginError if the kernel returns anything but an array of real
-    numbers of the shape of its argument.
-    """
-    method = getattr(kernel, name)
-    text = f"{name}({'q' if name == 'compliance' else 'r'})"
-
-    def call(argument: Array) -> Array:
-        with errors_attributed_to(kernel):
-            values = method(read_only(argument))
-        return real_array(kernel, text, values, argument.shape)
-
-    return call
 
 
 class Operator:
@@ -261,14 +206,14 @@ class PeriodicOperator(Operator):
         # The first wavenumber is 0.
         symbol.ravel()[0] = 0.0 if mean == math.inf else mean
         compliance = checked_call(kernel, "compliance")
-        symbol.ravel()[1:] = _positive(kernel, q.ravel()[1:], compliance(q.ravel()[1:]))
+        symbol.ravel()[1:] = positive_compliance(kernel, q.ravel()[1:], compliance(q.ravel()[1:]))
         if not mean >= 0:
             raise ConfigError(
                 f"mean_compliance() of {component_name(kernel)} is {mean:g} m/Pa; it has to be 0, "
                 "positive or infinite; check the parameters, or the formula if the kernel is yours",
                 "kernel",
             )
-        _refuse_growth(kernel, compliance, float(q.max()))
+        refuse_growth(kernel, compliance, float(q.max()))
         self._symbol = _Symbol(symbol)
         self.padded = grid.shape
 
@@ -332,7 +277,7 @@ def make_operator(kernel: HasCompliance, grid: Grid) -> Operator:
     is_table = isinstance(kernel, Tabulated)
     if grid.boundary == "free" and isinstance(kernel, HasClosedForm) and not is_table:
         with np.errstate(all="ignore"):
-            _refuse_contradiction(kernel, grid)
+            refuse_contradiction(kernel, grid)
     return _operator(kernel, grid)
 
 
@@ -352,29 +297,6 @@ def _in_real_space(kernel: HasCompliance, grid: Grid) -> HasClosedForm:
     if isinstance(kernel, HasClosedForm):
         return kernel
     return Tabulated(checked_call(kernel, "compliance"), *radii)
-
-
-def _refuse_contradiction(kernel: HasClosedForm, grid: Grid) -> None:
-    """Refuse a kernel whose closed form is not the transform of its compliance."""
-    compliance = checked_call(kernel, "compliance")
-
-    def positive(q: Array) -> Array:
-        with np.errstate(all="ignore"):
-            values = compliance(q)
-        # Formulas may cancel for waves far longer than the domain, which hardly contribute.
-        near = q > 1e-3 / math.hypot(*grid.size)
-        _positive(kernel, q[near], values[near])
-        return np.where(np.isfinite(values), values, 0.0)
-
-    message = disagreement(
-        positive,
-        checked_call(kernel, "greens_function"),
-        checked_call(kernel, "radial_primitive"),
-        min(grid.spacing),
-        math.hypot(*grid.size),
-    )
-    if message:
-        raise PluginError(f"{component_name(kernel)}: {message}")
 
 
 def displacement(pressure: Array, *, kernel: HasCompliance, grid: Grid) -> Array:
@@ -422,44 +344,3 @@ def _wrap(cells: Array, padded: tuple[int, ...]) -> Array:
     wrapped[px - nx + 1 :, :ny] = cells[:0:-1]
     wrapped[:, py - ny + 1 :] = wrapped[:, ny - 1 : 0 : -1]
     return wrapped
-
-
-def _positive(kernel: HasCompliance, q: Array, values: Array) -> Array:
-    """Return G(q) [m/Pa]; refuse the kernel unless all values are positive and finite."""
-    invalid = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
-    if invalid.size:
-        raise ConfigError(
-            f"compliance(q) of {component_name(kernel)} is {values[invalid[0]]:.3g} m/Pa at q = "
-            f"{q[invalid[0]]:.3g} rad/m; it has to be positive and finite, and may be beyond the "
-            "numbers that a computer has; check the parameters, or the formula if the kernel is "
-            "yours",
-            "kernel",
-        )
-    return values
-
-
-def _refuse_growth(
-    kernel: HasCompliance, compliance: Callable[[Array], Array], shortest: float
-) -> None:
-    """Refuse a kernel whose G(q) grows with q at the grid's shortest waves and beyond.
-
-    For short waves a solid is a half-space, with G(q) ∝ 1/q; for a bed of springs G(q) is constant.
-    G(q) of an incompressible layer grows with q down to waves about as long as the layer is thick.
-    These may be shorter than the grid's waves, so still shorter waves are checked.
-    """
-    if not shortest > 0:
-        return
-    with np.errstate(all="ignore"):
-        half, last = compliance(shortest * np.array([0.5, 1.0]))
-        if not last > half * (1 + _GROWTH):
-            return
-        q: Array = shortest * _SHORTER
-        values = compliance(q)
-    # A formula may overflow far beyond the grid.
-    known = int(np.argmin(np.append(np.isfinite(values), False)))
-    if known < 2 or values[known - 1] > values[known - 2] * (1 + _GROWTH):
-        raise PluginError(
-            f"{component_name(kernel)}: compliance(q) grows with q, from {half:.3g} m/Pa at "
-            f"{shortest / 2:.3g} rad/m to {values[known - 1]:.3g} m/Pa at {q[known - 1]:.3g} "
-            "rad/m; for short waves it has to fall, or to tend to a constant"
-        )

@@ -17,7 +17,7 @@ from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel, Sett
 from pellicle.components.calls import branches_of
 from pellicle.config.run import Run
 from pellicle.grid import Grid
-from pellicle.numerics.operators import HasCompliance, mean_compliance
+from pellicle.numerics.kernel_calls import HasCompliance, mean_compliance
 from pellicle.numerics.outside import PlaneOperator
 from pellicle.numerics.relaxation import (
     Memory,

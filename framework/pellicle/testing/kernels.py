@@ -11,7 +11,8 @@ from pellicle.arrays import Array
 from pellicle.components import HasRelaxation, Kernel
 from pellicle.components.calls import branches_of
 from pellicle.grid import Grid
-from pellicle.numerics.operators import HasClosedForm, displacement, mean_compliance
+from pellicle.numerics.kernel_calls import HasClosedForm, mean_compliance
+from pellicle.numerics.operators import displacement
 
 from .component import check
 from .rules import Rule, require, require_close

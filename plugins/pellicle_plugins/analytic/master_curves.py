@@ -55,15 +55,19 @@ def _one_variable(name: str) -> Interpolant:
 
 @cache
 def _sphere_coefficients() -> tuple[float, Any]:
-    """Return the last t; Chebyshev coefficients of values, slopes in δ/R and d/dt of values."""
+    """Return the last t; Chebyshev coefficients of values, slopes in δ/R and d/dt of values.
+
+    Each has as many, those of the slopes a last one of 0.
+    """
     from scipy.interpolate import PPoly
 
     nodes = _table()["sphere"]
     t = np.log1p(np.asarray(nodes["x"]) / SCALE)
     values = np.asarray(nodes["coefficients"])
-    slopes = 2 * np.asarray(chebyshev.chebder(values, axis=1))
+    slopes = np.zeros_like(values)
+    slopes[:, :-1] = 2 * np.asarray(chebyshev.chebder(values, axis=1))
     both = with_slopes(t, np.concatenate([values, slopes], axis=1))
-    used = 2 * values.shape[1] + slopes.shape[1]
+    used = 3 * values.shape[1]
     return float(t[-1]), PPoly(both.c[..., :used].copy(), both.x)
 
 
@@ -140,14 +144,10 @@ def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
     at = np.log1p(x / SCALE)
     inside = np.minimum(at, last)
     ratio = np.minimum(d / radius, 1.0)
-    coefficients = spline(inside)
-    count = (coefficients.shape[1] + 1) // 3
-    shapes, by_t = coefficients[:, :count], coefficients[:, -count:]
-    slopes = coefficients[:, count:-count]
-    polynomials = chebyshev.chebvander(2 * ratio - 1, count - 1)
-    shape = np.einsum("ij,ij->i", shapes, polynomials)
-    by_ratio = np.einsum("ij,ij->i", slopes, polynomials[:, :-1])
-    by_x = np.where(at < last, np.einsum("ij,ij->i", by_t, polynomials), 0.0) / (x + SCALE)
+    coefficients = spline(inside).reshape(inside.size, 3, -1)
+    polynomials = chebyshev.chebvander(2 * ratio - 1, coefficients.shape[-1] - 1)
+    shape, by_ratio, by_t = np.einsum("ikj,ij->ki", coefficients, polynomials)
+    by_x = np.where(at < last, by_t, 0.0) / (x + SCALE)
     factor = np.exp(ratio * shape)
     force = flat.force * factor
     grows = np.where(d < radius, (shape + ratio * by_ratio) / radius, 0.0)

@@ -29,7 +29,8 @@ def stretched_spline(x: ArrayLike, values: ArrayLike, scale: float) -> Interpola
     def interpolant(x: Array) -> tuple[Array, Array]:
         at = np.log1p(x / scale)
         inside = np.minimum(at, t[-1])
-        value, rate = np.moveaxis(spline(inside), 1, 0)
+        both = spline(inside)
+        value, rate = both[:, 0], both[:, 1]
         column = (slice(None), *(None,) * (rate.ndim - 1))
         return value + rate * (at - inside)[column], rate / (x + scale)[column]
 

@@ -12,7 +12,7 @@ from pellicle import hookimpl
 from pellicle.arrays import Array
 from pellicle.components import Branch, HasRelaxation, HasTimeSpan, Kernel, MayBeBondedLayer
 from pellicle.config.component_field import FromRegistry
-from pellicle.numerics.operators import mean_compliance
+from pellicle.numerics.kernel_calls import mean_compliance
 
 from .skin import Skin
 from .stiffened import stiffened

@@ -13,7 +13,7 @@ from pellicle.arrays import Array
 from pellicle.components import Branch, HasRelaxation, Kernel
 from pellicle.config.component_field import FromRegistry
 from pellicle.model import Model
-from pellicle.numerics.operators import mean_compliance
+from pellicle.numerics.kernel_calls import mean_compliance
 from pellicle.units import Quantity, Time
 
 from .power_law import PronySeries, power_law_series

@@ -484,7 +484,8 @@ def _with_shifted_fronts(state: _Round, traction: Array, missed: Array) -> tuple
     assert law
     strength = law.strength()
     border = perimeter(contact, grid)
-    if not border:
+    # On springs a front has no stiffness, and each cell its own minima: a shift would leave them.
+    if not border or state.on_contact.preconditioner.is_bed:
         return np.clip(traction, -strength, 0.0), contact
     dx, dy = edges(grid)
     exerted = state.exerted

@@ -29,6 +29,10 @@ _RETAINED: Final = 0.9
 _HALVINGS: Final = 6
 _COARSEST: Final = 32
 
+# Order of the stiffness at the size of a cell below which the surface is a bed of springs: that of
+# a bonded layer is 0.01, 0.25 and 0.8 where its thickness is 0.4, 0.8 and 1.6 cells.
+_BED: Final = 0.5
+
 
 class Preconditioner:
     """K, and all other parts of Eᵀ K E that do not depend on the contact.
@@ -52,6 +56,8 @@ class Preconditioner:
         orders = _stiffness_orders(operator, levels + 1)
         self.bends = bends(orders[0])
         """Whether bending dominates the stiffness at the size of a cell."""
+        self.is_bed = orders[0] < _BED
+        """Whether cells yield on their own, as on springs or a layer thinner than them."""
         # A plate bends all the way from one contact to the next. On other surfaces, and near the
         # edge of a free domain, an extension by 0 far from all contact is better.
         all_levels = self.bends and grid.boundary == "periodic"

@@ -10,6 +10,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from pellicle.cli import app
+from tests.shared_fits import share_fits
 
 
 @pytest.fixture
@@ -40,3 +41,9 @@ def skip_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
 def no_rivals(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let fits of a test skip rivals."""
     skip_rivals(monkeypatch)
+
+
+@pytest.fixture
+def shared_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let fits of a test have the result of an earlier one of an equal problem."""
+    share_fits(monkeypatch)

@@ -148,19 +148,20 @@ def _checked_curve(
     indenter: object, call: str, kind: type[_Curve], value: object, depth: Array, length: float
 ) -> _Curve:
     """Return a force curve of finite arrays of the shape of ``depth``, or raise PluginError."""
-    name = component_name(indenter)
     if not isinstance(value, kind):
         raise PluginError(
-            f"{name}: {call} returned {shown(value)}; it has to return a pellicle.{kind.__name__}"
+            f"{component_name(indenter)}: {call} returned {shown(value)}; it has to return a "
+            f"pellicle.{kind.__name__}"
         )
     arrays = {
         part: real_array(indenter, f"{call}.{part}", values, depth.shape)
         for part, values in value._asdict().items()
     }
     for part, values in arrays.items():
-        if not np.isfinite(values[np.isfinite(depth)]).all():
+        finite = np.isfinite(values)
+        if not finite.all() and not finite[np.isfinite(depth)].all():
             raise PluginError(
-                f"{name}: {call}.{part} has values that are NaN or infinite, "
+                f"{component_name(indenter)}: {call}.{part} has values that are NaN or infinite, "
                 f"for length = {length:.3g} m; it has to be finite"
             )
     return kind(**arrays)

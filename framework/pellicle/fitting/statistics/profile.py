@@ -310,12 +310,18 @@ def _end(
     span = limit - value
     if not span:
         return None
-    # Searches that start further away may end in another valley, so each starts from the last.
     path = {0.0: best.parameters}
 
     def excess(share: float) -> float:
         """Return √Δχ² − √threshold, which is nearly linear in the distance."""
-        start = path[max(nearer for nearer in path if nearer <= share)]
+        # Searches that start further away may end in another valley, so each starts from the last.
+        inside = max(nearer for nearer in path if nearer <= share)
+        start = path[inside]
+        outside = min((known for known in path if known > share), default=None)
+        # Rough searches end near their start, so it has to be a point of the path itself.
+        if outside is not None and not likelihood.is_sudden:
+            weight = (share - inside) / (outside - inside)
+            start = {p: x + weight * (path[outside][p] - x) for p, x in start.items()}
         at = start | {parameter: value + share * span}
         minimum = likelihood.minimise(at, (parameter,), rough=likelihood.is_sudden)
         if minimum.chi_squared < best.chi_squared - _IMPROVEMENT:
