@@ -20,8 +20,9 @@ PATH = [-0.06, 0.0, 0.02, 0.05, 0.1, 0.15, 0.1, 0.05, 0.02, 0.0, -0.06]
 def _rough() -> Array:
     x = (np.arange(POINTS) + 0.5) / POINTS - 0.5
     rough = np.random.default_rng(0).normal(size=(POINTS, POINTS))
-    heights: Array = 0.02 * rough - x[:, None] ** 2 - 1.3 * x**2
-    return heights - heights.max()
+    heights = 0.02 * rough - x[:, None] ** 2 - 1.3 * x**2
+    lowered: Array = heights - heights.max()
+    return lowered
 
 
 def _one_by_one(
