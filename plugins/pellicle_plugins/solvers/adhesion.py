@@ -42,8 +42,9 @@ _LONGEST: Final = 0.5
 _LEAST_GAIN: Final = 1 / 16
 _GREATEST_GAIN: Final = 2.0
 _FASTER: Final = 2.0
-# The same where the state is unstable.
+# The greatest factor where the state is unstable, and its growth while the contact stays the same.
 _UNSTABLE_GAIN: Final = 256.0
+_FASTER_SAME: Final = 4.0
 # Rise of the energy in a round, over the work of adhesion of the cells along the front, above which
 # the fronts have moved too far: the round is made again with half the shift.
 _RISE: Final = 1.0
@@ -62,7 +63,9 @@ _STAGNATION: Final = 60
 # extrapolated, or this share of those along the front. Beyond, the state jumps.
 _MOST_MISSED: Final = 3.0
 _FRONT_SHARE: Final = 1.0
-# Rounds after which the residual must be below this share of that of the extrapolated start.
+# Rounds after which the residual must have been below this share of that of the extrapolated start.
+# Later it may grow again, where the state between two positions of the edge on the lattice is
+# unstable: the descent from the last state meets the same one.
 _TRIED: Final = 8
 _FALLEN: Final = 0.5
 # Residual of a round that ended before every cell was on its side.
@@ -81,6 +84,8 @@ class _Extrapolation:
     """Number of cells by which the contact may differ from it."""
     residual: float = np.inf
     """Residual of the first round."""
+    least: float = np.inf
+    """The least residual so far."""
     rounds: int = 0
 
     @classmethod
@@ -99,9 +104,10 @@ class _Extrapolation:
         """
         rounds = self.rounds + 1
         far = np.count_nonzero(contact ^ self.contact) > self.most
-        slow = rounds > _TRIED and residual > _FALLEN * self.residual
+        least = min(residual, self.least)
+        slow = rounds > _TRIED and least > _FALLEN * self.residual
         first = residual if self.rounds == 0 else self.residual
-        return None if far or slow else replace(self, rounds=rounds, residual=first)
+        return None if far or slow else replace(self, rounds=rounds, residual=first, least=least)
 
 
 class _Earlier(NamedTuple):
@@ -399,7 +405,8 @@ def _gain(before: _Round, after: _Round) -> float:
     one, other = (float((step * part.missed).sum()) for part in (before, after))
     if other >= one > 0:
         # Past a stable position the energy falls ever faster, however slowly at first.
-        return min(2 * before.gain, _UNSTABLE_GAIN)
+        same = np.array_equal(before.contact, after.contact)
+        return min((_FASTER_SAME if same else _FASTER) * before.gain, _UNSTABLE_GAIN)
     best = one / (one - other) if one > 0 else _FASTER
     return float(np.clip(before.gain * np.clip(best, 0.5, _FASTER), _LEAST_GAIN, _GREATEST_GAIN))
 
