@@ -264,14 +264,3 @@ def test_a_zone_that_reaches_a_cell_across_a_corner_is_one_patch() -> None:
     cornered = one.copy()
     cornered[9, 9] = True
     assert same_patches(one, cornered, "free")
-
-
-@pytest.mark.parametrize("length", [0.1, 1.0])
-def test_first_step_costs_no_more_than_others(length: float) -> None:
-    """It starts from contact and traction of a coarser grid.
-
-    Measured: 41 applications at either length; with the wall pressure alone 54 and 72.
-    """
-    first = solved(64, length, [0.1])
-    assert first["converged"].all()
-    assert int(first["operator_applications"][0]) <= 48

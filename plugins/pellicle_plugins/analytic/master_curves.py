@@ -144,8 +144,10 @@ def sphere(radius: float, depth: Array, length: float) -> ForceCurve:
     at = np.log1p(x / SCALE)
     inside = np.minimum(at, last)
     ratio = np.minimum(d / radius, 1.0)
-    coefficients = spline(inside).reshape(inside.size, 3, -1)
-    polynomials = chebyshev.chebvander(2 * ratio - 1, coefficients.shape[-1] - 1)
+    together = spline(inside)
+    count = together.shape[1] // 3
+    coefficients = together.reshape(inside.size, 3, count)
+    polynomials = chebyshev.chebvander(2 * ratio - 1, count - 1)
     shape, by_ratio, by_t = np.einsum("ikj,ij->ki", coefficients, polynomials)
     by_x = np.where(at < last, by_t, 0.0) / (x + SCALE)
     factor = np.exp(ratio * shape)

@@ -88,8 +88,15 @@ def test_curves_rise_smoothly(type_: str) -> None:
                 assert (up - down) / (2 * step) == pytest.approx(by_length, rel=1e-4 + noise)
 
 
-def test_no_force_before_contact() -> None:
-    """At depths of 0 and less force and sensitivities are 0."""
-    curve = Sphere(radius=RADIUS).force_curve(np.array([-1e-6, 0.0, 1e-9]), 1e-7)
-    assert np.all(np.array(curve)[:, :2] == 0)
-    assert np.all(np.array(curve)[:, 2] > 0)
+@pytest.mark.parametrize("type_", ["paraboloid", "sphere", "cone", "flat_punch"])
+@pytest.mark.parametrize("length", [0.0, 1e-6])
+def test_no_force_before_contact(type_: str, length: float) -> None:
+    """Force and derivatives are 0 at depths up to 0, also where all are."""
+    fields = {"half_angle": ANGLE} if type_ == "cone" else {"radius": RADIUS}
+    indenter = pl.indenter(type_, **fields)
+    assert isinstance(indenter, HasForceCurve)
+    for depths in ([-1e-6, 0.0, 1e-7], [-1e-6, 0.0], [0.0]):
+        depth = np.array(depths)
+        for values in indenter.force_curve(depth, length):
+            assert values.shape == depth.shape
+            assert not values[depth <= 0].any()
