@@ -100,3 +100,4 @@ def test_no_force_before_contact(type_: str, length: float) -> None:
         for values in indenter.force_curve(depth, length):
             assert values.shape == depth.shape
             assert not values[depth <= 0].any()
+            assert (values[depth > 0] > 0).all()
