@@ -178,8 +178,8 @@ def _over_alternatives(
 
 def _up_to(name: str, high: float | None, unit: str) -> str:
     """Return what a parameter may be at most beside a tension, in words."""
-    size = "of any size" if high is None else f"up to {readable(high, unit, 2)}"
-    return f"a {words(name)} {size} beside it"
+    size = "" if high is None else f" up to {readable(high, unit, 2)}"
+    return f"a {words(name)}{size} beside it"
 
 
 def _estimates_of(
