@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial, reduce
 
 import numpy as np
 
+from pellicle.errors import ConvergenceError
 from pellicle.units import readable
 
 from .comparison import Comparison, Intervals, RivalFit
@@ -17,7 +19,8 @@ from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordina
 from .statistics.checks import judged
 from .statistics.chi_squared import ChiSquared, Minimum
 from .statistics.likelihood import Likelihood
-from .statistics.noise import FailedCheck
+from .statistics.noise import FailedCheck, is_beyond_chance
+from .statistics.pooled_likelihood import Excess
 from .statistics.profile import Ends, Estimate, curvature_interval, estimate_of, united
 from .statistics.rival import Rival
 from .statistics.rivals import NONE, TENSED, rivals
@@ -260,18 +263,42 @@ def _aic(misfit: float, size: int) -> float:
 def _at_its_noise(chi_squared: ChiSquared, minima: _Minima) -> tuple[ChiSquared, list[FailedCheck]]:
     """Return χ² with the noise of each curve as the best explanation shows it, and failed checks.
 
-    Tolerances of searches are absolute in χ²: at the noise of a model that fails, a hundred times
-    as large, they would hide the minimum.
+    Where its curves do not agree on shared parameters, the noise is greater by that disagreement
+    (quasi-likelihood, Wedderburn 1974).  Checks of the model are left out if no more curves fail
+    them than do so by chance.  Tolerances of searches are absolute in χ²: at the noise of a model
+    that fails, a hundred times as large, they would hide the minimum.
     """
     rival, minimum = min(minima.values(), key=partial(_criterion, chi_squared))
     members: list[Likelihood] = []
-    failed: list[FailedCheck] = []
+    failed: list[tuple[FailedCheck, ...]] = []
     best = rival.of(chi_squared).curves(minimum.parameters)
     for member, (of_rival, part) in zip(chi_squared.members, best, strict=True):
         estimate, _ = judged(of_rival, part)
         members.append(replace(member, noise=estimate.noise.deviation))
-        failed += estimate.failed
-    return chi_squared.with_members(members), failed
+        failed.append(estimate.failed)
+    failing = sum(any(check.of_model for check in checks) for checks in failed)
+    doubts = is_beyond_chance(failing, len(members))
+    kept = [check for checks in failed for check in checks if doubts or not check.of_model]
+    quiet = chi_squared.with_members(members)
+    factor = _disagreement(rival.of(quiet), minimum)
+    if factor > 1:
+        louder = [replace(m, noise=float(np.sqrt(factor)) * m.noise) for m in members]
+        quiet = chi_squared.with_members(louder)
+    return quiet, kept
+
+
+def _disagreement(chi_squared: ChiSquared, minimum: Minimum) -> float:
+    """Return by what factor curves that do not agree on shared parameters widen χ²."""
+    curves = chi_squared.curves(minimum.parameters)
+    if len(curves) == 1:
+        return 1.0
+    together = [member.chi_squared(part) for member, part in curves]
+    alone = []
+    for (member, part), shared in zip(curves, together, strict=True):
+        with suppress(ConvergenceError):
+            shared = min(shared, member.minimise(part, rough=True).chi_squared)
+        alone.append(shared)
+    return Excess.of(chi_squared, sum(together), alone).factor
 
 
 def _ranked(chi_squared: ChiSquared, minima: _Minima, threshold: float | None) -> list[RivalFit]:

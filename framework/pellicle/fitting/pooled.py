@@ -6,10 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
-from scipy.special import bdtrc, chdtrc
 
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.runs.progress import status_line
@@ -27,17 +26,11 @@ from .statistics.checks import SingleFit, check_plausible, check_shape, fit_sing
 from .statistics.chi_squared import Minimum, best_minimum
 from .statistics.design import pooled_advice
 from .statistics.likelihood import Likelihood
-from .statistics.noise import FailedCheck, doubt_of_tension
-from .statistics.pooled_likelihood import Pool
+from .statistics.noise import FailedCheck, doubt_of_tension, is_beyond_chance
+from .statistics.pooled_likelihood import Excess, Pool
 from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
 from .wording import column_scale, interval_text
 
-_CHANCE = 1e-3
-"""Probability below which a disagreement is not attributed to chance."""
-_FAILING = 0.01
-"""Probability that a curve without fault fails some check of the model."""
-_RARE = 0.05
-"""Probability below which the number of failing curves is not attributed to chance."""
 _NAMED = 5
 """Largest number of failing curves that a message names."""
 
@@ -224,11 +217,9 @@ def _fit_pool(
         for (_, single), part in zip(singles, pool.parts(start.parameters), strict=True)
     ]
     shared = [p for p in pool.free if p.shared]
-    excess = _Excess(
-        max(start.chi_squared - sum(minimum.chi_squared for minimum in own), 0.0),
-        len(shared) * (len(singles) - 1),
-    )
-    threshold = excess.factor * chi_squared_threshold(sum(single.freedom for _, single in singles))
+    excess = Excess.of(pool, start.chi_squared, [minimum.chi_squared for minimum in own])
+    usual = chi_squared_threshold(sum(single.freedom for _, single in singles))
+    threshold = excess.factor * usual
     points = [CONTACT_POINT.of_curve(index) for index in range(len(singles))]
     parameters = [*shared, *(p for p in points if contact_points and p in pool.free)]
     without = partial(pool.least_without, TENSION)
@@ -249,7 +240,7 @@ def _fit_pool(
             pool,
             profile.best,
             profile.without_tension,
-            threshold=threshold,
+            threshold=usual,
             full=compared,
             pairs=compared or not agree,
             report=report,
@@ -303,21 +294,7 @@ def _curve(
     )
 
 
-class _Excess(NamedTuple):
-    """Rise of χ² if the curves share parameters, over that of each curve on its own."""
-
-    chi_squared: float
-    degrees: int
-
-    @property
-    def factor(self) -> float:
-        """The factor by which it widens the intervals, 1 if it is within chance."""
-        if chdtrc(self.degrees, self.chi_squared) >= _CHANCE:
-            return 1.0
-        return max(self.chi_squared / self.degrees, 1.0)
-
-
-def _agreement(curves: Sequence[PooledCurve], excess: _Excess) -> str:
+def _agreement(curves: Sequence[PooledCurve], excess: Excess) -> str:
     """Return in words whether the curves agree, and by how much the intervals are widened."""
     figures = f"Δχ² = {decimal(excess.chi_squared, 3)} for {excess.degrees} degrees of freedom"
     if excess.factor == 1:
@@ -339,7 +316,7 @@ def _failures(curve: PooledCurve) -> list[FailedCheck]:
 def _doubt(curves: Sequence[PooledCurve]) -> str:
     """Return why the curves are not evidence of a tension, if too many fail a check."""
     failing = [curve for curve in curves if _failures(curve)]
-    if not failing or bdtrc(len(failing) - 1, len(curves), _FAILING) > _RARE:
+    if not is_beyond_chance(len(failing), len(curves)):
         return ""
     names = ", ".join(curve.name for curve in failing[:_NAMED])
     more = ", …" if len(failing) > _NAMED else ""

@@ -86,6 +86,9 @@ class AdhesiveModel:
     ended: Mask | None = None
     """Rows that lie below the end of the branch, of shape (n,); None if a contact may break early,
     as one that jumps does."""
+    touches_between: tuple[float, float] | None = None
+    """Base positions [m] between which the contact point lies, where the rows of an approach that
+    touch are known and no jump of the force tells them; None if it may lie anywhere."""
     reach: float | None = None
     """Base position over the contact point [m] up to which the branch is computed, if it is not
     that of the deepest row: one branch then serves many contact points."""
@@ -143,6 +146,11 @@ class AdhesiveModel:
     def end(self, values: Values, deepest: float) -> float:
         """Return the base position over the contact point [m] at which the contact breaks."""
         return float(self._stable(values, deepest).position[0])
+
+    def jump(self, values: Values, deepest: float) -> float:
+        """Return the force [N] to which an approach jumps as it touches."""
+        stable = self._stable(values, deepest)
+        return float(np.interp(0.0, stable.position, stable.force))
 
     def pull_off(self, values: Values) -> float:
         """Return the least force [N] of the branch that a dead load can follow."""

@@ -163,8 +163,10 @@ class Likelihood(ChiSquared):
                 return Range(1.0, -largest, largest)
             return Range(sizes[parameter.unit], parameter.minimum, parameter.maximum)
 
+        farthest = z.min() - _FARTHEST * span
+        low, high = getattr(self.force_model, "touches_between", None) or (farthest, z.max())
         return {p: range_of(p) for p in self.force_model.parameters} | {
-            CONTACT_POINT: Range(span, z.min() - _FARTHEST * span, z.max()),
+            CONTACT_POINT: Range(span, low, high),
             OFFSET: Range(height, force.min() - height, force.max() + height),
             SLOPE: Range(height / span, -steepest, steepest),
         }

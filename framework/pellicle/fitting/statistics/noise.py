@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import fdtrc, ndtr, ndtri
+from scipy.special import bdtrc, fdtrc, ndtr, ndtri
 
 from pellicle.arrays import Array, Mask
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION
@@ -19,8 +19,12 @@ from pellicle.units import decimal, readable
 from .likelihood import Likelihood
 from .long_memory import differenced
 
-CHANCE = 3e-3
+CHANCE = 1e-3
 """Probability that a check flags a curve without fault."""
+_FAILING = 0.01
+"""Probability that a curve without fault fails some check of the model."""
+_RARE = 0.05
+"""Probability below which the number of failing curves is not attributed to chance."""
 _NEAR = 0.01
 """Distance from contact beyond which a point counts as before it, over the range of positions."""
 _OF_NOISE = ("slow_noise", "spikes", "steps")
@@ -55,6 +59,11 @@ class FailedCheck(NamedTuple):
     def of_model(self) -> bool:
         """Whether it contradicts the model (so that no tension is shown) or only the noise."""
         return self.code not in _OF_NOISE
+
+
+def is_beyond_chance(failing: int, curves: int) -> bool:
+    """Return whether more of the curves fail a check of the model than do so by chance."""
+    return failing > 0 and bool(bdtrc(failing - 1, curves, _FAILING) <= _RARE)
 
 
 def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:

@@ -6,9 +6,10 @@ import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
+from scipy.special import chdtrc
 
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import Coordinates, Parameter
@@ -18,6 +19,28 @@ from .initial_guess import GUESSES
 from .likelihood import Likelihood
 
 _Value = TypeVar("_Value")
+_CHANCE = 1e-3
+"""Probability below which a disagreement is not attributed to chance."""
+
+
+class Excess(NamedTuple):
+    """Rise of χ² if curves share parameters, over that of each curve on its own."""
+
+    chi_squared: float
+    degrees: int
+
+    @classmethod
+    def of(cls, pool: ChiSquared, chi_squared: float, alone: Sequence[float]) -> Excess:
+        """Return that of a pool at its minimum, from the least χ² of each curve on its own."""
+        shared = [p for p in pool.free if p.shared]
+        return cls(max(chi_squared - sum(alone), 0.0), len(shared) * (len(alone) - 1))
+
+    @property
+    def factor(self) -> float:
+        """The factor by which it widens χ² of a rise, 1 if it is within chance."""
+        if chdtrc(self.degrees, self.chi_squared) >= _CHANCE:
+            return 1.0
+        return max(self.chi_squared / self.degrees, 1.0)
 
 
 @dataclass(frozen=True)

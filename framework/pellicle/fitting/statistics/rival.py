@@ -46,6 +46,10 @@ _LOST = 12.0
 """Δχ² beyond which no more, or fewer, rows of a retraction are taken to touch."""
 _SINGLE = 8
 """Numbers of rows that are tried one by one, before steps grow by this share."""
+_VISIBLE = 0.5
+"""Jump of the force at first touch, over the noise, below which χ² hardly jumps."""
+_EQUAL = 1e-9
+"""Distance of rows, over the range of positions, up to which they touch together."""
 _SHARES = (0.0, 0.1)
 """Values of a parameter that is not logarithmic from which a search starts, over its scale."""
 
@@ -69,12 +73,9 @@ class Rival:
     of_shape: bool = False
     """Whether it is another shape, for which a tension can make up in any curve."""
     others: tuple[tuple[Rival, Minimum], ...] = ()
-    """The same with more or fewer rows of a retraction that touch, and their minima."""
-
-    @property
-    def searched(self) -> int:
-        """Number of parameters for which the rows in contact count that have been searched."""
-        return _CHANGE_POINT if self.others else 0
+    """The same with more or fewer rows that touch, and their minima."""
+    searched: int = 0
+    """Number of parameters for which the rows in contact count that have been searched."""
 
     @property
     def is_single(self) -> bool:
@@ -120,7 +121,10 @@ class Rival:
             return None
         best = least(minima)
         if WORK_OF_ADHESION in self.own:
-            return self._attached(chi_squared, best)
+            rival, best = self._attached(chi_squared, best)
+            for index in range(len(chi_squared.members)):
+                rival, best = rival._first_touch(chi_squared, best, index)
+            return rival, best
         return self, own.minimise(best.parameters, rough=True) if was_thin else best
 
     def intervals(
@@ -167,7 +171,8 @@ class Rival:
             return self, best
         pairs.sort(key=lambda pair: pair[1].chi_squared)
         (rival, minimum), *others = pairs
-        return replace(rival, others=tuple(others)), minimum
+        searched = _CHANGE_POINT if others else 0
+        return replace(rival, others=tuple(others), searched=searched), minimum
 
     def _touching(self, chi_squared: ChiSquared, at: Minimum) -> tuple[int, ...] | None:
         """Return how many of the undecided rows of each curve touch; None if jumps decide all."""
@@ -190,7 +195,7 @@ class Rival:
         They are ``more`` than ``touching`` in each curve.  None is returned if a curve has not as
         many, or if the search does not converge.
         """
-        models: list[tuple[Array, AdhesiveModel]] = []
+        models: list[tuple[Array, ForceModel]] = []
         for (member, _), count in zip(
             self.of(chi_squared).curves(near.parameters), touching, strict=True
         ):
@@ -205,13 +210,77 @@ class Rival:
             ended[rows[:first]] = True
             models.append((member.position, replace(model, attached=attached, ended=ended)))
 
+        return self._with_models(models).near(chi_squared, near)
+
+    def _first_touch(
+        self, chi_squared: ChiSquared, best: Minimum, index: int
+    ) -> tuple[Rival, Minimum]:
+        """Return the minimum with fixed rows of an approach that touch, and the model of these.
+
+        As the contact point passes a row χ² jumps, and searches and profiles stop there: seven to
+        ten rows off, with works of adhesion a fifth too large.
+        """
+        members = self.of(chi_squared).curves(best.parameters)
+        member, part = members[index]
+        model = member.force_model
+        assert isinstance(model, AdhesiveModel)
+        rows = np.flatnonzero(~member.moves_out & (model.attached == 0))
+        if CONTACT_POINT not in member.free or not rows.size:
+            return self, best
+        values = {p: p.value(part[p]) for p in model.parameters}
+        deepest = float(member.base.max()) - part[CONTACT_POINT]
+        if abs(model.jump(values, deepest)) < _VISIBLE * member.noise:
+            return self, best
+        base = member.base[rows]
+        edges = np.unique(base)
+        apart = np.diff(edges) > _EQUAL * np.ptp(base)
+        farthest = edges[0] - np.ptp(base)
+        edges = np.concatenate([[farthest], edges[:1], edges[1:][apart]])
+        first = max(int(np.searchsorted(edges, part[CONTACT_POINT])) - 1, 0)
+        count = sum(other.force.size for other in chi_squared.members)
+        pairs: list[tuple[Rival, Minimum]] = []
+        for sense in (1, -1):
+            place, near = first - (sense < 0), best
+            while 0 <= place < edges.size - 1:
+                low, high = edges[place : place + 2].tolist()
+                attached = model.attached.copy()
+                attached[rows] = np.where(base >= high, 1.0, -1.0)
+                known = replace(model, attached=attached, touches_between=(low, high))
+                models = [(m.position, m.force_model) for m, _ in members]
+                models[index] = member.position, known
+                pair = self._with_models(models).near(chi_squared, near)
+                if pair is None:
+                    break
+                pairs.append(pair)
+                near = pair[1]
+                lowest = min(minimum.chi_squared for _, minimum in pairs)
+                if near.chi_squared > lowest * (1 + _LOST / count):
+                    break
+                place += sense * (1 + abs(place - first) // _SINGLE)
+        if not pairs:
+            return self, best
+        pairs.sort(key=lambda pair: pair[1].chi_squared)
+        (rival, minimum), *others = pairs
+        point = minimum.parameters[CONTACT_POINT.of_curve(index)]
+        found = max(int(np.searchsorted(edges, point)) - 1, 0)
+        if abs(found - first) > _SINGLE and minimum.chi_squared < best.chi_squared:
+            # Rows near it have been left out.
+            return self._first_touch(chi_squared, minimum, index)
+        return replace(rival, others=(*self.others, *others)), minimum
+
+    def _with_models(self, models: Sequence[tuple[Array, ForceModel]]) -> Rival:
+        """Return the same with models known for curves, which their positions identify."""
+
         def build(likelihood: Likelihood) -> ForceModel:
             known = (model for position, model in models if likelihood.position is position)
             return next(known, None) or self.build(likelihood)
 
-        rival = replace(self, build=build)
+        return replace(self, build=build)
+
+    def near(self, chi_squared: ChiSquared, start: Minimum) -> tuple[Rival, Minimum] | None:
+        """Return this and its minimum of χ² near a start; None if the search fails."""
         with suppress(PellicleError):
-            return rival, rival.of(chi_squared).minimise(near.parameters, rough=True)
+            return self, self.of(chi_squared).minimise(start.parameters, rough=True)
         return None
 
     def _guesses(self, chi_squared: ChiSquared, start: Coordinates) -> list[Coordinates]:
