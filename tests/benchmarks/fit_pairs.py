@@ -1,14 +1,15 @@
 """How good fits of a tension beside another effect are: error over bound, and coverage.
 
-Retractions that adhere come from the closed theory, at 60 to 2000 points.  Power-law curves at two
-speeds come from the model that is fitted, so that they test the search and the intervals only.
-Each is fitted by the search of the comparison of rivals.  Run it:
+Retractions that adhere come from the closed theory, at 60 to 2000 points, and are fitted by the
+search of the comparison of rivals.  Power-law curves come from the model that is fitted, so that
+they test search, verdict and intervals; those at two speeds are pooled.  Run it:
 ``python tests/benchmarks/fit_pairs.py [curves [seed [names of kinds]]]``; with ``--keep FILE``
 each score is appended to a file, and those that it has are not repeated.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
@@ -81,12 +82,12 @@ def retraction(random: np.random.Generator) -> tuple[Likelihood, Likelihood, Coo
 
 def relaxing(
     random: np.random.Generator, speeds: Iterable[float]
-) -> tuple[ChiSquared, ChiSquared, Coordinates]:
-    """Return measured approaches, the same with the right model, and the truth."""
+) -> tuple[list[Likelihood], Coordinates]:
+    """Return approaches of a tensed power-law solid, with their model, and the truth."""
     ratio = float(np.exp(random.uniform(np.log(0.03), np.log(1.0))))
     alpha = random.uniform(0.1, 0.3)
     truth = _at(ratio * RADIUS * MODULUS_ / 2, relaxation_exponent=alpha)
-    share, curves, right = random.uniform(*NOISE), [], []
+    share, curves = random.uniform(*NOISE), []
     for rate in speeds:
         rows = path(rate=rate)
         position = rows.depth * DEPTH * RADIUS + CONTACT
@@ -95,23 +96,14 @@ def relaxing(
         force = still.model(truth)
         noise = share * float(force.max())
         still = replace(still, force=force + noise * random.standard_normal(force.size))
-        still = replace(still, noise=noise, free=(*FREE, EXPONENT))
-        right.append(still)
-        curves.append(replace(still, force_model=ELASTIC, free=FREE))
-    if len(curves) == 1:
-        return curves[0], right[0], truth
-    return Pool.of(curves), Pool.of(right), _joined(Pool.of(right), truth)
+        curves.append(replace(still, noise=noise, free=(*FREE, EXPONENT)))
+    return curves, truth
 
 
-def _joined(pool: Pool, part: Coordinates) -> Coordinates:
-    return pool.joined([part] * len(pool.members))
-
-
-def minimum_of(curve: ChiSquared, code: str) -> tuple[Rival, ChiSquared, Minimum, float]:
+def minimum_of(curve: Likelihood, code: str) -> tuple[Rival, ChiSquared, Minimum, float]:
     """Return a rival, χ² at the noise of its residuals, its minimum, and the threshold."""
-    singles = [fit_single(member, {OFFSET: 0.0, SLOPE: 0.0}) for member in curve.members]
-    chi = curve.with_members([single.likelihood for single in singles])
-    start = chi.joined([single.parameters for single in singles])
+    fit = fit_single(curve, {OFFSET: 0.0, SLOPE: 0.0})
+    chi, start = fit.likelihood, fit.parameters
     by_code = {rival.code: rival for rival in rivals(chi, start)}
     rival, single = by_code[code], by_code[code.partition("+")[2]]
     without = single.minimum(chi, [start | {TENSION: 0.0}, start])
@@ -122,41 +114,54 @@ def minimum_of(curve: ChiSquared, code: str) -> tuple[Rival, ChiSquared, Minimum
     pair = rival.minimum(chi, starts)
     assert pair is not None
     rival, best = pair
-    mine = rival.of(chi)
-    judgements = [judged(member, part)[0] for member, part in mine.curves(best.parameters)]
-    quiet = [
-        replace(member, noise=judgement.noise.deviation)
-        for member, judgement in zip(chi.members, judgements, strict=True)
-    ]
-    chi = chi.with_members(quiet)
-    freedom = sum(judgement.noise.freedom for judgement in judgements)
+    judgement = judged(rival.of_curve(chi), best.parameters)[0]
+    chi = replace(chi, noise=judgement.noise.deviation)
     best = rival.of(chi).minimise(best.parameters, rough=True)
-    return rival, chi, best, chi_squared_threshold(freedom)
+    return rival, chi, best, chi_squared_threshold(judgement.noise.freedom)
 
 
 def score_of(name: str, number: int, seed: int) -> dict[str, Any]:
-    """Return errors over bounds and coverage of one curve, or the verdict at one speed."""
+    """Return errors over bounds and coverage of one curve or pool, or a verdict and its ranges."""
     random = np.random.default_rng([seed, number, *name.encode()])
     if name == "one speed":
         return one_speed(random)
-    measured: ChiSquared
-    right: ChiSquared
-    if name == "retraction":
-        measured, right, truth = retraction(random)
-        code, own = "tension+adhesion", WORK_OF_ADHESION
-    else:
-        measured, right, truth = relaxing(random, (1.0, 0.1))
-        code, own = "tension+power_law", EXPONENT
-    rival, chi, best, threshold = minimum_of(measured, code)
+    return adhesive(random) if name == "retraction" else two_speeds(random)
+
+
+def adhesive(random: np.random.Generator) -> dict[str, Any]:
+    """Return errors over bounds and coverage of a retraction that adheres."""
+    measured, right, truth = retraction(random)
+    rival, chi, best, threshold = minimum_of(measured, "tension+adhesion")
     bounds = right.bounds(truth, right.free)
-    parameters = MODULUS, TENSION, own
+    parameters = MODULUS, TENSION, WORK_OF_ADHESION
     best, ends = rival.intervals(chi, best, threshold, parameters)
-    points = chi.force.size if isinstance(chi, Likelihood) else 0
-    scores: dict[str, Any] = {"points": points}
+    scores: dict[str, Any] = {"points": measured.force.size}
     for p in parameters:
         low, high = ends.get(p, (None, None))
         held = (low is None or low <= truth[p]) and (high is None or truth[p] <= high)
         scores[p.name] = ((best.parameters[p] - truth[p]) / bounds[p], bool(held))
+    return scores
+
+
+def two_speeds(random: np.random.Generator) -> dict[str, Any]:
+    """Return the verdict of a pooled fit of two approaches, with errors and coverage.
+
+    Those are of tension and relaxation together, and only where these are chosen.
+    """
+    curves, truth = relaxing(random, (1.0, 0.1))
+    right = Pool.of(curves)
+    bounds = right.bounds(right.joined([truth] * len(curves)), right.free)
+    fit = fit_rivals.pooled(_sample(random), [_rows_of(curve) for curve in curves])
+    chosen = fit.rivals.chosen if fit.rivals is not None else None
+    scores: dict[str, Any] = {"verdict": fit_rivals.verdict_of(fit)}
+    if chosen is None or chosen.rival.code != "tension+power_law":
+        return scores
+    for p in (MODULUS, TENSION, EXPONENT):
+        estimate, value = chosen.estimates[p.name], p.value(truth[p])
+        low = -np.inf if estimate.low is None else estimate.low
+        high = np.inf if estimate.high is None else estimate.high
+        error = p.coordinate(estimate.value) - truth[p]
+        scores[p.name] = (error / bounds[p], bool(low <= value <= high))
     return scores
 
 
@@ -165,13 +170,8 @@ def one_speed(random: np.random.Generator) -> dict[str, Any]:
 
     The tension counts where one is said to be needed.
     """
-    curve, _, truth = relaxing(random, (1.0,))
-    assert isinstance(curve, Likelihood)
-    sample = Sample(Truth(lambda rows: rows.depth, ("tension+power_law",)), random)
-    assert curve.time is not None
-    fit = fit_rivals.fitted(
-        sample, fit_rivals.Curve(curve.position, curve.force, curve.time), "approach"
-    )
+    (curve,), truth = relaxing(random, (1.0,))
+    fit = fit_rivals.fitted(_sample(random), _rows_of(curve))
     tension = fit.rivals.tension if fit.rivals is not None else None
     estimate = tension or fit.tension
     low, high = estimate.low or 0.0, estimate.high or np.inf
@@ -182,16 +182,24 @@ def one_speed(random: np.random.Generator) -> dict[str, Any]:
     }
 
 
+def _sample(random: np.random.Generator) -> Sample:
+    return Sample(Truth(lambda rows: rows.depth, ("tension+power_law",)), random)
+
+
+def _rows_of(curve: Likelihood) -> fit_rivals.Curve:
+    assert curve.time is not None
+    return fit_rivals.Curve(curve.position, curve.force, curve.time)
+
+
 def main() -> None:
     """Print a row of a table for each kind and parameter."""
     _, results = outcomes_of(__doc__, KINDS, 200, score_of)
     print("kind | parameter | curves | rms error over the bound | interval holds")
     print("--- | --- | --- | --- | ---")
     for name, values in results.items():
+        for verdict, count in Counter(v["verdict"] for v in values if "verdict" in v).items():
+            print(f"{name} | {verdict} | {len(values)} | | {count}")
         if name == "one speed":
-            for verdict in sorted({value["verdict"] for value in values}):
-                count = sum(value["verdict"] == verdict for value in values)
-                print(f"{name} | {verdict} | {len(values)} | | {count}")
             claimed = [value["tension"] for value in values if value["verdict"] == "needed"]
             for parameter, flags in (
                 ("modulus over tied models", [value["modulus"] for value in values]),
@@ -199,10 +207,13 @@ def main() -> None:
             ):
                 print(f"{name} | {parameter} | {len(flags)} | | {sum(flags)} held")
             continue
-        for parameter in [key for key in values[0] if key != "points"]:
-            errors, held = zip(*(value[parameter] for value in values), strict=True)
+        for parameter in dict.fromkeys(
+            key for value in values for key in value if key not in ("points", "verdict")
+        ):
+            scores = [value[parameter] for value in values if parameter in value]
+            errors, held = zip(*scores, strict=True)
             rms = float(np.sqrt(np.mean(np.square(errors))))
-            print(f"{name} | {parameter} | {len(values)} | {rms:.3f} | {100 * np.mean(held):.1f} %")
+            print(f"{name} | {parameter} | {len(scores)} | {rms:.3f} | {100 * np.mean(held):.1f} %")
 
 
 if __name__ == "__main__":

@@ -243,8 +243,7 @@ def test_few_failing_curves_of_many_are_chance() -> None:
 def test_one_speed_does_not_tell_a_tension_from_relaxation_beside_it() -> None:
     """A tensed power-law solid: modulus and tension of the elastic model miss by a factor of 2."""
     random = np.random.default_rng([5, 19, *b"one speed"])
-    curve, _, truth = fit_pairs.relaxing(random, (1.0,))
-    assert isinstance(curve, Likelihood)
+    (curve,), truth = fit_pairs.relaxing(random, (1.0,))
     fit = pl.fit(curve.position, curve.force, time=curve.time, indenter="paraboloid", radius=RADIUS)
     assert fit.tension_needed
     assert fit.rivals is not None
