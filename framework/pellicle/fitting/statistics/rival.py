@@ -43,7 +43,7 @@ _COARSE = 0.3
 _THICKNESSES = (2.0, 10.0)
 """Thicknesses from which a search starts, over the range of positions."""
 _LOST = 12.0
-"""Δχ² beyond which no more, or fewer, rows of a retraction are taken to touch."""
+"""Δχ² beyond which no more, or fewer, rows are taken to touch."""
 _SINGLE = 8
 """Numbers of rows that are tried one by one, before steps grow by this share."""
 _VISIBLE = 0.5
@@ -136,8 +136,8 @@ class Rival:
     ) -> tuple[Minimum, dict[Parameter, Ends]]:
         """Return the minimum, which a profile may have improved, and intervals of profiles.
 
-        Where the model decides which rows of a retraction touch, an interval is the union of those
-        of all numbers of rows whose χ² is within ``threshold`` of the least.
+        Where the model decides which rows touch, an interval is the union of those of all numbers
+        of rows whose χ² is within ``threshold`` of the least.
         """
         minimum, ends = profiled(self.of(chi_squared), minimum, threshold, parameters)
         highest = minimum.chi_squared + threshold
@@ -156,20 +156,13 @@ class Rival:
         touching = self._touching(chi_squared, best)
         if touching is None:
             return self, best
-        pairs = []
-        rows = sum(member.force.size for member in chi_squared.members)
-        for sense in (1, -1):
-            shift, near = max(sense, 0) - 1, best
-            while (pair := self._with_rows(chi_squared, near, touching, shift)) is not None:
-                pairs.append(pair)
-                near = pair[1]
-                lowest = min(minimum.chi_squared for _, minimum in pairs)
-                if near.chi_squared > lowest * (1 + _LOST / rows):
-                    break
-                shift += sense * (1 + abs(shift) // _SINGLE)
+        pairs = _around(
+            lambda shift, near: self._with_rows(chi_squared, near, touching, shift),
+            best,
+            _LOST / sum(member.force.size for member in chi_squared.members),
+        )
         if not pairs:
             return self, best
-        pairs.sort(key=lambda pair: pair[1].chi_squared)
         (rival, minimum), *others = pairs
         searched = _CHANGE_POINT if others else 0
         return replace(rival, others=tuple(others), searched=searched), minimum
@@ -237,29 +230,23 @@ class Rival:
         farthest = edges[0] - np.ptp(base)
         edges = np.concatenate([[farthest], edges[:1], edges[1:][apart]])
         first = max(int(np.searchsorted(edges, part[CONTACT_POINT])) - 1, 0)
-        count = sum(other.force.size for other in chi_squared.members)
-        pairs: list[tuple[Rival, Minimum]] = []
-        for sense in (1, -1):
-            place, near = first - (sense < 0), best
-            while 0 <= place < edges.size - 1:
-                low, high = edges[place : place + 2].tolist()
-                attached = model.attached.copy()
-                attached[rows] = np.where(base >= high, 1.0, -1.0)
-                known = replace(model, attached=attached, touches_between=(low, high))
-                models = [(m.position, m.force_model) for m, _ in members]
-                models[index] = member.position, known
-                pair = self._with_models(models).near(chi_squared, near)
-                if pair is None:
-                    break
-                pairs.append(pair)
-                near = pair[1]
-                lowest = min(minimum.chi_squared for _, minimum in pairs)
-                if near.chi_squared > lowest * (1 + _LOST / count):
-                    break
-                place += sense * (1 + abs(place - first) // _SINGLE)
+
+        def touching(shift: int, near: Minimum) -> tuple[Rival, Minimum] | None:
+            place = first + shift
+            if not 0 <= place < edges.size - 1:
+                return None
+            low, high = edges[place : place + 2].tolist()
+            attached = model.attached.copy()
+            attached[rows] = np.where(base >= high, 1.0, -1.0)
+            known = replace(model, attached=attached, touches_between=(low, high))
+            models = [(other.position, other.force_model) for other, _ in members]
+            models[index] = member.position, known
+            return self._with_models(models).near(chi_squared, near)
+
+        count = sum(other.force.size for other, _ in members)
+        pairs = _around(touching, best, _LOST / count)
         if not pairs:
             return self, best
-        pairs.sort(key=lambda pair: pair[1].chi_squared)
         (rival, minimum), *others = pairs
         point = minimum.parameters[CONTACT_POINT.of_curve(index)]
         found = max(int(np.searchsorted(edges, point)) - 1, 0)
@@ -300,6 +287,27 @@ class Rival:
             return list(_adhesive_guesses(self, chi_squared, start))
         scales = chi_squared.ranges
         return [{p: share * scales[p].scale for p in self.own} for share in _SHARES]
+
+
+def _around(
+    trial: Callable[[int, Minimum], tuple[Rival, Minimum] | None], best: Minimum, rise: float
+) -> list[tuple[Rival, Minimum]]:
+    """Return models with 0, 1, … and −1, −2, … rows more, and their minima, the least first.
+
+    Either way ends where χ² is above the least by ``rise`` of it, or where ``trial`` has no model;
+    that gets the minimum before as a start.
+    """
+    pairs: list[tuple[Rival, Minimum]] = []
+    for sense in (1, -1):
+        shift, near = max(sense, 0) - 1, best
+        while (pair := trial(shift, near)) is not None:
+            pairs.append(pair)
+            near = pair[1]
+            lowest = min(minimum.chi_squared for _, minimum in pairs)
+            if near.chi_squared > lowest * (1 + rise):
+                break
+            shift += sense * (1 + abs(shift) // _SINGLE)
+    return sorted(pairs, key=lambda pair: pair[1].chi_squared)
 
 
 def _own_guesses(model: ForceModel) -> list[dict[Parameter, float]]:
