@@ -2,7 +2,7 @@
 
 A curve is its approach alone if its kind does not say otherwise; where the answer is that it cannot
 tell, the measurement that it names is added.  Forces come from closed forms: the power law by an
-incomplete beta function, adhesion by the integral equation, the layer by Dimitriadis et al. (2002).
+incomplete beta function, adhesion and the layer by the integral equation.
 Run it: ``python tests/benchmarks/fit_rivals.py [curves of each kind [seed [names of kinds]]]``.
 With ``--keep FILE`` each outcome is appended to a file, and those that it has are not repeated.
 """
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from scipy.special import beta, betainc
 
 import pellicle as pl
-from pellicle.components import HasForceCurve
+from pellicle.components import HasForceCurve, HasLayerForceCurve
 from pellicle.fitting.curves import curve as read_curve
 from pellicle.fitting.curves.sources import Source
 from pellicle.fitting.models.force_model import tension_model
@@ -245,12 +245,15 @@ def _drift(random: np.random.Generator) -> Truth:
 
 
 def _layer(random: np.random.Generator) -> Truth:
-    # Contact radius over thickness at the largest depth.
-    chi = 1 / random.uniform(3.0, 10.0)
+    # Thickness over contact radius at the largest depth; that of an expansion in their ratio would
+    # be 1 to 3 % off.
+    thickness = random.uniform(3.0, 10.0) * float(np.sqrt(DEPTH)) * RADIUS
 
     def force(path: Path) -> Array:
-        x = chi * np.sqrt(path.radius * np.maximum(path.depth, 0.0))
-        return _hertz(path) * (1 + 1.133 * x + 1.283 * x**2 + 0.769 * x**3 + 0.0975 * x**4)
+        shape = _shape("paraboloid", path.radius)
+        assert isinstance(shape, HasLayerForceCurve)
+        depth = path.depth * DEPTH * RADIUS
+        return shape.layer_force_curve(depth, 0.0, thickness, 0.5).force / _scale(DEPTH)
 
     return Truth(force, ("thickness",))
 
