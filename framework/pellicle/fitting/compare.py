@@ -75,6 +75,7 @@ def compare(
     """
     minima = _minima(chi_squared, best, without, pairs=pairs, report=report)
     quiet, failed = _at_its_noise(chi_squared, minima)
+    quiet = _in_agreement(quiet, *_best(chi_squared, minima))
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
     comparison = replace(judge(quiet, fits, failed), unseen=_unseen(chi_squared))
@@ -263,12 +264,11 @@ def _aic(misfit: float, size: int) -> float:
 def _at_its_noise(chi_squared: ChiSquared, minima: _Minima) -> tuple[ChiSquared, list[FailedCheck]]:
     """Return χ² with the noise of each curve as the best explanation shows it, and failed checks.
 
-    Where its curves do not agree on shared parameters, the noise is greater by that disagreement
-    (quasi-likelihood, Wedderburn 1974).  Checks of the model are left out if no more curves fail
-    them than do so by chance.  Tolerances of searches are absolute in χ²: at the noise of a model
-    that fails, a hundred times as large, they would hide the minimum.
+    Checks of the model are left out if no more curves fail them than do so by chance.  Tolerances
+    of searches are absolute in χ²: at the noise of a model that fails, a hundred times as large,
+    they would hide the minimum.
     """
-    rival, minimum = min(minima.values(), key=partial(_criterion, chi_squared))
+    rival, minimum = _best(chi_squared, minima)
     members: list[Likelihood] = []
     failed: list[tuple[FailedCheck, ...]] = []
     best = rival.of(chi_squared).curves(minimum.parameters)
@@ -279,26 +279,32 @@ def _at_its_noise(chi_squared: ChiSquared, minima: _Minima) -> tuple[ChiSquared,
     failing = sum(any(check.of_model for check in checks) for checks in failed)
     doubts = is_beyond_chance(failing, len(members))
     kept = [check for checks in failed for check in checks if doubts or not check.of_model]
-    quiet = chi_squared.with_members(members)
-    factor = _disagreement(rival.of(quiet), minimum)
-    if factor > 1:
-        louder = [replace(m, noise=float(np.sqrt(factor)) * m.noise) for m in members]
-        quiet = chi_squared.with_members(louder)
-    return quiet, kept
+    return chi_squared.with_members(members), kept
 
 
-def _disagreement(chi_squared: ChiSquared, minimum: Minimum) -> float:
-    """Return by what factor curves that do not agree on shared parameters widen χ²."""
-    curves = chi_squared.curves(minimum.parameters)
+def _best(chi_squared: ChiSquared, minima: _Minima) -> tuple[Rival, Minimum]:
+    """Return the explanation of least criterion, and its minimum."""
+    return min(minima.values(), key=partial(_criterion, chi_squared))
+
+
+def _in_agreement(chi_squared: ChiSquared, rival: Rival, minimum: Minimum) -> ChiSquared:
+    """Return χ² with noise that is greater by the disagreement of curves on shared parameters.
+
+    That is their disagreement under an explanation (quasi-likelihood, Wedderburn 1974).
+    """
+    of_rival = rival.of(chi_squared)
+    curves = of_rival.curves(minimum.parameters)
     if len(curves) == 1:
-        return 1.0
+        return chi_squared
     together = [member.chi_squared(part) for member, part in curves]
     alone = []
     for (member, part), shared in zip(curves, together, strict=True):
         with suppress(ConvergenceError):
             shared = min(shared, member.minimise(part, rough=True).chi_squared)
         alone.append(shared)
-    return Excess.of(chi_squared, sum(together), alone).factor
+    louder = float(np.sqrt(Excess.of(of_rival, sum(together), alone).factor))
+    members = [replace(member, noise=louder * member.noise) for member in chi_squared.members]
+    return chi_squared.with_members(members)
 
 
 def _ranked(chi_squared: ChiSquared, minima: _Minima, threshold: float | None) -> list[RivalFit]:

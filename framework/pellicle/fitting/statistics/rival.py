@@ -158,8 +158,8 @@ class Rival:
             return self, best
         pairs = _around(
             lambda shift, near: self._with_rows(chi_squared, near, touching, shift),
+            chi_squared,
             best,
-            _LOST / sum(member.force.size for member in chi_squared.members),
         )
         if not pairs:
             return self, best
@@ -203,7 +203,7 @@ class Rival:
             ended[rows[:first]] = True
             models.append((member.position, replace(model, attached=attached, ended=ended)))
 
-        return self._with_models(models).near(chi_squared, near)
+        return self._near(chi_squared, near, models)
 
     def _first_touch(
         self, chi_squared: ChiSquared, best: Minimum, index: int
@@ -229,7 +229,11 @@ class Rival:
         apart = np.diff(edges) > _EQUAL * np.ptp(base)
         farthest = edges[0] - np.ptp(base)
         edges = np.concatenate([[farthest], edges[:1], edges[1:][apart]])
-        first = max(int(np.searchsorted(edges, part[CONTACT_POINT])) - 1, 0)
+
+        def gap_of(point: float) -> int:
+            return max(int(np.searchsorted(edges, point)) - 1, 0)
+
+        first = gap_of(part[CONTACT_POINT])
 
         def touching(shift: int, near: Minimum) -> tuple[Rival, Minimum] | None:
             place = first + shift
@@ -241,33 +245,36 @@ class Rival:
             known = replace(model, attached=attached, touches_between=(low, high))
             models = [(other.position, other.force_model) for other, _ in members]
             models[index] = member.position, known
-            return self._with_models(models).near(chi_squared, near)
+            return self._near(chi_squared, near, models)
 
-        count = sum(other.force.size for other, _ in members)
-        pairs = _around(touching, best, _LOST / count)
+        pairs = _around(touching, chi_squared, best)
         if not pairs:
             return self, best
         (rival, minimum), *others = pairs
-        point = minimum.parameters[CONTACT_POINT.of_curve(index)]
-        found = max(int(np.searchsorted(edges, point)) - 1, 0)
-        if abs(found - first) > _SINGLE and minimum.chi_squared < best.chi_squared:
+        last = gap_of(minimum.parameters[CONTACT_POINT.of_curve(index)])
+        if abs(last - first) > _SINGLE and minimum.chi_squared < best.chi_squared:
             # Rows near it have been left out.
             return self._first_touch(chi_squared, minimum, index)
         return replace(rival, others=(*self.others, *others)), minimum
 
-    def _with_models(self, models: Sequence[tuple[Array, ForceModel]]) -> Rival:
-        """Return the same with models known for curves, which their positions identify."""
+    def _near(
+        self,
+        chi_squared: ChiSquared,
+        start: Minimum,
+        models: Sequence[tuple[Array, ForceModel]],
+    ) -> tuple[Rival, Minimum] | None:
+        """Return the same with known models, and its minimum near a start; None if that fails.
+
+        The models are those of curves that their positions identify.
+        """
 
         def build(likelihood: Likelihood) -> ForceModel:
             known = (model for position, model in models if likelihood.position is position)
             return next(known, None) or self.build(likelihood)
 
-        return replace(self, build=build)
-
-    def near(self, chi_squared: ChiSquared, start: Minimum) -> tuple[Rival, Minimum] | None:
-        """Return this and its minimum of χ² near a start; None if the search fails."""
+        rival = replace(self, build=build)
         with suppress(PellicleError):
-            return self, self.of(chi_squared).minimise(start.parameters, rough=True)
+            return rival, rival.of(chi_squared).minimise(start.parameters, rough=True)
         return None
 
     def _guesses(self, chi_squared: ChiSquared, start: Coordinates) -> list[Coordinates]:
@@ -290,13 +297,16 @@ class Rival:
 
 
 def _around(
-    trial: Callable[[int, Minimum], tuple[Rival, Minimum] | None], best: Minimum, rise: float
+    trial: Callable[[int, Minimum], tuple[Rival, Minimum] | None],
+    chi_squared: ChiSquared,
+    best: Minimum,
 ) -> list[tuple[Rival, Minimum]]:
     """Return models with 0, 1, … and −1, −2, … rows more, and their minima, the least first.
 
-    Either way ends where χ² is above the least by ``rise`` of it, or where ``trial`` has no model;
-    that gets the minimum before as a start.
+    Either way ends where χ² is far above the least, or where ``trial`` has no model; that gets the
+    minimum before as a start.
     """
+    rise = _LOST / sum(member.force.size for member in chi_squared.members)
     pairs: list[tuple[Rival, Minimum]] = []
     for sense in (1, -1):
         shift, near = max(sense, 0) - 1, best
