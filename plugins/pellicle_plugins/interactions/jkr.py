@@ -18,9 +18,10 @@ from pellicle.units import WorkOfAdhesion
 from .linear import Linear
 from .zone import softening_strength
 
-# Width of the zone in cells. With 1.7 the forces of a retraction are as near to the theory, but of
-# 66 depths of a paraboloid with 256 points approach and retraction differed at 7, by up to
-# 0.014 πwR: a row of cells along an axis stays. With 2.25 it is one, by 0.005.
+# Width of the zone in cells. Narrower ones pin, because a row of cells along an axis stays: of 66
+# depths of a paraboloid with 256 points approach and retraction differed at 7 with 1.7 and 2.0
+# cells and at 5 with 1.9 and 2.1, by up to 0.014 πwR, but at one by 0.005 with 2.25. Forces at no
+# load are nearer to the theory by at most 0.003 πwR with 1.9.
 _CELLS = 2.25
 
 
