@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial, reduce
+from functools import partial
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from .statistics.chi_squared import ChiSquared, Minimum
 from .statistics.likelihood import Likelihood
 from .statistics.noise import FailedCheck, is_beyond_chance
 from .statistics.pooled_likelihood import Excess
-from .statistics.profile import Ends, Estimate, curvature_interval, estimate_of, united
+from .statistics.profile import OPEN, Ends, Estimate, curvature_interval, estimate_of, united
 from .statistics.rival import Rival
 from .statistics.rivals import NONE, TENSED, rivals
 from .verdict import MANY_MARGIN, judge
@@ -151,33 +151,54 @@ def _over_alternatives(
     """Return the comparison with the intervals of modulus and tension over all alternatives."""
     if len(comparison.alternatives) < 2:
         return comparison
-    chosen = TENSED.code if comparison.chosen is None else comparison.chosen.rival.code
     is_needed = comparison.verdict == "needed"
-    searched = [MODULUS]
-    if is_needed:
-        searched += [TENSION, *(parameter for parameter, _ in _UNSEEN.values())]
-    estimates = {
-        fit.rival.code: _estimates_of(chi_squared, fit, threshold, searched)
-        for fit in comparison.alternatives
-    }
-
-    def over_all(name: str) -> Estimate:
-        own = [parts[name] for parts in estimates.values() if name in parts]
-        low, high = reduce(united, ((estimate.low, estimate.high) for estimate in own))
-        return replace(estimates[chosen][name], low=low, high=high)
-
-    comparison = replace(comparison, modulus=over_all(MODULUS.name))
+    code = TENSED.code if comparison.chosen is None else comparison.chosen.rival.code
+    chosen = next(fit for fit in comparison.alternatives if fit.rival.code == code)
+    others = [fit for fit in comparison.alternatives if fit is not chosen]
+    searched = [MODULUS, TENSION] if is_needed else [MODULUS]
+    own = _estimates_of(chi_squared, chosen, threshold, searched)
+    over_all = {}
+    for parameter in searched:
+        estimate = own[parameter.name]
+        ends = _in_coordinates(parameter, estimate)
+        for fit in others:
+            if ends != OPEN:
+                ends = _extended(chi_squared, fit, threshold, parameter, ends)
+        low, high = (None if end is None else parameter.value(end) for end in ends)
+        over_all[parameter] = replace(estimate, low=low, high=high)
+    comparison = replace(comparison, modulus=over_all[MODULUS])
     if not is_needed:
         return comparison
-    comparison = replace(comparison, tension=over_all(TENSION.name))
-    hidden = [
-        sentence.format(
-            _up_to(parameter.name, estimates[code][parameter.name].high, parameter.unit)
-        )
-        for code, (parameter, sentence) in _UNSEEN.items()
-        if code in comparison.unseen and code in estimates and code != chosen
-    ]
+    comparison = replace(comparison, tension=over_all[TENSION])
+    hidden = []
+    for fit in others:
+        if fit.rival.code in comparison.unseen:
+            parameter, sentence = _UNSEEN[fit.rival.code]
+            estimate = _estimates_of(chi_squared, fit, threshold, [parameter])[parameter.name]
+            hidden.append(sentence.format(_up_to(parameter.name, estimate.high, parameter.unit)))
     return replace(comparison, sentence="; ".join([comparison.sentence, *hidden]))
+
+
+def _extended(
+    chi_squared: ChiSquared, fit: RivalFit, threshold: float, parameter: Parameter, ends: Ends
+) -> Ends:
+    """Return an interval of coordinates, extended to that of another explanation."""
+    if fit.intervals == "profile":
+        known = fit.estimates.get(parameter.name)
+        return ends if known is None else united(ends, _in_coordinates(parameter, known))
+    if parameter not in fit.rival.of(chi_squared).free:
+        return ends
+    minimum = Minimum(fit.parameters, fit.chi_squared)
+    return fit.rival.extended(chi_squared, minimum, threshold, parameter, ends)
+
+
+def _in_coordinates(parameter: Parameter, estimate: Estimate) -> Ends:
+    """Return the interval of an estimate in coordinates of its parameter."""
+    low, high = estimate.low, estimate.high
+    return (
+        None if low is None else parameter.coordinate(low),
+        None if high is None else parameter.coordinate(high),
+    )
 
 
 def _up_to(name: str, high: float | None, unit: str) -> str:

@@ -141,12 +141,37 @@ class Rival:
         """
         minimum, ends = profiled(self.of(chi_squared), minimum, threshold, parameters)
         highest = minimum.chi_squared + threshold
+        for other, near in self._others_below(chi_squared, highest):
+            ends = {p: extended(other, near, p, ends.get(p, OPEN), highest) for p in parameters}
+        return minimum, ends
+
+    def extended(
+        self,
+        chi_squared: ChiSquared,
+        minimum: Minimum,
+        threshold: float,
+        parameter: Parameter,
+        ends: Ends,
+    ) -> Ends:
+        """Return an interval, extended to that which `intervals` finds for a parameter.
+
+        That costs two searches where it reaches no further.
+        """
+        highest = minimum.chi_squared + threshold
+        nearby = (self.of(chi_squared), minimum), *self._others_below(chi_squared, highest)
+        for of_rival, near in nearby:
+            ends = extended(of_rival, near, parameter, ends, highest)
+        return ends
+
+    def _others_below(
+        self, chi_squared: ChiSquared, highest: float
+    ) -> Iterator[tuple[ChiSquared, Minimum]]:
+        """Yield χ² with other rows that touch, and its minimum, where that is below ``highest``."""
         for rival, start in self.others:
             other = rival.of(chi_squared)
             near = other.minimise(start.parameters, rough=True)
             if near.chi_squared < highest:
-                ends = {p: extended(other, near, p, ends.get(p, OPEN), highest) for p in parameters}
-        return minimum, ends
+                yield other, near
 
     def _attached(self, chi_squared: ChiSquared, best: Minimum) -> tuple[Rival, Minimum]:
         """Return the minimum with fixed rows of a retraction that touch, and the model of these.
