@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from pellicle.errors import ConvergenceError
-from pellicle.units import readable
+from pellicle.units import decimal, readable
 
 from .comparison import Comparison, Intervals, RivalFit
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
@@ -75,10 +75,18 @@ def compare(
     """
     minima = _minima(chi_squared, best, without, pairs=pairs, report=report)
     quiet, failed = _at_its_noise(chi_squared, minima)
-    quiet = _in_agreement(quiet, *_best(chi_squared, minima))
+    best_rival, best_minimum = _best(chi_squared, minima)
+    widened = _disagreement(quiet, best_rival, best_minimum)
+    quiet = quiet.with_members([replace(m, noise=widened * m.noise) for m in quiet.members])
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
     comparison = replace(judge(quiet, fits, failed), unseen=_unseen(chi_squared))
+    if widened > 1 and comparison.sentence:
+        sentence = (
+            f"{comparison.sentence}; under {best_rival.words} the curves do not agree on the "
+            f"shared parameters either, and the intervals are widened by {decimal(widened, 2)}"
+        )
+        comparison = replace(comparison, sentence=sentence)
     if comparison.chosen is not None:
         comparison = _with_intervals(quiet, comparison, comparison.chosen, threshold)
     return _over_alternatives(quiet, comparison, threshold)
@@ -308,24 +316,22 @@ def _best(chi_squared: ChiSquared, minima: _Minima) -> tuple[Rival, Minimum]:
     return min(minima.values(), key=partial(_criterion, chi_squared))
 
 
-def _in_agreement(chi_squared: ChiSquared, rival: Rival, minimum: Minimum) -> ChiSquared:
-    """Return χ² with noise that is greater by the disagreement of curves on shared parameters.
+def _disagreement(chi_squared: ChiSquared, rival: Rival, minimum: Minimum) -> float:
+    """Return the factor by which disagreement of curves on shared parameters raises their noise.
 
-    That is their disagreement under an explanation (quasi-likelihood, Wedderburn 1974).
+    It is that under an explanation (quasi-likelihood, Wedderburn 1974); 1 if they agree.
     """
     of_rival = rival.of(chi_squared)
     curves = of_rival.curves(minimum.parameters)
     if len(curves) == 1:
-        return chi_squared
+        return 1.0
     together = [member.chi_squared(part) for member, part in curves]
     alone = []
     for (member, part), shared in zip(curves, together, strict=True):
         with suppress(ConvergenceError):
             shared = min(shared, member.minimise(part, rough=True).chi_squared)
         alone.append(shared)
-    louder = float(np.sqrt(Excess.of(of_rival, sum(together), alone).factor))
-    members = [replace(member, noise=louder * member.noise) for member in chi_squared.members]
-    return chi_squared.with_members(members)
+    return float(np.sqrt(Excess.of(of_rival, sum(together), alone).factor))
 
 
 def _ranked(chi_squared: ChiSquared, minima: _Minima, threshold: float | None) -> list[RivalFit]:
