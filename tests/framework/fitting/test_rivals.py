@@ -236,6 +236,14 @@ def test_a_jump_within_the_noise_does_not_stop_the_search() -> None:
         assert (estimate.low or 0.0) < value < (estimate.high or np.inf)
 
 
+def test_a_search_that_loses_the_adhesion_starts_again() -> None:
+    """χ² does not depend on a vanishing work of adhesion, where all searches had stayed."""
+    random = np.random.default_rng([13, 7, *b"retraction"])
+    curve, _, truth = fit_pairs.retraction(random)
+    _, _, best, _ = fit_pairs.minimum_of(curve, "tension+adhesion")
+    assert best.parameters[WORK_OF_ADHESION] == pytest.approx(truth[WORK_OF_ADHESION], abs=1.0)
+
+
 def test_few_failing_curves_of_many_are_chance() -> None:
     """One of twenty curves without fault fails a check now and then; one alone seldom does."""
     assert is_beyond_chance(1, 1)
