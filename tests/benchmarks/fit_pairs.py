@@ -29,6 +29,7 @@ from pellicle.fitting.parameters import (
     SLOPE,
     TENSION,
     Coordinates,
+    Parameter,
 )
 from pellicle.fitting.statistics.checks import fit_single, judged
 from pellicle.fitting.statistics.chi_squared import ChiSquared, Minimum
@@ -139,7 +140,7 @@ def adhesive(random: np.random.Generator) -> dict[str, Any]:
     for p in parameters:
         low, high = ends.get(p, (None, None))
         held = (low is None or low <= truth[p]) and (high is None or truth[p] <= high)
-        scores[p.name] = ((best.parameters[p] - truth[p]) / bounds[p], bool(held))
+        scores[p.name] = (_error(p, best.parameters[p], truth[p]) / bounds[p], bool(held))
     return scores
 
 
@@ -160,9 +161,18 @@ def two_speeds(random: np.random.Generator) -> dict[str, Any]:
         estimate, value = chosen.estimates[p.name], p.value(truth[p])
         low = -np.inf if estimate.low is None else estimate.low
         high = np.inf if estimate.high is None else estimate.high
-        error = p.coordinate(estimate.value) - truth[p]
+        error = _error(p, p.coordinate(estimate.value), truth[p])
         scores[p.name] = (error / bounds[p], bool(low <= value <= high))
     return scores
+
+
+def _error(parameter: Parameter, coordinate: float, truth: float) -> float:
+    """Return the error of a value, relative if the bound is that of a logarithm.
+
+    Where a curve does not show the adhesion, a logarithm would have an error without limit.
+    """
+    error = coordinate - truth
+    return float(np.expm1(error)) if parameter.logarithmic else error
 
 
 def one_speed(random: np.random.Generator) -> dict[str, Any]:

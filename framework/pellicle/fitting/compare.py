@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial, reduce
+from functools import partial
 
 import numpy as np
 
 from pellicle.errors import ConvergenceError
-from pellicle.units import readable
+from pellicle.units import decimal, readable
 
 from .comparison import Comparison, Intervals, RivalFit
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
@@ -21,7 +21,7 @@ from .statistics.chi_squared import ChiSquared, Minimum
 from .statistics.likelihood import Likelihood
 from .statistics.noise import FailedCheck, is_beyond_chance
 from .statistics.pooled_likelihood import Excess
-from .statistics.profile import Ends, Estimate, curvature_interval, estimate_of, united
+from .statistics.profile import OPEN, Ends, Estimate, curvature_interval, estimate_of, united
 from .statistics.rival import Rival
 from .statistics.rivals import NONE, TENSED, rivals
 from .verdict import MANY_MARGIN, judge
@@ -75,10 +75,18 @@ def compare(
     """
     minima = _minima(chi_squared, best, without, pairs=pairs, report=report)
     quiet, failed = _at_its_noise(chi_squared, minima)
-    quiet = _in_agreement(quiet, *_best(chi_squared, minima))
+    best_rival, best_minimum = _best(chi_squared, minima)
+    widened = _disagreement(quiet, best_rival, best_minimum)
+    quiet = quiet.with_members([replace(m, noise=widened * m.noise) for m in quiet.members])
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
     comparison = replace(judge(quiet, fits, failed), unseen=_unseen(chi_squared))
+    if widened > 1 and comparison.sentence:
+        sentence = (
+            f"{comparison.sentence}; under {best_rival.words} the curves do not agree on the "
+            f"shared parameters either, and the intervals are widened by {decimal(widened, 2)}"
+        )
+        comparison = replace(comparison, sentence=sentence)
     if comparison.chosen is not None:
         comparison = _with_intervals(quiet, comparison, comparison.chosen, threshold)
     return _over_alternatives(quiet, comparison, threshold)
@@ -151,33 +159,54 @@ def _over_alternatives(
     """Return the comparison with the intervals of modulus and tension over all alternatives."""
     if len(comparison.alternatives) < 2:
         return comparison
-    chosen = TENSED.code if comparison.chosen is None else comparison.chosen.rival.code
     is_needed = comparison.verdict == "needed"
-    searched = [MODULUS]
-    if is_needed:
-        searched += [TENSION, *(parameter for parameter, _ in _UNSEEN.values())]
-    estimates = {
-        fit.rival.code: _estimates_of(chi_squared, fit, threshold, searched)
-        for fit in comparison.alternatives
-    }
-
-    def over_all(name: str) -> Estimate:
-        own = [parts[name] for parts in estimates.values() if name in parts]
-        low, high = reduce(united, ((estimate.low, estimate.high) for estimate in own))
-        return replace(estimates[chosen][name], low=low, high=high)
-
-    comparison = replace(comparison, modulus=over_all(MODULUS.name))
+    code = TENSED.code if comparison.chosen is None else comparison.chosen.rival.code
+    chosen = next(fit for fit in comparison.alternatives if fit.rival.code == code)
+    others = [fit for fit in comparison.alternatives if fit is not chosen]
+    searched = [MODULUS, TENSION] if is_needed else [MODULUS]
+    own = _estimates_of(chi_squared, chosen, threshold, searched)
+    over_all = {}
+    for parameter in searched:
+        estimate = own[parameter.name]
+        ends = _in_coordinates(parameter, estimate)
+        for fit in others:
+            if ends != OPEN:
+                ends = _extended(chi_squared, fit, threshold, parameter, ends)
+        low, high = (None if end is None else parameter.value(end) for end in ends)
+        over_all[parameter] = replace(estimate, low=low, high=high)
+    comparison = replace(comparison, modulus=over_all[MODULUS])
     if not is_needed:
         return comparison
-    comparison = replace(comparison, tension=over_all(TENSION.name))
-    hidden = [
-        sentence.format(
-            _up_to(parameter.name, estimates[code][parameter.name].high, parameter.unit)
-        )
-        for code, (parameter, sentence) in _UNSEEN.items()
-        if code in comparison.unseen and code in estimates and code != chosen
-    ]
+    comparison = replace(comparison, tension=over_all[TENSION])
+    hidden = []
+    for fit in others:
+        if fit.rival.code in comparison.unseen:
+            parameter, sentence = _UNSEEN[fit.rival.code]
+            estimate = _estimates_of(chi_squared, fit, threshold, [parameter])[parameter.name]
+            hidden.append(sentence.format(_up_to(parameter.name, estimate.high, parameter.unit)))
     return replace(comparison, sentence="; ".join([comparison.sentence, *hidden]))
+
+
+def _extended(
+    chi_squared: ChiSquared, fit: RivalFit, threshold: float, parameter: Parameter, ends: Ends
+) -> Ends:
+    """Return an interval of coordinates, extended to that of another explanation."""
+    if fit.intervals == "profile":
+        known = fit.estimates.get(parameter.name)
+        return ends if known is None else united(ends, _in_coordinates(parameter, known))
+    if parameter not in fit.rival.of(chi_squared).free:
+        return ends
+    minimum = Minimum(fit.parameters, fit.chi_squared)
+    return fit.rival.extended(chi_squared, minimum, threshold, parameter, ends)
+
+
+def _in_coordinates(parameter: Parameter, estimate: Estimate) -> Ends:
+    """Return the interval of an estimate in coordinates of its parameter."""
+    low, high = estimate.low, estimate.high
+    return (
+        None if low is None else parameter.coordinate(low),
+        None if high is None else parameter.coordinate(high),
+    )
 
 
 def _up_to(name: str, high: float | None, unit: str) -> str:
@@ -287,24 +316,22 @@ def _best(chi_squared: ChiSquared, minima: _Minima) -> tuple[Rival, Minimum]:
     return min(minima.values(), key=partial(_criterion, chi_squared))
 
 
-def _in_agreement(chi_squared: ChiSquared, rival: Rival, minimum: Minimum) -> ChiSquared:
-    """Return χ² with noise that is greater by the disagreement of curves on shared parameters.
+def _disagreement(chi_squared: ChiSquared, rival: Rival, minimum: Minimum) -> float:
+    """Return the factor by which disagreement of curves on shared parameters raises their noise.
 
-    That is their disagreement under an explanation (quasi-likelihood, Wedderburn 1974).
+    It is that under an explanation (quasi-likelihood, Wedderburn 1974); 1 if they agree.
     """
     of_rival = rival.of(chi_squared)
     curves = of_rival.curves(minimum.parameters)
     if len(curves) == 1:
-        return chi_squared
+        return 1.0
     together = [member.chi_squared(part) for member, part in curves]
     alone = []
     for (member, part), shared in zip(curves, together, strict=True):
         with suppress(ConvergenceError):
             shared = min(shared, member.minimise(part, rough=True).chi_squared)
         alone.append(shared)
-    louder = float(np.sqrt(Excess.of(of_rival, sum(together), alone).factor))
-    members = [replace(member, noise=louder * member.noise) for member in chi_squared.members]
-    return chi_squared.with_members(members)
+    return float(np.sqrt(Excess.of(of_rival, sum(together), alone).factor))
 
 
 def _ranked(chi_squared: ChiSquared, minima: _Minima, threshold: float | None) -> list[RivalFit]:

@@ -219,6 +219,22 @@ def test_tie_names_its_look_alikes_and_what_would_tell() -> None:
     assert (over.high or 0.0) >= (own.high or 0.0) * (1 - 1e-4)
 
 
+def test_range_of_tied_models_is_the_union_of_their_intervals() -> None:
+    """It is sought only where a model reaches beyond the others, with the same ends."""
+    curve = white(5, length=0.3 * RADIUS)
+    short, full = fit(*curve).rivals, fit(*curve, compare=True).rivals
+    assert short is not None
+    assert full is not None
+    tied = {rival_fit.rival.code for rival_fit in short.alternatives}
+    own = [f.estimates["reduced_modulus"] for f in full.fits if f.rival.code in tied]
+    assert len(own) == len(tied) > 1
+    lows, highs = zip(*((estimate.low, estimate.high) for estimate in own), strict=True)
+    assert max(lows) > 1.2 * min(lows)
+    assert short.modulus is not None
+    assert short.modulus.low == pytest.approx(min(lows), rel=1e-3)
+    assert short.modulus.high == pytest.approx(max(highs), rel=1e-3)
+
+
 def test_tables_and_pools_carry_failed_checks(cli: Callable[..., Result], tmp_path: Path) -> None:
     """CSV and JSON of many curves and of a pool hold code and sentence of each failed check."""
     curves = {

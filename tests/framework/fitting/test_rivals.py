@@ -208,6 +208,11 @@ def test_two_speeds_show_relaxation() -> None:
     assert exponent.low is not None
     assert exponent.high is not None
     assert exponent.high - exponent.low < 6 * exponent.bound
+    assert "either" not in pool.comparison
+    # Two such solids, one half as stiff again, do not agree whatever describes them.
+    stiffer = thin[0]._replace(force=1.5 * thin[0].force)
+    other = fit_rivals.pooled(solid, [thin[0], stiffer])
+    assert "the curves do not agree on the shared parameters either" in other.comparison
 
 
 def test_a_jump_within_the_noise_does_not_stop_the_search() -> None:
@@ -229,6 +234,14 @@ def test_a_jump_within_the_noise_does_not_stop_the_search() -> None:
     true = solid.truth.tension * RADIUS * MODULUS_ / 2
     for estimate, value in ((modulus, MODULUS_), (tension, true)):
         assert (estimate.low or 0.0) < value < (estimate.high or np.inf)
+
+
+def test_a_search_that_loses_the_adhesion_starts_again() -> None:
+    """χ² does not depend on a vanishing work of adhesion, where all searches had stayed."""
+    random = np.random.default_rng([13, 7, *b"retraction"])
+    curve, _, truth = fit_pairs.retraction(random)
+    _, _, best, _ = fit_pairs.minimum_of(curve, "tension+adhesion")
+    assert best.parameters[WORK_OF_ADHESION] == pytest.approx(truth[WORK_OF_ADHESION], abs=1.0)
 
 
 def test_few_failing_curves_of_many_are_chance() -> None:

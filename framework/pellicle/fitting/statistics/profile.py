@@ -197,8 +197,7 @@ def profiled(
     a better minimum than the last.
     """
     for _ in range(_RESTARTS):
-        thin = chi_squared.condensed(minimum.parameters, _FINE)
-        near = minimum if thin is chi_squared else thin.minimise(minimum.parameters, rough=True)
+        thin, near = _condensed(chi_squared, minimum)
         try:
             return minimum, profile_intervals(thin, near, threshold, parameters)[0]
         except ImprovedMinimum as improved:
@@ -222,20 +221,31 @@ def extended(
     chi_squared: ChiSquared, minimum: Minimum, parameter: Parameter, ends: Ends, highest: float
 ) -> Ends:
     """Return an interval, extended to where the profile of another χ² is below ``highest``."""
+    threshold = highest - minimum.chi_squared
+    thin, near = _condensed(chi_squared, minimum)
 
     def is_reached(end: float | None) -> bool:
         """Return whether that profile is at least ``highest`` at an end."""
         if end is None:
             return True
-        at = minimum.parameters | {parameter: end}
-        return chi_squared.minimise(at, (parameter,), rough=True).chi_squared >= highest
+        at = near.parameters | {parameter: end}
+        profile = thin.minimise(at, (parameter,), rough=True).chi_squared
+        return profile >= near.chi_squared + threshold
 
     value = minimum.parameters[parameter]
     inside = (ends[0] is None or ends[0] <= value) and (ends[1] is None or value <= ends[1])
     if inside and all(map(is_reached, ends)):
         return ends
-    _, own = profiled(chi_squared, minimum, highest - minimum.chi_squared, [parameter])
+    _, own = profiled(chi_squared, minimum, threshold, [parameter])
     return united(ends, own.get(parameter, OPEN))
+
+
+def _condensed(chi_squared: ChiSquared, minimum: Minimum) -> tuple[ChiSquared, Minimum]:
+    """Return a condensed χ² of which intervals are sought, if it is that smooth; its minimum."""
+    thin = chi_squared.condensed(minimum.parameters, _FINE)
+    if thin is chi_squared:
+        return thin, minimum
+    return thin, thin.minimise(minimum.parameters, rough=True)
 
 
 def curvature_interval(

@@ -46,6 +46,8 @@ _LOST = 12.0
 """Δχ² beyond which no more, or fewer, rows are taken to touch."""
 _SINGLE = 8
 """Numbers of rows that are tried one by one, before steps grow by this share."""
+_VANISHED = 5.0
+"""Fall of the logarithm of a work of adhesion beyond which a search has lost it."""
 _VISIBLE = 0.5
 """Jump of the force at first touch, over the noise, below which χ² hardly jumps."""
 _EQUAL = 1e-9
@@ -106,13 +108,14 @@ class Rival:
         That model may know more: which rows touch.  ``starts`` may lack the parameters of its own,
         of which it has guesses.  None is returned if no search converges.
         """
-        own, minima, was_thin = self.of(chi_squared), [], False
+        own, minima, was_thin, works = self.of(chi_squared), [], False, []
         is_long = max(member.force.size for member in chi_squared.members) > _LONG
         for start in starts:
             whole = self.start(own, start)
             known = [p for p in self.own if p in start]
             guesses = [{}] if len(known) == len(self.own) else self._guesses(own, whole)
             for guess in guesses:
+                works.append((whole | guess).get(WORK_OF_ADHESION, -np.inf))
                 with suppress(PellicleError):
                     thin = own.condensed(whole | guess, _COARSE) if is_long else own
                     was_thin = was_thin or thin is not own
@@ -121,7 +124,7 @@ class Rival:
             return None
         best = least(minima)
         if WORK_OF_ADHESION in self.own:
-            rival, best = self._attached(chi_squared, best)
+            rival, best = self._attached(chi_squared, best, max(works))
             for index in range(len(chi_squared.members)):
                 rival, best = rival._first_touch(chi_squared, best, index)
             return rival, best
@@ -141,26 +144,60 @@ class Rival:
         """
         minimum, ends = profiled(self.of(chi_squared), minimum, threshold, parameters)
         highest = minimum.chi_squared + threshold
+        for other, near in self._others_below(chi_squared, highest):
+            ends = {p: extended(other, near, p, ends.get(p, OPEN), highest) for p in parameters}
+        return minimum, ends
+
+    def extended(
+        self,
+        chi_squared: ChiSquared,
+        minimum: Minimum,
+        threshold: float,
+        parameter: Parameter,
+        ends: Ends,
+    ) -> Ends:
+        """Return an interval, extended to that which `intervals` finds for a parameter.
+
+        That costs two searches where it reaches no further.
+        """
+        highest = minimum.chi_squared + threshold
+        nearby = (self.of(chi_squared), minimum), *self._others_below(chi_squared, highest)
+        for of_rival, near in nearby:
+            ends = extended(of_rival, near, parameter, ends, highest)
+        return ends
+
+    def _others_below(
+        self, chi_squared: ChiSquared, highest: float
+    ) -> Iterator[tuple[ChiSquared, Minimum]]:
+        """Yield χ² with other rows that touch, and its minimum, where that is below ``highest``."""
         for rival, start in self.others:
             other = rival.of(chi_squared)
             near = other.minimise(start.parameters, rough=True)
             if near.chi_squared < highest:
-                ends = {p: extended(other, near, p, ends.get(p, OPEN), highest) for p in parameters}
-        return minimum, ends
+                yield other, near
 
-    def _attached(self, chi_squared: ChiSquared, best: Minimum) -> tuple[Rival, Minimum]:
+    def _attached(
+        self, chi_squared: ChiSquared, best: Minimum, work: float
+    ) -> tuple[Rival, Minimum]:
         """Return the minimum with fixed rows of a retraction that touch, and the model of these.
 
         As the end of the branch passes a row χ² jumps, and searches and profiles stop there.
+        Searches that lose the adhesion start again from a logarithm of the work of adhesion.
         """
         touching = self._touching(chi_squared, best)
         if touching is None:
             return self, best
-        pairs = _around(
-            lambda shift, near: self._with_rows(chi_squared, near, touching, shift),
-            chi_squared,
-            best,
-        )
+
+        def trial(shift: int, near: Minimum) -> tuple[Rival, Minimum] | None:
+            pair = self._with_rows(chi_squared, near, touching, shift)
+            if pair is None or pair[1].parameters[WORK_OF_ADHESION] > work - _VANISHED:
+                return pair
+            # χ² does not depend on a work of adhesion this small, so no search leaves it.
+            adhering = near._replace(parameters=near.parameters | {WORK_OF_ADHESION: work})
+            again = self._with_rows(chi_squared, adhering, touching, shift)
+            return pair if again is None else min(pair, again, key=lambda p: p[1].chi_squared)
+
+        pairs = _around(trial, chi_squared, best)
         if not pairs:
             return self, best
         (rival, minimum), *others = pairs
