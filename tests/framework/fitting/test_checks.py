@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from pellicle.fitting.problem import FitProblem, problems
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.noise import resolution
 from pellicle.runs.progress import status_line
+from pellicle.units import Quantity
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere
@@ -128,6 +130,20 @@ def _widths(result: pl.Fit) -> float:
     assert result.reduced_modulus.low is not None
     assert result.reduced_modulus.high is not None
     return result.reduced_modulus.high - result.reduced_modulus.low
+
+
+def test_noise_of_residuals_is_not_told_as_that_before_contact() -> None:
+    """What a wrong model leaves in contact widens the noise, and is told beside the rows before."""
+    position, force = white(1, length=0.3 * RADIUS)
+    result = fit(position, force, fix={"tension": 0})
+    before = float(np.std(force[position < 0.99e-6]))
+    assert result.noise > 2 * before
+    told = re.fullmatch(
+        r"residuals in contact \((.+) from \d+ points before contact\); .*", result.noise_from
+    )
+    assert told
+    assert float(Quantity("N")(told[1])) == pytest.approx(before, rel=0.1)
+    assert not any("by that factor" in text for text in result.messages)
 
 
 @pytest.mark.usefixtures("no_rivals")
