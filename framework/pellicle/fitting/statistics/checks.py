@@ -82,7 +82,7 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
         judgement = judged(correlated, best.parameters)
         # A bent baseline is not noise, and its fractional differences would remove the contact: a
         # measured curve with a clear contact got a modulus of 3e-14 Pa.
-        if "misfit" not in {check.code for check in judgement[0].failed}:
+        if not {"misfit", "pattern"} & {check.code for check in judgement[0].failed}:
             likelihood, minimum, (estimate, source) = correlated, best, judgement
             falls = f"power falls as f^{-2 * memory:.2g}"
             source += f", whose {falls}"
