@@ -126,6 +126,21 @@ def test_offset_is_said_and_mended() -> None:
     assert not fit(position, shifted, baseline="offset").failed_checks
 
 
+def test_offset_that_puts_contact_too_deep_is_suggested() -> None:
+    """All rows of a force with an offset seem to touch, deeper than a ball has a side."""
+    depth = np.linspace(-1.0, 0.5, 150) * RADIUS
+    force = MODULUS * Sphere(radius=RADIUS).force_curve(depth, 0.0).force
+    errors = 1e-3 * force.max() * np.random.default_rng(2).standard_normal(depth.size)
+    measured = force + errors + force.max()
+    options: dict[str, Any] = {"indenter": "sphere", "radius": RADIUS, "fix": {"tension": 0}}
+    with pytest.raises(pl.ConfigError, match=r"ends at .* baseline 'offset'"):
+        pl.fit(depth, measured, **options)
+    modulus = pl.fit(depth, measured, baseline="offset", **options).reduced_modulus
+    assert modulus.low is not None
+    assert modulus.high is not None
+    assert modulus.low < MODULUS < modulus.high
+
+
 def _widths(result: pl.Fit) -> float:
     assert result.reduced_modulus.low is not None
     assert result.reduced_modulus.high is not None

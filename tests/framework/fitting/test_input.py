@@ -356,6 +356,8 @@ def test_retract_on_request() -> None:
     fit = pl.fit(*_changed("retract"), indenter="paraboloid", radius=RADIUS, segment="retract")
     assert _holds(fit.tension.to_dict(), TENSION)
     assert any("adhered" in message for message in fit.messages)
+    with pytest.raises(pl.ConfigError, match="into the solid: this is an approach, and"):
+        pl.fit(*_curve(), indenter="paraboloid", radius=RADIUS, segment="retract")
 
 
 @pytest.mark.parametrize(

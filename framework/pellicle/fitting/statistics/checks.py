@@ -183,7 +183,8 @@ def check_depth(model: ForceModel, depth: float, parameters: Coordinates) -> Non
         )
     raise ConfigError(
         f"the depth reaches {readable(depth, 'm', 3)}, and the curve of this indenter ends at "
-        f"{readable(model.depth_limit, 'm', 3)}; are radius and units right? If so, leave out the "
+        f"{readable(model.depth_limit, 'm', 3)}; are radius and units right? If the force before "
+        "contact is not 0, fit the baseline too, with baseline 'offset'; else leave out the "
         "deepest part",
         "indenter",
     )
