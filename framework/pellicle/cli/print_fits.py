@@ -28,7 +28,7 @@ _LINES = 50
 def print_fit(fit: FitResult, *, si: bool = False) -> None:
     """Print the estimates of a fit, a line for each curve of a pool, and the fit in words."""
     from pellicle.fitting.report.sentences import sentence_of_fit
-    from pellicle.fitting.wording import column_scale, interval_text
+    from pellicle.fitting.wording import interval_text, scale
 
     if fit.chosen is not None or fit.range_of_models():
         echo(sentence_of_fit(fit, si=si))
@@ -36,9 +36,9 @@ def print_fit(fit: FitResult, *, si: bool = False) -> None:
         echo("An elastic solid under tension instead:")
     rows = []
     for name, estimate in fit.estimates().items():
-        scale = column_scale([estimate.value], estimate.unit, si=si)
-        ends = "fixed" if estimate.held else interval_text(estimate.low, estimate.high, scale)
-        rows.append((_words(name), scale.number(estimate.value), ends, scale.unit))
+        unit = scale(estimate, si=si)
+        ends = "fixed" if estimate.held else interval_text(estimate.low, estimate.high, unit)
+        rows.append((_words(name), unit.number(estimate.value), ends, unit.unit))
     heads = ("parameter", "value", "95 % interval", "unit")
     print_columns(list(zip(heads, zip(*rows, strict=True), strict=True)))
     if curves := fit.curve_rows(si=si):

@@ -89,7 +89,7 @@ def judge(
         sentence = f"{other.rival.words} describes {curves}, without tension"
         if none.aic - tensed.aic >= EFFECT_MARGIN:
             sentence = (
-                f"{other.rival.words} describes {curves} better than tension "
+                f"{other.rival.words} describes {curves} better than {tensed.rival.words} "
                 f"(ΔAIC = {decimal(-lead, 3)}), so this is not evidence of a tension"
             )
     elif verdict == "undecided":

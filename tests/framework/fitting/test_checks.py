@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from pellicle.fitting.problem import FitProblem, problems
 from pellicle.fitting.statistics.likelihood import Likelihood
 from pellicle.fitting.statistics.noise import resolution
 from pellicle.runs.progress import status_line
+from pellicle.units import Quantity
 from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 from pellicle_plugins.indenters.sphere import Sphere
@@ -124,10 +126,39 @@ def test_offset_is_said_and_mended() -> None:
     assert not fit(position, shifted, baseline="offset").failed_checks
 
 
+def test_offset_that_puts_contact_too_deep_is_suggested() -> None:
+    """All rows of a force with an offset seem to touch, deeper than a ball has a side."""
+    depth = np.linspace(-1.0, 0.5, 150) * RADIUS
+    force = MODULUS * Sphere(radius=RADIUS).force_curve(depth, 0.0).force
+    errors = 1e-3 * force.max() * np.random.default_rng(2).standard_normal(depth.size)
+    measured = force + errors + force.max()
+    options: dict[str, Any] = {"indenter": "sphere", "radius": RADIUS, "fix": {"tension": 0}}
+    with pytest.raises(pl.ConfigError, match=r"ends at .* baseline 'offset'"):
+        pl.fit(depth, measured, **options)
+    modulus = pl.fit(depth, measured, baseline="offset", **options).reduced_modulus
+    assert modulus.low is not None
+    assert modulus.high is not None
+    assert modulus.low < MODULUS < modulus.high
+
+
 def _widths(result: pl.Fit) -> float:
     assert result.reduced_modulus.low is not None
     assert result.reduced_modulus.high is not None
     return result.reduced_modulus.high - result.reduced_modulus.low
+
+
+def test_noise_of_residuals_is_not_told_as_that_before_contact() -> None:
+    """What a wrong model leaves in contact widens the noise, and is told beside the rows before."""
+    position, force = white(1, length=0.3 * RADIUS)
+    result = fit(position, force, fix={"tension": 0})
+    before = float(np.std(force[position < 0.99e-6]))
+    assert result.noise > 2 * before
+    told = re.fullmatch(
+        r"residuals in contact \((.+) from \d+ points before contact\); .*", result.noise_from
+    )
+    assert told
+    assert float(Quantity("N")(told[1])) == pytest.approx(before, rel=0.1)
+    assert not any("by that factor" in text for text in result.messages)
 
 
 @pytest.mark.usefixtures("no_rivals")

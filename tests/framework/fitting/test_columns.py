@@ -135,6 +135,22 @@ def test_time(tmp_path: Path, header: str) -> None:
         assert time is None
 
 
+@pytest.mark.parametrize(
+    ("header", "times", "reason"),
+    [("time", "1 2 3 4", "has no unit"), ("time [s]", "1 1 1 1", "stands still")],
+)
+def test_time_that_does_not_serve(tmp_path: Path, header: str, times: str, reason: str) -> None:
+    """A time that is not used is not silently left out: relaxation depends on it."""
+    path = tmp_path / "a.csv"
+    lines = [f"{line},{time}" for line, time in zip(rows().split(), times.split(), strict=True)]
+    path.write_text(f"position [um],force [nN],{header}\n" + "\n".join(lines), encoding="utf-8")
+    curve = curves(path)[""]
+    assert curve.time is None
+    (note,) = curve.messages
+    assert reason in note
+    assert "time" not in curve.origin.columns
+
+
 def test_labels_and_deflection(tmp_path: Path) -> None:
     """Rows are told apart by a column of another name; a deflection gets force and position."""
     path = tmp_path / "a.csv"

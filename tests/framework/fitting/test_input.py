@@ -64,6 +64,20 @@ def test_command_gives_json(cli: Cli) -> None:
     assert "Cramér–Rao" in report["advice"]
 
 
+def test_an_upper_bound_of_no_tension_has_a_prefix(cli: Cli) -> None:
+    """A tension of 0 has no size of its own, so its unit is that of the end of its interval."""
+    depth = np.linspace(-1e-6, 1e-6, 200)
+    force = MODULUS * Paraboloid(radius=RADIUS).force_curve(depth, 0.0).force
+    errors = np.random.default_rng(3).standard_normal(depth.size)
+    _write(depth, force + 0.005 * force.max() * errors)
+    (line,) = [
+        line
+        for line in cli("curve.csv", *OPTIONS).stdout.splitlines()
+        if line.startswith("tension ")
+    ]
+    assert re.fullmatch(r"tension +0 +open to \d+(\.\d+)? +µN/m", line.rstrip())
+
+
 @pytest.mark.usefixtures("no_rivals")
 def test_command_leaves_files(cli: Cli) -> None:
     """A folder gets JSON and figure, named after the curve; an open interval is null there."""
@@ -342,6 +356,8 @@ def test_retract_on_request() -> None:
     fit = pl.fit(*_changed("retract"), indenter="paraboloid", radius=RADIUS, segment="retract")
     assert _holds(fit.tension.to_dict(), TENSION)
     assert any("adhered" in message for message in fit.messages)
+    with pytest.raises(pl.ConfigError, match="into the solid: this is an approach, and"):
+        pl.fit(*_curve(), indenter="paraboloid", radius=RADIUS, segment="retract")
 
 
 @pytest.mark.parametrize(

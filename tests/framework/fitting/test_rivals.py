@@ -479,6 +479,24 @@ def test_an_effect_beside_tension_has_to_beat_tension_alone(
     assert ("beside it there is adhesion" in comparison.sentence) == (chosen is not None)
 
 
+def test_a_difference_is_told_from_the_explanation_that_it_is_to() -> None:
+    """The best explanation with tension may be a pair, whose ΔAIC is not that of tension alone."""
+    ranked = {"adhesion": 0.0, "tension+drag": 50.0, "tension": 90.0, "none": 95.0}
+    fits = [
+        RivalFit(
+            Rival(code, code.replace("+", " and "), "tension" in code, TENSED.build),
+            0.0,
+            aic,
+            aic,
+            {},
+            {},
+        )
+        for code, aic in ranked.items()
+    ]
+    sentence = judge(Pool.of([]), fits, []).sentence
+    assert "better than tension and drag (ΔAIC = 50)" in sentence
+
+
 @pytest.mark.parametrize(
     ("aic", "verdict"),
     [

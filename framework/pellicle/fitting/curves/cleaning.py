@@ -195,10 +195,10 @@ def _rows(z: Array, segment: Segment, messages: list[str]) -> slice:
         return slice(0, z.size)
     approach = segment == "approach"
     if approach not in inward:
-        other = "retract" if approach else "approach"
+        article, other = ("a", "retract") if approach else ("an", "approach")
         raise ConfigError(
-            f"only moves {'out of' if approach else 'into'} the solid: this is a {other}, and the "
-            f"{segment} is to be fitted; give the {segment}, or set segment to {other!r}",
+            f"only moves {'out of' if approach else 'into'} the solid: this is {article} {other}, "
+            f"and the {segment} is to be fitted; give the {segment}, or set segment to {other!r}",
             "position",
         )
     first, last = passes[inward.index(approach)]

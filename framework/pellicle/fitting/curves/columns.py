@@ -14,7 +14,7 @@ from pellicle.model.base import Model
 from pellicle.units import Quantity
 
 from .cleaning import grows
-from .curve import Curve
+from .curve import Curve, Note
 from .origin import CurveOrigin
 from .roles import EXAMPLE, OF_BASE, POSITIONS, SIGNALS, TIME, ColumnMap, factor, is_voltage
 
@@ -113,12 +113,18 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
             else force / calibration.required_spring_constant(purpose)
         )
         position = (position if name == "extension" else -position) - deflection
+    time = _time(columns, np.isfinite(position) & np.isfinite(force))
+    messages: tuple[str, ...] = ()
+    if TIME in columns and time is None:
+        messages = (_unused_time(columns[TIME]),)
+        columns = {role: channel for role, channel in columns.items() if role != TIME}
     return Curve(
         position,
         force,
         name == "depth",
+        messages,
         stiffness=calibration.spring_constant,
-        time=_time(columns, np.isfinite(position) & np.isfinite(force)),
+        time=time,
         speed=calibration.speed,
         origin=CurveOrigin(
             columns={role: f"{c.name or role} [{c.unit}]" for role, c in columns.items()},
@@ -135,6 +141,12 @@ def _time(columns: Mapping[str, Channel], rows: Mask) -> Array | None:
     if time.shape != rows.shape or not grows(time[rows]):
         return None
     return factor(TIME, columns[TIME].unit) * time
+
+
+def _unused_time(column: Channel) -> Note:
+    """Return the note on a column of times that do not serve."""
+    reason = "falls, stands still or has a row without a number" if column.unit else "has no unit"
+    return Note(f"column {column.name or TIME} {reason}, so the curve is taken as one without time")
 
 
 def _deflection(column: Channel, calibration: Calibration) -> Array:

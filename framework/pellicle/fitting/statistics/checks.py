@@ -130,6 +130,9 @@ def judged(likelihood: Likelihood, parameters: Coordinates) -> tuple[NoiseEstima
         source, before = f"{count} points before contact", check_baseline(residuals)
         messages = before.messages
     noise, in_contact, *_ = _check_contact(residuals, before)
+    if before is not None and noise.deviation > before.noise.deviation:
+        quiet = readable(before.noise.deviation, "N", 3)
+        source = f"residuals in contact ({quiet} from {source})"
     failed = (*_spikes(residuals), *in_contact)
     if failed:
         source += f"; checks that fail: {', '.join(check.code for check in failed)}"
@@ -180,7 +183,8 @@ def check_depth(model: ForceModel, depth: float, parameters: Coordinates) -> Non
         )
     raise ConfigError(
         f"the depth reaches {readable(depth, 'm', 3)}, and the curve of this indenter ends at "
-        f"{readable(model.depth_limit, 'm', 3)}; are radius and units right? If so, leave out the "
+        f"{readable(model.depth_limit, 'm', 3)}; are radius and units right? If the force before "
+        "contact is not 0, fit the baseline too, with baseline 'offset'; else leave out the "
         "deepest part",
         "indenter",
     )
@@ -261,7 +265,7 @@ def _misfit(code: str, finding: str, residuals: Residuals) -> FailedCheck:
     return FailedCheck(
         code,
         f"in contact {finding}: the model (this indenter, this elastic solid, no adhesion{fixed}) "
-        "does not describe the curve; the intervals are widened by that factor",
+        "does not describe the curve; the intervals are widened accordingly",
     )
 
 
