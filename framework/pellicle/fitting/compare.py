@@ -80,7 +80,7 @@ def compare(
     quiet = quiet.with_members([replace(m, noise=widened * m.noise) for m in quiet.members])
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
-    comparison = replace(judge(quiet, fits, failed), unseen=_unseen(chi_squared))
+    comparison = replace(judge(quiet, fits, failed, threshold), unseen=_unseen(chi_squared))
     if widened > 1 and comparison.sentence:
         sentence = (
             f"{comparison.sentence}; under {best_rival.words} the curves do not agree on the "

@@ -69,6 +69,8 @@ class Comparison:
     """The explanation whose estimates count, if it is not an elastic solid under tension."""
     pull_off: str = ""
     """The pull-off force of an adhesive contact against its limits, in words."""
+    margin: float = MARGIN
+    """Difference of AIC below which explanations cannot be told apart."""
     unseen: tuple[str, ...] = ()
     """Codes of pairs whose effect a measurement of this kind does not show beside a tension."""
     modulus: Estimate | None = None
@@ -84,7 +86,7 @@ class Comparison:
     @property
     def tied(self) -> tuple[RivalFit, ...]:
         """The explanations that the curves cannot tell from the best, the best included."""
-        return tuple(fit for fit in self.fits if fit.aic < MARGIN)
+        return tuple(fit for fit in self.fits if fit.aic < self.margin)
 
     @property
     def alternatives(self) -> tuple[RivalFit, ...]:
@@ -110,7 +112,7 @@ class Comparison:
         return tuple(
             fit
             for fit in self.fits
-            if fit.rival.code == chosen or (fit.aic < MARGIN and counts(fit))
+            if fit.rival.code == chosen or (fit.aic < self.margin and counts(fit))
         )
 
     def rows(self, *, si: bool = False) -> list[dict[str, str]]:
@@ -137,7 +139,7 @@ class Comparison:
             "sentence": self.sentence,
             "advice": self.advice,
             "tied": [fit.rival.code for fit in self.tied],
-            "margin": MARGIN,
+            "margin": self.margin,
             "chosen": None if self.chosen is None else self.chosen.rival.code,
             "pull_off": self.pull_off,
             "alternatives": [fit.rival.code for fit in self.alternatives],

@@ -65,21 +65,26 @@ def judge(
     chi_squared: ChiSquared,
     fits: Sequence[RivalFit],
     failed: Sequence[FailedCheck],
+    threshold: float,
 ) -> Comparison:
     """Return the verdict on explanations of the curves of a χ².
 
-    ``fits`` are sorted by their criterion; ``failed`` are the checks that the best one fails.
+    ``fits`` are sorted by their criterion; ``failed`` are the checks that the best one fails;
+    ``threshold`` is Δχ² at the ends of intervals.
     """
+    # With noise from few rows intervals are wider, and that of a tension that is needed leaves 0
+    # out.
+    margin = max(MARGIN, threshold)
     by_code = {fit.rival.code: fit for fit in fits}
     doubted = bool(doubt_of_tension(failed))
     aic = {code: fit.aic for code, fit in by_code.items()}
-    verdict, tensed_code, other_code, lead = decision(aic, doubted=doubted, margin=MARGIN)
+    verdict, tensed_code, other_code, lead = decision(aic, doubted=doubted, margin=margin)
     tensed, other, none = by_code[tensed_code], by_code[other_code], by_code[NONE.code]
     curves = "this curve" if len(chi_squared.members) == 1 else "these curves"
     chosen: RivalFit | None = None
     sentence = advice = ""
     if doubted:
-        chosen = fits[0] if by_code[TENSED.code].aic >= MARGIN else None
+        chosen = fits[0] if by_code[TENSED.code].aic >= margin else None
         sentence = _undescribed(curves, fits[0], failed)
     elif verdict == "needed":
         chosen = tensed
@@ -94,7 +99,7 @@ def judge(
             )
     elif verdict == "undecided":
         without = [fit for fit in fits if not fit.rival.has_tension]
-        tied = [fit for fit in without if abs(fit.aic - tensed.aic) < MARGIN]
+        tied = [fit for fit in without if abs(fit.aic - tensed.aic) < margin]
         names = [
             f"{fit.rival.words} (Δχ² = {decimal(fit.chi_squared - tensed.chi_squared, 2)})"
             for fit in tied
@@ -104,7 +109,7 @@ def judge(
         advice = advised(chi_squared, explanations[0], explanations[1:])
     if chosen is not None and chosen.rival == TENSED:
         chosen = None
-    return Comparison(tuple(fits), verdict, sentence, advice, tuple(failed), chosen)
+    return Comparison(tuple(fits), verdict, sentence, advice, tuple(failed), chosen, margin=margin)
 
 
 def _undescribed(curves: str, best: RivalFit, failed: Sequence[FailedCheck]) -> str:

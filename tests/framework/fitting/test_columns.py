@@ -108,6 +108,18 @@ def test_thousands_are_no_decimals(tmp_path: Path, mark: str) -> None:
         assert position == pytest.approx([0.9995e-6, expected], rel=1e-12, nan_ok=True)
 
 
+def test_decimal_commas_between_commas_are_refused(tmp_path: Path) -> None:
+    """They would split numbers: 1,5 at 2,7 was a position of 1 at a force of 5."""
+    path = tmp_path / "curve.csv"
+    path.write_text("position [um],force [nN]\n1,5,2,7\n1,6,2,9\n", encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match=r"has 4 numbers below 2 names \(1,5,2,7\)"):
+        dict(read(path))
+    path.write_text("position [um],force [nN]\n1.5,2.7,,a remark\n1.6,2.9\n", encoding="utf-8")
+    measured = read(path)[""]
+    assert isinstance(measured, Curve)
+    assert measured.force == pytest.approx([2.7e-9, 2.9e-9])
+
+
 def test_thousands_that_may_be_decimals_are_refused(tmp_path: Path) -> None:
     """Whole nanometres up to 1,200 are not read as 1.2 nm, which would leave the deep rows out."""
     path = tmp_path / "a.tsv"

@@ -473,10 +473,26 @@ def test_an_effect_beside_tension_has_to_beat_tension_alone(
         for code in ranked
     } | {rival.code: rival for rival in (NONE, TENSED)}
     fits = [RivalFit(rivals[code], 0.0, aic, aic, {}, {}) for code, aic in ranked.items()]
-    comparison = judge(Pool.of([]), fits, [])
+    comparison = judge(Pool.of([]), fits, [], 3.84)
     assert comparison.verdict == "needed"
     assert (comparison.chosen and comparison.chosen.rival.code) == chosen
     assert ("beside it there is adhesion" in comparison.sentence) == (chosen is not None)
+
+
+@pytest.mark.parametrize(("threshold", "verdict"), [(3.84, "needed"), (4.5, "undecided")])
+def test_a_tension_is_not_needed_within_the_threshold_of_intervals(
+    threshold: float, verdict: Verdict
+) -> None:
+    """Noise from few rows widens intervals, and one of a tension that is needed leaves 0 out."""
+    ranked = {"tension": 0.0, "power_law": 4.2, "none": 300.0}
+    known = {rival.code: rival for rival in (NONE, TENSED)}
+    known["power_law"] = Rival("power_law", "power-law relaxation", False, TENSED.build)
+    fits = [RivalFit(known[code], aic, aic, aic, {}, {}) for code, aic in ranked.items()]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("pellicle.fitting.verdict.advised", lambda *explanations: "")
+        comparison = judge(Pool.of([]), fits, [], threshold)
+    assert comparison.verdict == verdict
+    assert len(comparison.tied) == (1 if verdict == "needed" else 2)
 
 
 def test_a_difference_is_told_from_the_explanation_that_it_is_to() -> None:
@@ -493,7 +509,7 @@ def test_a_difference_is_told_from_the_explanation_that_it_is_to() -> None:
         )
         for code, aic in ranked.items()
     ]
-    sentence = judge(Pool.of([]), fits, []).sentence
+    sentence = judge(Pool.of([]), fits, [], 3.84).sentence
     assert "better than tension and drag (ΔAIC = 50)" in sentence
 
 

@@ -269,6 +269,14 @@ def curves_of(
 def _standard_columns(path: Path, cells: Cells) -> tuple[dict[str, int], dict[str, str]]:
     names = cells.names
     indices = {name: index for index, name in enumerate(names) if name in (*NAMES, LABEL)}
+    for row in cells.rows if indices and not cells.comma else []:
+        if any(map(_is_number, row[len(names) :])):
+            raise ConfigError(
+                f"{path}: has {len(row)} numbers below {len(names)} names ({','.join(row)}), as "
+                "where commas are decimal and separate columns too; export it with semicolons, "
+                "tabs or decimal points, or choose columns by their numbers (--columns on the "
+                "command line)"
+            )
     for name in indices:
         if names.count(name) > 1:
             raise ConfigError(
