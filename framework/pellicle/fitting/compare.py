@@ -178,12 +178,13 @@ def _over_alternatives(
     if not is_needed:
         return comparison
     comparison = replace(comparison, tension=over_all[TENSION])
+    by_code = {fit.rival.code: fit for fit in others}
     hidden = []
-    for fit in others:
-        if fit.rival.code in comparison.unseen:
-            parameter, sentence = _UNSEEN[fit.rival.code]
-            estimate = _estimates_of(chi_squared, fit, threshold, [parameter])[parameter.name]
-            hidden.append(sentence.format(_up_to(parameter.name, estimate.high, parameter.unit)))
+    for code, (parameter, sentence) in _UNSEEN.items():
+        if code in comparison.unseen and code in by_code:
+            estimate = _estimates_of(chi_squared, by_code[code], threshold, [parameter])
+            high = estimate[parameter.name].high
+            hidden.append(sentence.format(_up_to(parameter.name, high, parameter.unit)))
     return replace(comparison, sentence="; ".join([comparison.sentence, *hidden]))
 
 

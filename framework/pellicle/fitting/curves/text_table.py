@@ -269,8 +269,9 @@ def curves_of(
 def _standard_columns(path: Path, cells: Cells) -> tuple[dict[str, int], dict[str, str]]:
     names = cells.names
     indices = {name: index for index, name in enumerate(names) if name in (*NAMES, LABEL)}
-    for row in cells.rows if indices and not cells.comma else []:
-        if any(map(_is_number, row[len(names) :])):
+    is_curve_table = _recogniser({})(cells.heads)
+    for row in cells.rows if is_curve_table and not cells.comma else []:
+        if len(row) > len(names) and all(map(_is_number, row)):
             raise ConfigError(
                 f"{path}: has {len(row)} numbers below {len(names)} names ({','.join(row)}), as "
                 "where commas are decimal and separate columns too; export it with semicolons, "
