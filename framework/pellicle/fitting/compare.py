@@ -182,8 +182,8 @@ def _over_alternatives(
     hidden = []
     for code, (parameter, sentence) in _UNSEEN.items():
         if code in comparison.unseen and code in by_code:
-            estimate = _estimates_of(chi_squared, by_code[code], threshold, [parameter])
-            high = estimate[parameter.name].high
+            estimates = _estimates_of(chi_squared, by_code[code], threshold, [parameter])
+            high = estimates[parameter.name].high
             hidden.append(sentence.format(_up_to(parameter.name, high, parameter.unit)))
     return replace(comparison, sentence="; ".join([comparison.sentence, *hidden]))
 
