@@ -229,7 +229,11 @@ def extended(
         if end is None:
             return True
         at = near.parameters | {parameter: end}
-        profile = thin.minimise(at, (parameter,), rough=True).chi_squared
+        try:
+            profile = thin.minimise(at, (parameter,), rough=True).chi_squared
+        except ConvergenceError:
+            # A start this far from the minimum; the profile itself is followed in steps.
+            return False
         return profile >= near.chi_squared + threshold
 
     value = minimum.parameters[parameter]
