@@ -7,6 +7,7 @@ from typing import Final, Protocol
 import numpy as np
 import scipy.sparse
 
+from pellicle.arrays import Mask
 from pellicle.numerics.dilation import dilated
 from pellicle.numerics.sharing import row_blocks, shared
 
@@ -44,7 +45,7 @@ class Sweeps(Protocol):
         ...
 
 
-def sweeps_near(free: Field, stretch: tuple[float, float]) -> Sweeps:
+def sweeps_near(free: Field | Mask, stretch: tuple[float, float]) -> Sweeps:
     """Return the sweeps beside a contact.
 
     Parameters

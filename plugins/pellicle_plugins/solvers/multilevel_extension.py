@@ -73,7 +73,7 @@ class Extension:
         self.shape = known.shape
         self._levels: list[_Level] = []
         # A line is squeezed to one axis.
-        weight = np.squeeze(known.astype(np.float32))
+        weight: Field | Mask = np.squeeze(known)
         any_bends = any(map(bends, orders))
         moments: Moments | None = None
         for order in orders:
@@ -120,8 +120,8 @@ class Extension:
 
 @dataclass(frozen=True)
 class _Level:
-    free: Field
-    """1 − w."""
+    free: Field | Mask
+    """1 − w; bool on the finest level, in a quarter of the memory."""
     share: Field
     """Weight of each value in the mean of the coarser level."""
     moments: Moments | None
@@ -153,25 +153,28 @@ class _Level:
         return _transposed_interpolate(smooth, np.ones_like(values))
 
 
-def _coarse_weights(weight: Field, loss: np.float32) -> tuple[Field, Field, Field]:
+def _coarse_weights(weight: Field | Mask, loss: np.float32) -> tuple[Field, Field, Field | Mask]:
     """Return the weights of the coarser level, `_Level.share` and `_Level.free`."""
-    coarse = np.empty([n // 2 for n in weight.shape], weight.dtype)
+    coarse = np.empty([n // 2 for n in weight.shape], np.float32)
     share, free = np.empty_like(coarse), np.empty_like(weight)
 
     def compute(rows: slice) -> None:
         fine = _fine(rows)
-        total = _sums(weight[fine])
+        total = _sums(weight[fine].astype(np.float32, copy=False))
         np.minimum(loss * total, _ONE, out=coarse[rows])
         # Where the total is 0 the share is multiplied by 0.
         np.maximum(total, _TINY, out=total)
         np.minimum(loss, _ONE / total, out=share[rows])
-        np.subtract(_ONE, weight[fine], out=free[fine])
+        if free.dtype == bool:
+            np.logical_not(weight[fine], out=free[fine])
+        else:
+            np.subtract(_ONE, weight[fine], out=free[fine])
 
     shared(compute, _blocks(coarse.shape))
     return coarse, share, free
 
 
-def _coarse_moments(weight: Field, moments: Moments | None, share: Field) -> Moments:
+def _coarse_moments(weight: Field | Mask, moments: Moments | None, share: Field) -> Moments:
     """Return Σ ``share`` (w × position + moment) over 2 × 2 cells, positions from their centre.
 
     Cells of the finest level have no ``moments``: known values are at their centres.
@@ -183,7 +186,7 @@ def _coarse_moments(weight: Field, moments: Moments | None, share: Field) -> Mom
     return tuple(share * moment for moment in coarse)
 
 
-def _alternating(field: Field, axis: int) -> Field:
+def _alternating(field: Field | Mask, axis: int) -> Field:
     signs = np.ones(field.shape[axis], dtype=np.float32)
     signs[0::2] = -1
     return field * (signs[:, None] if axis < field.ndim - 1 else signs)
@@ -235,7 +238,7 @@ def _add_repeated(coarse: Field, share: Field, fine: Field) -> None:
     shared(add, _blocks(coarse.shape))
 
 
-def _interpolate(coarse: Field, free: Field, own: Field) -> Field:
+def _interpolate(coarse: Field, free: Field | Mask, own: Field) -> Field:
     """Return ``own`` + ``free`` × the (bi)linear interpolation from cells of twice the size.
 
     The sum is in ``own``.
@@ -262,7 +265,7 @@ def _interpolate(coarse: Field, free: Field, own: Field) -> Field:
     return own
 
 
-def _transposed_interpolate(fine: Field, free: Field) -> Field:
+def _transposed_interpolate(fine: Field, free: Field | Mask) -> Field:
     """Return the transpose of the map from ``coarse`` in `_interpolate`, applied to ``fine``."""
     if fine.ndim == 1:
         return _QUARTER * _transposed_refine(fine * free)
