@@ -65,7 +65,8 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
     Raises
     ------
     ConfigError
-        No modulus above 0 describes the curve.
+        No modulus above 0 describes the curve, or its depth is beyond that to which the force model
+        holds.
     ConvergenceError
         No search for the best parameters converges.
     """
@@ -92,6 +93,8 @@ def fit_single(likelihood: Likelihood, fixed: Coordinates) -> SingleFit:
             )
             failed_check = FailedCheck("slow_noise", message)
             estimate = estimate._replace(failed=(failed_check, *estimate.failed))
+    # Profiles and comparisons beyond the limit take a hundred times as long as this search.
+    check_depth(likelihood.force_model, likelihood.deepest(minimum.parameters), minimum.parameters)
     noise, failed = estimate.noise, estimate.failed
     scaled = minimum.chi_squared * (likelihood.noise / noise.deviation) ** 2
     likelihood = replace(likelihood, noise=noise.deviation)
