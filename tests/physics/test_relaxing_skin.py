@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.numerics.outside import PlaneOperator
 from pellicle.runs.relaxation import Relaxation
+from pellicle.studies.summary import caveats
 
 TABLE = Path(__file__).parents[1] / "data" / "visco_punch.csv"
 MODULUS, TENSION = 5.0, 0.5
@@ -183,6 +185,27 @@ def test_a_contact_that_has_shrunk_left_its_memory_outside() -> None:
     steps = _warned(problem, progress=False).dataset
     assert 8 * float(steps["contact_radius"][-1]) < 7
     assert steps["status_code"].values.tolist() == ["CONVERGED", "SMALL_DOMAIN", "SMALL_DOMAIN"]
+
+
+def test_several_caveats_are_all_told() -> None:
+    """A contact on too few cells of a domain too small for the solid is told to be both."""
+    times = np.array([0.0, 20.0])
+    small = run_of(12, times, size=6.0, substrate=kernel(0.1))
+    with pytest.warns(pl.ConvergenceWarning) as warned:
+        result = pl.run(small, progress=False)
+    assert result.dataset["status_code"].values.tolist() == ["COARSE"] * times.size
+    for caveat in ("cells are too coarse", "domain of .* is small for a skin"):
+        assert any(re.search(f"converged, but the {caveat}", str(w.message)) for w in warned)
+        assert re.search(caveat, str(result.dataset["status"].values[1]))
+    assert [number for number, _ in result.coarse()] == [1, 2]
+    ((number, message),) = result.cramped()
+    assert number == 2
+    assert "cells" not in message
+    table = result.dataset.expand_dims("run")
+    assert [*caveats(table)] == [
+        "of 1 runs, in 1 the cells are too coarse for this contact",
+        "of 1 runs, in 1 the domain is small for a skin on a solid that relaxes",
+    ]
 
 
 def _warned(*arguments: Any, **options: Any) -> Any:

@@ -15,7 +15,10 @@ _CONSTANT = 0.05
 
 
 def steepest(profile: Array, contact: Mask, grid: Grid) -> float:
-    """Return the largest slope of an indenter between two neighbouring cells in contact.
+    """Return the largest slope of an indenter in contact, in any direction.
+
+    It is the largest gradient between four cells in contact that meet in a corner, or slope between
+    two neighbours if that is larger, as on the ridge of a roof or in a contact one cell wide.
 
     Parameters
     ----------
@@ -26,18 +29,11 @@ def steepest(profile: Array, contact: Mask, grid: Grid) -> float:
     grid
         The cells.
     """
-    slopes = [0.0]
-    for axis, width in enumerate(grid.spacing):
-        both = np.logical_and(*(_shifted(contact, axis, first) for first in (True, False)))
-        a, b = (_shifted(profile, axis, first)[both] for first in (True, False))
-        slopes.append(float(np.abs(a - b).max(initial=0.0)) / width)
-    return max(slopes)
-
-
-def _shifted(values: Array | Mask, axis: int, first: bool) -> Array | Mask:
-    cells = [slice(None), slice(None)]
-    cells[axis] = slice(None, -1) if first else slice(1, None)
-    return values[tuple(cells)]
+    heights = np.where(contact, profile, np.nan)
+    by_x, by_y = (np.diff(heights, axis=axis) / width for axis, width in enumerate(grid.spacing))
+    at_corners = 0.5 * np.hypot(by_x[:, 1:] + by_x[:, :-1], by_y[1:] + by_y[:-1])
+    slopes = np.concatenate([np.abs(by_x).ravel(), np.abs(by_y).ravel(), at_corners.ravel()])
+    return float(np.fmax.reduce(slopes, initial=0.0))
 
 
 def rim_slope(compliance: Callable[[Array], Array], equilibrium: Equilibrium) -> float:

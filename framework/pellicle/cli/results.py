@@ -44,6 +44,8 @@ def print_origin(data: xr.Dataset) -> None:
 
 def print_steps(result: Result, *, si: bool = False) -> None:
     """Print a row for each step."""
+    from pellicle.results.result import caveats_of
+    from pellicle.results.status import Status
     from pellicle.results.variables import names_of
 
     data = result.dataset
@@ -62,11 +64,12 @@ def print_steps(result: Result, *, si: bool = False) -> None:
         for n in numbers
     ]
     print_columns([*_columns(data, names, si), ("status", verdicts)])
-    several = {**coarse, **dict(result.steep()), **dict(result.cramped())}
+    # `exit_by_convergence` warns of these.
+    warned = {Status.COARSE, Status.COARSE_ZONE, Status.STEEP, Status.SMALL_DOMAIN}
     caveats = [
-        (number, code, status)
-        for number, code, status in _statuses(data)
-        if converged[number] and code != "CONVERGED" and number not in several
+        (number, status.name, message)
+        for number, status, message in caveats_of(data)
+        if status not in warned
     ]
     for steps, status in _grouped(caveats):
         echo(f"{steps}: {for_document(status)}", err=True)

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from pellicle.analysis import Oscillation
 from pellicle.errors import ConfigError, StorageError
 from pellicle.grid import Grid
@@ -20,7 +18,7 @@ from pellicle.units import axis_unit, readable
 from . import storage
 from .limits import beyond_theory
 from .path import label_of_step, oscillations_of, path_variables
-from .status import Status
+from .status import Status, statuses_of
 from .variables import COORDINATES, FIELDS, REQUIRED, VARIABLES, damage
 
 if TYPE_CHECKING:
@@ -83,15 +81,15 @@ class Result:
 
     def coarse(self) -> list[tuple[int, str]]:
         """Return number and status of each step whose cells are too coarse."""
-        return self._of([status for status in Status if status.is_coarse])
+        return self._of({status for status in Status if status.is_coarse})
 
     def steep(self) -> list[tuple[int, str]]:
         """Return number and status of each step with slopes beyond those of the theory."""
-        return self._of([Status.STEEP])
+        return self._of({Status.STEEP})
 
     def cramped(self) -> list[tuple[int, str]]:
         """Return number and status of each step whose domain is small for the solid's memory."""
-        return self._of([Status.SMALL_DOMAIN])
+        return self._of({Status.SMALL_DOMAIN})
 
     def beyond_theory(self) -> dict[str, str]:
         """Return the limits of the theory that the largest contact exceeds by far, with messages.
@@ -100,10 +98,10 @@ class Result:
         """
         return beyond_theory(self.dataset, self.configuration)
 
-    def _of(self, statuses: list[Status]) -> list[tuple[int, str]]:
-        codes = self.dataset["status_code"].values
-        among = np.isin(codes.astype(str), [status.name for status in statuses])
-        return _statuses(self.dataset.isel(step=among))
+    def _of(self, statuses: set[Status]) -> list[tuple[int, str]]:
+        return [
+            (number, message) for number, s, message in caveats_of(self.dataset) if s in statuses
+        ]
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: status, numbers of the steps, the pressure of the last."""
@@ -210,6 +208,17 @@ def _outcome(solved: int, planned: int, failed: int) -> str:
 
 def _statuses(data: xr.Dataset) -> list[tuple[int, str]]:
     return list(zip(data["step"].values.tolist(), map(str, data["status"].values), strict=True))
+
+
+def caveats_of(data: xr.Dataset) -> list[tuple[int, Status, str]]:
+    """Return number, status and message of every caveat of the steps; a step may have several."""
+    columns = (data[name].values.tolist() for name in ("step", "status_code", "status"))
+    return [
+        (number, status, message)
+        for number, code, text in zip(*columns, strict=True)
+        for status, message in statuses_of(code, text)
+        if status.converged and status is not Status.CONVERGED
+    ]
 
 
 def first_message(steps: Sequence[tuple[int, str]]) -> str:

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import Enum
+from typing import Final
+
+# Between the caveats in the message of a step.
+_AND: Final = "; moreover, "
 
 
 class Status(Enum):
@@ -34,15 +39,15 @@ class Status(Enum):
         "converged, but slopes in contact reach {slope:.2f}, and the theory is for slopes up to "
         "{most:g}: force and area are those of the model, not of the experiment"
     )
-    JUMPED = (
-        "converged; a part of the contact jumped after the last step{loss}: in between it "
-        "is not in equilibrium; smaller steps show where it jumps"
-    )
     SMALL_DOMAIN = (
         "converged, but the domain of {size} is small for a skin on a solid that relaxes: what the "
         "solid carries beyond it is known in sum only, and force and depth may be off by per cent; "
         "use grid.size ≥ {least}: 8 contact radii, and 3 times the length 2τ₀/E* below which "
         "the skin is stiffer than the relaxed solid"
+    )
+    JUMPED = (
+        "converged; a part of the contact jumped after the last step{loss}: in between it "
+        "is not in equilibrium; smaller steps show where it jumps"
     )
     NOT_FINITE = (
         "the pressure became NaN or infinite; check the kernel's compliance and the profile for "
@@ -117,3 +122,37 @@ class Status(Enum):
         if self.converged:
             return "converged"
         return {Status.NOT_RUN: "not run", Status.FAILED: "failed"}.get(self, "NOT CONVERGED")
+
+
+def with_caveats(messages: Sequence[str]) -> str:
+    """Return the message of a step that has several statuses, most important first."""
+    first, *others = messages
+    return _AND.join([first, *(_parted(message)[1] for message in others)])
+
+
+def statuses_of(code: str, message: str) -> list[tuple[Status, str]]:
+    """Return each status in the code and message of a step, with a message of its own."""
+    first = Status[code]
+    head, *rest = message.split(_AND) if first.converged else [message]
+    statuses = [(first, head)]
+    beginnings = {status: _beginning(status) for status in Status if status.converged}
+    for text in rest:
+        named = [s for s, beginning in beginnings.items() if text.startswith(beginning)]
+        if named:
+            # "the" alone begins the message of several.
+            status = max(named, key=lambda s: len(beginnings[s]))
+            statuses.append((status, f"{_parted(status.value)[0]}{text}"))
+        else:  # written by a version with other messages
+            statuses[-1] = statuses[-1][0], f"{statuses[-1][1]}{_AND}{text}"
+    return statuses
+
+
+def _parted(message: str) -> tuple[str, str]:
+    """Return the beginning of a caveat that says that the step converged, and what follows it."""
+    prefix = next((p for p in ("converged, but ", "converged; ") if message.startswith(p)), "")
+    return prefix, message.removeprefix(prefix)
+
+
+def _beginning(status: Status) -> str:
+    """Return what the message of a status begins with, without the prefix."""
+    return _parted(status.value)[1].partition("{")[0]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from pellicle.analysis.steepness import rim_slope, steepest
@@ -12,7 +14,7 @@ from pellicle.config.run import Run
 from pellicle.numerics.contact_stiffness import Stiffness
 from pellicle.numerics.equilibrium import Equilibrium
 from pellicle.numerics.solution import Stop
-from pellicle.results.status import Status
+from pellicle.results.status import Status, with_caveats
 from pellicle.units import DIGITS, readable
 
 from .relaxation import least_domain
@@ -37,6 +39,8 @@ def judge(
 ) -> tuple[Status, str]:
     """Return the status of a step, from its measured residuals, and the message to the user.
 
+    The status is that of the most important caveat; the message has them all.
+
     Parameters
     ----------
     index
@@ -49,16 +53,17 @@ def judge(
     largest_area
         Largest contact area [m²] of this step and those before.
     """
-    verdict = _failure(run, index, step, stiffness)
-    if verdict is None and step.search and (step.how != "met" or step.missed > _NEAR):
-        verdict = _not_met(step, step.search)
-    verdict = verdict or _caveat(run, index, step.equilibrium, largest_area)
-    if verdict:
-        return verdict
-    if lost is not None:
-        loss = f" and lost {readable(lost, 'J', DIGITS)}" if lost > 0 else ""
-        return Status.JUMPED, Status.JUMPED.value.format(loss=loss)
-    return Status.CONVERGED, Status.CONVERGED.value
+    verdicts = [verdict] if (verdict := _failure(run, index, step, stiffness)) else []
+    if not verdicts and step.search and (step.how != "met" or step.missed > _NEAR):
+        verdicts.append(_not_met(step, step.search))
+    if all(status.converged for status, _ in verdicts):
+        verdicts.extend(_caveats(run, index, step.equilibrium, largest_area))
+        if lost is not None:
+            loss = f" and lost {readable(lost, 'J', DIGITS)}" if lost > 0 else ""
+            verdicts.append((Status.JUMPED, Status.JUMPED.value.format(loss=loss)))
+    if not verdicts:
+        return Status.CONVERGED, Status.CONVERGED.value
+    return verdicts[0][0], with_caveats([message for _, message in verdicts])
 
 
 def _failure(
@@ -104,23 +109,26 @@ def _failure(
     return None
 
 
-def _caveat(
+def _caveats(
     run: Run, index: int, equilibrium: Equilibrium, largest_area: float
-) -> tuple[Status, str] | None:
-    """Return what limits the accuracy of a solved step; None if nothing does."""
-    verdict = _coarse(run, equilibrium)
-    if verdict is None and run.interaction:
-        verdict = _caveat_of_interaction(run, run.interaction, equilibrium)
-    if verdict:
-        return verdict
+) -> Iterator[tuple[Status, str]]:
+    """Yield what limits the accuracy of a solved step."""
+    if coarse := _coarse(run, equilibrium):
+        yield coarse
+    if run.interaction:
+        # A contact on too few cells has too few in its zone, too.
+        zone = None if coarse else _coarse_zone(run, run.interaction, equilibrium)
+        yield from filter(None, (zone, _steep(run, equilibrium)))
     needed = least_domain(run, index, largest_area)
     if needed > min(run.grid.size):
-        return Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(
-            size=" × ".join(readable(length, "m", DIGITS) for length in run.grid.size),
-            # A little more, or the rounded length would be refused in turn.
-            least=readable(1.001 * needed, "m", DIGITS),
+        yield (
+            Status.SMALL_DOMAIN,
+            Status.SMALL_DOMAIN.value.format(
+                size=" × ".join(readable(length, "m", DIGITS) for length in run.grid.size),
+                # A little more, or the rounded length would be refused in turn.
+                least=readable(1.001 * needed, "m", DIGITS),
+            ),
         )
-    return None
 
 
 def _coarse(run: Run, equilibrium: Equilibrium) -> tuple[Status, str] | None:
@@ -141,15 +149,20 @@ def _coarse(run: Run, equilibrium: Equilibrium) -> tuple[Status, str] | None:
     return None
 
 
-def _caveat_of_interaction(
+def _coarse_zone(
     run: Run, interaction: Interaction, equilibrium: Equilibrium
 ) -> tuple[Status, str] | None:
-    """Return what limits the accuracy of a solved step where an interaction acts."""
+    """Return the caveat of a zone on too few cells; None if it has enough."""
     width = equilibrium.zone_width / run.grid.cell_size
     if width < interaction.least_cells:
         return Status.COARSE_ZONE, Status.COARSE_ZONE.value.format(
             cells=width, least=interaction.least_cells
         )
+    return None
+
+
+def _steep(run: Run, equilibrium: Equilibrium) -> tuple[Status, str] | None:
+    """Return the caveat of slopes beyond those of the theory; None if they are small."""
     slope = max(
         steepest(equilibrium.problem.heights, equilibrium.contact, run.grid),
         rim_slope(run.kernel.compliance, equilibrium) if equilibrium.contact.any() else 0.0,

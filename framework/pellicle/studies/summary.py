@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.results.shape import means_something
-from pellicle.results.status import Status
+from pellicle.results.status import Status, statuses_of
 from pellicle.results.variables import names_of
 from pellicle.results.wording import wording
 
@@ -141,7 +141,15 @@ def failures(table: xr.Dataset) -> str:
 
 def caveats(table: xr.Dataset) -> Iterator[str]:
     """Yield a message for each caveat, with the number of runs that have it."""
-    statuses = _statuses(table)
+    statuses = [
+        {
+            status
+            for code, message in zip(run["status_code"].values, run["status"].values, strict=True)
+            if code
+            for status, _ in statuses_of(str(code), str(message))
+        }
+        for run in runs_of(table)
+    ]
     for caveat, reason in (
         (
             {status for status in Status if status.is_coarse},

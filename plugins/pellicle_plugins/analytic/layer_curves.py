@@ -235,6 +235,19 @@ def _layer(shape: Shape, poissons_ratio: float) -> Interpolant:
     return stretched_spline(LENGTHS, change, LENGTH_SCALE)
 
 
+@cache
+def _confinement_splines() -> Interpolant:
+    """Return the interpolant over a/h of values that are 1 at one node, in a column for each."""
+    return stretched_spline(CONFINEMENTS, np.eye(CONFINEMENTS.size), CONFINEMENT_SCALE)
+
+
+# A fit evaluates one layer at many tensions.
+@lru_cache(maxsize=16)
+def _weights(confinement: bytes) -> tuple[Array, Array]:
+    """Return weights of the nodes in values at each a/h and in slopes, of shape (n, nodes)."""
+    return _confinement_splines()(np.frombuffer(confinement))
+
+
 def _changes(shape: Shape, layer: TensedLayer, confinement: Array) -> tuple[Array, Array, Array]:
     """Return the changes by a layer at each a/h, and their derivatives by s/h and by a/h."""
     length, last = layer.length / layer.thickness, float(LENGTHS[-1])
@@ -244,7 +257,7 @@ def _changes(shape: Shape, layer: TensedLayer, confinement: Array) -> tuple[Arra
     # Thick layers change force and depth in proportion to a/h.
     inside = np.maximum(confinement, CONFINEMENTS[0])
     share = (confinement / inside)[:, None]
-    value, slope = stretched_spline(CONFINEMENTS, both, CONFINEMENT_SCALE)(inside)
+    value, slope = (weights @ both for weights in _weights(inside.tobytes()))
     slope = np.where(share < 1, value / CONFINEMENTS[0], slope)
     value *= share
     changes, by_lengths = np.split(value, 2, axis=1)

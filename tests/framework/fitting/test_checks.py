@@ -382,6 +382,24 @@ def test_absurd_spring_constants_are_refused(stiffness: float) -> None:
 
 
 @pytest.mark.usefixtures("no_rivals")
+@pytest.mark.usefixtures("no_rivals")
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [(1.0, ""), (1e-4, "a modulus below 3.46 mPa is not plausible: are the units right?")],
+)
+def test_only_a_whole_interval_is_implausible(factor: float, words: str) -> None:
+    """The best value of an interval that is open there is one of many, not a wrong unit."""
+    depth, modulus, tension = np.linspace(-1e-6, 0.4e-6, 300), 1e-3, 5e-3
+    force = modulus * Paraboloid(radius=5e-6).force_curve(depth, 2 * tension / modulus).force
+    noise = 0.02 * force.max() * np.random.default_rng(4).standard_normal(depth.size)
+    result = pl.fit(depth, factor * (force + noise), indenter="paraboloid", radius=5e-6)
+    assert result.reduced_modulus.value < 1.0
+    assert result.reduced_modulus.low is None
+    assert [text for text in result.warnings if "plausible" in text] == [words] * bool(words)
+    bound = "34.6 Pa" if factor == 1 else "3.46 mPa"
+    assert any(f"the modulus is open (it is below {bound})" in text for text in result.warnings)
+
+
 def test_no_interval_is_narrower_than_its_bound() -> None:
     """Near the end of a tension, and where a model is far from linear, no bound is given."""
     cone = Cone(half_angle=1.2)

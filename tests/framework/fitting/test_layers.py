@@ -16,10 +16,12 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.fitting.config import FitConfig
+from pellicle.fitting.fit import fit_problem
 from pellicle.fitting.models import simulation
 from pellicle.fitting.models.layer import FreeLayerModel, LayerModel
 from pellicle.fitting.models.simulation import Simulation
 from pellicle.fitting.parameters import MODULUS, TENSION, THICKNESS
+from pellicle.fitting.problem import FitProblem, problems
 from pellicle.fitting.statistics.design import _designs
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
@@ -206,6 +208,17 @@ def test_a_contact_far_wider_than_the_layer_is_refused() -> None:
     position, force = curve(radius=1.0, thickness=4e-6)
     with pytest.raises(pl.ConfigError, match="ten times as wide as the layer is thick"):
         pl.fit(position, force, indenter="sphere", radius=1.0, thickness=THICK, poissons_ratio=0.5)
+
+
+def test_a_layer_thinner_than_the_depth_is_refused_at_once() -> None:
+    """No interval and no rival is sought beyond the limit, which took a hundred times as long."""
+    config = FitConfig.merged(None, thickness=THICK / 8, **BEAD)
+    (problem,) = problems(config, config.sources({"": curve(thickness=1.0)}))
+    assert isinstance(problem, FitProblem)
+    stages: list[str] = []
+    with pytest.raises(pl.ConfigError, match="the depth reaches"):
+        fit_problem(problem, stages.append)
+    assert stages == ["least squares"]
 
 
 def test_advice_stays_within_the_layer() -> None:

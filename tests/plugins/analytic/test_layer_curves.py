@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle_plugins.analytic import layer_curves
 from pellicle_plugins.analytic.layer_curves import LENGTHS, PROFILES, odd_chebyshev
 from pellicle_plugins.analytic.layer_equation import half_space, moments
 from tests.layered_contact import layered_contact, tensed_layer_contact
@@ -184,3 +185,11 @@ def test_it_is_what_the_solver_finds() -> None:
         forces.append(float(pl.run(run, progress=False).dataset["force"][0]))
     exact = shape("paraboloid").layer_force_curve(np.array([depth]), length, thickness, ratio)
     assert 2 * forces[1] - forces[0] == pytest.approx(exact.force[0], rel=3e-3)
+
+
+def test_other_tensions_of_a_layer_share_splines(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A fit of a given thickness builds the splines over s/h and a/h once, for all tensions."""
+    bead, depth = shape("sphere"), np.array([0.01, 0.02])
+    bead.layer_force_curve(depth, 0.1, 0.4, 0.3)
+    monkeypatch.setattr(layer_curves, "stretched_spline", None)
+    bead.layer_force_curve(depth, 0.2, 0.4, 0.3)
