@@ -207,6 +207,7 @@ TRUTH: Coordinates = {
 }
 
 
+@pytest.mark.slow
 def test_noise_of_the_deflection_is_in_the_position_too() -> None:
     """With a spring as soft as the contact errors are those of the bound, and nothing is widened.
 
