@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -164,15 +164,14 @@ def _over_alternatives(
     others = [fit for fit in comparison.alternatives if fit is not chosen]
     searched = [MODULUS, TENSION] if is_needed else [MODULUS]
     own = _estimates_of(chi_squared, chosen, threshold, searched)
+    ends = {p: _in_coordinates(p, own[p.name]) for p in searched}
+    for fit in others:
+        closed = {p: known for p, known in ends.items() if known != OPEN}
+        ends |= _extended(chi_squared, fit, threshold, closed)
     over_all = {}
     for parameter in searched:
-        estimate = own[parameter.name]
-        ends = _in_coordinates(parameter, estimate)
-        for fit in others:
-            if ends != OPEN:
-                ends = _extended(chi_squared, fit, threshold, parameter, ends)
-        low, high = (None if end is None else parameter.value(end) for end in ends)
-        over_all[parameter] = replace(estimate, low=low, high=high)
+        low, high = (None if end is None else parameter.value(end) for end in ends[parameter])
+        over_all[parameter] = replace(own[parameter.name], low=low, high=high)
     comparison = replace(comparison, modulus=over_all[MODULUS])
     if not is_needed:
         return comparison
@@ -188,16 +187,18 @@ def _over_alternatives(
 
 
 def _extended(
-    chi_squared: ChiSquared, fit: RivalFit, threshold: float, parameter: Parameter, ends: Ends
-) -> Ends:
-    """Return an interval of coordinates, extended to that of another explanation."""
+    chi_squared: ChiSquared, fit: RivalFit, threshold: float, ends: Mapping[Parameter, Ends]
+) -> dict[Parameter, Ends]:
+    """Return intervals of coordinates, extended to those of another explanation."""
+    free = fit.rival.of(chi_squared).free
+    fitted = {p: known for p, known in ends.items() if p in free}
     if fit.intervals == "profile":
-        known = fit.estimates.get(parameter.name)
-        return ends if known is None else united(ends, _in_coordinates(parameter, known))
-    if parameter not in fit.rival.of(chi_squared).free:
-        return ends
+        return {
+            p: united(known, _in_coordinates(p, fit.estimates[p.name]))
+            for p, known in fitted.items()
+        }
     minimum = Minimum(fit.parameters, fit.chi_squared)
-    return fit.rival.extended(chi_squared, minimum, threshold, parameter, ends)
+    return fit.rival.extended(chi_squared, minimum, threshold, fitted)
 
 
 def _in_coordinates(parameter: Parameter, estimate: Estimate) -> Ends:
