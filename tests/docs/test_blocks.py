@@ -320,6 +320,7 @@ def test_order_of_ended_runs_is_not_compared() -> None:
     assert is_like(TABLE, "\n".join(swapped))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_page_runs(page: Path, reader: Reader) -> None:
     """Every block of a page works, in order, and prints what the page says."""

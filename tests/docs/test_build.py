@@ -35,6 +35,7 @@ def html(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "html"
 
 
+@pytest.mark.slow
 def test_sphinx_builds_without_a_warning(html: Path) -> None:
     """Sphinx makes every page, with the reference."""
     for page in DOCS.glob("*.md"):

@@ -40,6 +40,7 @@ def test_the_notebook_is_its_page(maker: ModuleType) -> None:
     assert "error" not in {output["output_type"] for cell in outputs for output in cell}
 
 
+@pytest.mark.slow
 def test_the_notebook_runs(maker: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     """A kernel of Jupyter carries it out; runs, results, studies and fits show HTML."""
     pytest.importorskip("nbclient")

@@ -85,6 +85,7 @@ def test_fig2_agreement_is_what_the_page_says() -> None:
     assert f"{100 * largest:.2f}" == figure
 
 
+@pytest.mark.slow
 def test_fig3_the_correction_helps_on_every_grid(tmp_path: Path) -> None:
     """The corrected area is nearer to the true one, and both get there as N grows."""
     run("fig3.toml", tmp_path, 'study.vary={"grid.points"=[32,64,128]}')
@@ -107,6 +108,7 @@ def test_fig3_the_correction_helps_on_every_grid(tmp_path: Path) -> None:
     assert corrected[-1] < 0.006
 
 
+@pytest.mark.slow
 def test_fig4_pressure_is_the_semi_analytic_one(tmp_path: Path) -> None:
     """Inside the contact, three cells from its edge, the pressures agree to 2 %."""
     run("fig4.toml", tmp_path, "grid.points=64")
@@ -123,6 +125,7 @@ def test_fig4_pressure_is_the_semi_analytic_one(tmp_path: Path) -> None:
         assert (y[abs(x) > 1.1] == 0).all()
 
 
+@pytest.mark.slow
 def test_fig5_force_and_depth_follow_the_semi_analytic_solution(tmp_path: Path) -> None:
     """Both ratios over Hertz agree with the semi-analytic ones at the same s/a."""
     tensions = 'study.vary={"kernel.tension"=["10 mN/m", "0.1 N/m", "1 N/m"]}'
@@ -136,6 +139,7 @@ def test_fig5_force_and_depth_follow_the_semi_analytic_solution(tmp_path: Path) 
         assert (np.diff(column(curve, "y")) > 0).all()
 
 
+@pytest.mark.slow
 def test_fig6_the_ellipse_is_more_slender_with_tension(tmp_path: Path) -> None:
     """a₁/a₂ falls with tension; without it both semi-axes are those of Hertz."""
     run("fig6.toml", tmp_path, "grid.points=64")
@@ -170,6 +174,7 @@ def rough(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_fig8_the_fraction_falls_with_tension(rough: Path) -> None:
     """At every depth and for every seed a higher tension makes a smaller contact."""
     table = xr.open_dataset(rough / "study.h5", engine="h5netcdf")
@@ -202,6 +207,7 @@ def test_fig9_solves_nothing_in_the_folder_of_fig8(rough: Path) -> None:
     assert len(list((rough / "runs").glob("*.h5"))) == 8
 
 
+@pytest.mark.slow
 def test_layers_a_stiff_film_counts_at_small_depths(tmp_path: Path) -> None:
     """Under the stiffest film the apparent modulus has a minimum, without one it only rises."""
     depths = 'loading.depth=["0.8 um", "1.6 um", "10 um"]'
@@ -216,6 +222,7 @@ def test_layers_a_stiff_film_counts_at_small_depths(tmp_path: Path) -> None:
     assert (stiff > 1.5 * soft).all()
 
 
+@pytest.mark.slow
 def test_pull_off_goes_from_elastic_to_liquid(tmp_path: Path) -> None:
     """The bead pulls off at the force of the closed theory to 2 %, with and without tension."""
     vary = 'study.vary={"kernel.tension"=[0.0,0.02]}'
@@ -227,6 +234,7 @@ def test_pull_off_goes_from_elastic_to_liquid(tmp_path: Path) -> None:
         assert force == pytest.approx(float(theory.instability().force), rel=0.02)
 
 
+@pytest.mark.slow
 def test_a_thin_layer_is_harder_to_pull_off(tmp_path: Path) -> None:
     """The force grows as the layer gets thinner, towards that of separate springs, 2πwR."""
     vary = 'study.vary={"kernel.substrate.thickness"=[20e-6,500e-6]}'
@@ -236,6 +244,7 @@ def test_a_thin_layer_is_harder_to_pull_off(tmp_path: Path) -> None:
     assert -2 < thin / (np.pi * 0.5e-3 * 0.2e-3) < thick / (np.pi * 0.5e-3 * 0.2e-3) < -1
 
 
+@pytest.mark.slow
 def test_sticky_bead_pulls_off_as_the_theory_says(tmp_path: Path) -> None:
     """The lowest force is the pull-off of the closed theory to 10 %, on a contact of 16 cells."""
     run(
@@ -251,6 +260,7 @@ def test_sticky_bead_pulls_off_as_the_theory_says(tmp_path: Path) -> None:
     assert lowest == pytest.approx(float(bead.instability().force), rel=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:of 2 runs, in 2 the cells are too coarse")
 def test_sticky_rough_punch_loses_more_energy_the_more_it_sticks(tmp_path: Path) -> None:
     """The loop of force and depth widens with the work of adhesion."""
@@ -266,6 +276,7 @@ def test_sticky_rough_punch_loses_more_energy_the_more_it_sticks(tmp_path: Path)
     assert 0 < 5 * lost[0] < lost[1]
 
 
+@pytest.mark.slow
 def test_loops_lose_most_at_the_time_of_the_relaxation(tmp_path: Path) -> None:
     """Much faster or slower than the gel relaxes the way back is nearly the way in."""
     steps = ["loading.depth.0.num=6", "loading.depth.1.num=6"]
@@ -280,6 +291,7 @@ def test_loops_lose_most_at_the_time_of_the_relaxation(tmp_path: Path) -> None:
     assert areas[1] > 2 * areas[2]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:kernel. the shares of 'coated' that relax sum to 1")
 def test_plateau_is_that_of_the_tension(tmp_path: Path) -> None:
     """The force of a bead at a contact radius ends at 2πτ₀a²/R, to 10 % on coarse cells."""
@@ -296,6 +308,7 @@ def test_plateau_is_that_of_the_tension(tmp_path: Path) -> None:
     assert share[-1] == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:of 2 runs, in . the cells are too coarse")
 def test_oscillation_a_skin_lowers_the_phase(tmp_path: Path) -> None:
     """A skin adds more to the storage than to the loss."""

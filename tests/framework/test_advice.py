@@ -39,6 +39,7 @@ def run(points: int = 64, shape: str = "paraboloid", tension: float = 0.05, **mo
     )
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("tension", [1e-6, 0.05])

@@ -38,6 +38,7 @@ def _files_named(stdout: str) -> list[Path]:
     return [Path(line[6:]) for line in stdout.splitlines() if line.startswith("wrote ")]
 
 
+@pytest.mark.slow
 def test_from_starter_file_to_figures(cli: Cli) -> None:
     """`new`, `run`, `show` and `plot` work one after the other, and name files that exist."""
     assert "pellicle run indent.toml" in cli("new").stdout
@@ -136,6 +137,7 @@ def test_threads(cli: Cli) -> None:
     assert two["force"].values == pytest.approx(one["force"].values, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_not_converged(cli: Cli) -> None:
     """A run that does not converge is kept and marked, says what to try, and exits with 1."""
     cli("new", "a.toml")

@@ -29,6 +29,7 @@ HEIGHTS = "# heights, µm\n1 2\n3 4\n"
 CODE_PAGES = ("cp1252", "cp437", "ascii", "utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", CODE_PAGES)
 def test_commands_print_in_any_code_page(
     encoding: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -42,6 +42,7 @@ def test_an_example_runs_as_it_is(name: str) -> None:
     assert list(Path(name).glob("*.csv"))
 
 
+@pytest.mark.slow
 def test_the_example_of_a_fit_finds_what_went_in() -> None:
     """The intervals contain the modulus and the tension with which the curve was made."""
     call("new", "--example", "fit", "mine.toml")

@@ -148,6 +148,7 @@ def growths() -> dict[str, int]:
     return _growths(1, KINDS)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize("kind", KINDS)
 def test_estimate_is_the_growth_of_the_peak(kind: str, growths: dict[str, int]) -> None:

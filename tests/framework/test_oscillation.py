@@ -208,6 +208,7 @@ def test_error_falls_as_the_square_of_the_step() -> None:
     np.testing.assert_allclose(errors, (pi / np.array([8, 16])) ** 2 / 3, rtol=0.1)
 
 
+@pytest.mark.slow
 def test_sweep_in_one_run_and_in_a_study(tmp_path: Path) -> None:
     """Two legs of a run have the responses of two runs of a study, which tabulates them."""
     sweep = [{**LEGS[2], "frequency": f, "cycles": 2, "num": 8} for f in (0.5, 2.0)]

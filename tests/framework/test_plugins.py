@@ -312,6 +312,7 @@ def test_a_component_that_ends_the_process_when_it_is_made_is_named(plugin: Plug
         load([plugin(ending)]).make(Kernel, {"type": "soft"})
 
 
+@pytest.mark.slow
 def test_what_a_component_prints_is_not_in_the_json(tmp_path: Path) -> None:
     """`run --json` prints nothing else on standard output, whatever components print."""
     source = SOFT.replace("        return", "        print('hello')\n        return")

@@ -150,6 +150,7 @@ def test_other_schema_version(path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         storage.read(path)
 
 
+@pytest.mark.slow
 def test_segments(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a large result each step is written about twice, and every one is there after each."""
     monkeypatch.setattr(storage, "_SMALL", 0)

@@ -189,6 +189,7 @@ def test_changed_axis_runs_only_the_new_points(tmp_path: Path) -> None:
     assert table[TENSION].values.tolist() == [1.0, 0.5, 0.0]
 
 
+@pytest.mark.slow
 def test_overwrite_begins_anew(tmp_path: Path) -> None:
     """Everything is solved again where it is asked for."""
     table = carry_out(study(), tmp_path)
@@ -314,6 +315,7 @@ def test_fields_that_cannot_be() -> None:
 
 
 # In mid-run, between two runs, and before the last step of all.
+@pytest.mark.slow
 @pytest.mark.parametrize("after", [2, 6, 11])
 def test_interrupted(
     after: int, undisturbed: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -434,6 +436,7 @@ def test_folder_that_cannot_be_written(tmp_path: Path, monkeypatch: pytest.Monke
     assert Counting.solved == []
 
 
+@pytest.mark.slow
 def test_damaged_run_file(tmp_path: Path) -> None:
     """A damaged result fails its own run, with what to do, and is left as it is."""
     table = carry_out(study(), tmp_path)

@@ -221,6 +221,7 @@ def test_a_run_may_be_varied() -> None:
     assert runs == [point.run for point in study(vary).points]
 
 
+@pytest.mark.slow
 def test_round_trips() -> None:
     """TOML and JSON of a study make the same runs in the same order."""
     zipped = [{"indenter.radius": ["1 mm", "2 mm"], "grid.size": [4e-4, 8e-4]}]
@@ -388,6 +389,7 @@ def test_identity_changes_with_any_value(change: tuple[str, Any]) -> None:
     assert pl.Run(**replaced(RUN, *change)).identity != pl.Run(**RUN).identity
 
 
+@pytest.mark.slow
 @given(
     st.floats(0, 10),
     st.floats(1e-5, 1e-2),

@@ -50,6 +50,7 @@ def kill_one_worker(address: str, runs: Path, over: threading.Event, finished: l
     finished.append(len(list(runs.glob("*.h5"))))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="a file in use cannot be replaced there")
 def test_worker_killed_in_mid_study(start_dask: Any, tmp_path: Path) -> None:
     """The table is that of an undisturbed study, and another start solves nothing."""

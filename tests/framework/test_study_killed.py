@@ -11,6 +11,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+import pytest
 import xarray as xr
 
 import pellicle as pl
@@ -58,6 +59,7 @@ def _states(runs: Path) -> set[tuple[str, int]]:
     return files
 
 
+@pytest.mark.slow
 def test_killed_and_restarted(tmp_path: Path) -> None:
     """SIGKILL at random moments loses no finished step, spoils no file and changes no number."""
     (tmp_path / "s.toml").write_text(FILE, encoding="utf-8")

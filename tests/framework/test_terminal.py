@@ -169,6 +169,7 @@ def test_run_prints_json(cli: Cli, folder: Path) -> None:
     assert [run["state"] for run in planned["runs"]] == ["to do"]
 
 
+@pytest.mark.slow
 def test_a_run_called_study_is_a_run(cli: Cli) -> None:
     """The result of study.toml has the name of a study's table, and is shown and drawn as it is."""
     Path("study.toml").write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
@@ -333,6 +334,7 @@ for words in json.loads(sys.argv[1]):
 _WORDS = ["check c.toml", "explain tensed_membrane", "show a.h5", "show study"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("encoding", "others", "signs"),
     [

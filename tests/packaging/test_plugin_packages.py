@@ -46,6 +46,7 @@ def pellicle(environment: dict[str, str]) -> Iterator[Command]:
         yield command
 
 
+@pytest.mark.slow
 def test_packages_pass_their_own_tests(
     folders: dict[str, Path], environment: dict[str, str], tmp_path: Path
 ) -> None:
@@ -86,6 +87,7 @@ def test_example_runs(
     assert any((tmp_path / "out").iterdir())
 
 
+@pytest.mark.slow
 def test_readme_and_code_are_filled_in(folders: dict[str, Path]) -> None:
     """No placeholder is left, and every file parses."""
     for folder in folders.values():

@@ -16,6 +16,7 @@ ONE_OUTPUT = Path(__file__).with_name("one_output")
 CELLS = Path(__file__).parents[1] / "data" / "kernel_cells.csv"
 
 
+@pytest.mark.slow
 def test_is_listed_with_its_origin(pellicle: Command) -> None:
     """The list of plugins holds the kernel, its distribution, its version and its first line."""
     listing = json.loads(pellicle("plugins", "--json").stdout)
@@ -66,6 +67,7 @@ def test_a_membrane_known_by_its_symbol_has_the_reference_coefficients(python: C
         assert max(map(abs, of_length)) < 1e-7
 
 
+@pytest.mark.slow
 def test_a_kernel_that_relaxes_keeps_its_contract(python: Command) -> None:
     """Installed, a gel with branches of its own passes the kit, alone and under a skin."""
     done = python(str(RELAXING / "check.py"))
@@ -82,6 +84,7 @@ def test_a_kernel_that_relaxes_runs_in_time(pellicle: Command, tmp_path: Path) -
     np.testing.assert_allclose(force / force[0], modulus, rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_an_output_is_one_method(python: Command) -> None:
     """Installed, a class with the method write() alone keeps the contract of outputs."""
     done = python(str(ONE_OUTPUT / "check.py"))

@@ -17,6 +17,7 @@ check_interaction(QuadraticSoftening(work_of_adhesion="50 mJ/m^2", range="8 um")
 """
 
 
+@pytest.mark.slow
 def test_keeps_its_contract(python: Command) -> None:
     """The kit that checks our own interactions has nothing to say."""
     done = python("-c", CHECK)

@@ -18,6 +18,7 @@ for share in (1.0, 0.5):
 """
 
 
+@pytest.mark.slow
 def test_keeps_its_contract(python: Command) -> None:
     """The kit that checks our own prescriptions has nothing to say."""
     done = python("-c", CHECK)
@@ -69,6 +70,7 @@ def test_bad_values_are_refused_like_our_own(pellicle: Command, loading: str, wo
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_can_be_switched_off(pellicle: Command, tmp_path: Path) -> None:
     """With strangers off, its file says what is switched off; its results can still be shown."""
     done = pellicle("run", str(SOURCE / "squeeze.toml"), PELLICLE_DISABLE_PLUGINS="1")

@@ -27,6 +27,7 @@ from tests.random_adhesion import SAME, random_run, verdicts
 pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("length", "name"), [(0.0, "a = 1.5"), (0.1, "F = 0"), (1.0, "a = 1.5"), (10.0, "a = 1.5")]
 )
@@ -149,6 +150,7 @@ def test_full_contact_that_is_rigid_does_not_jump() -> None:
     assert not path["jumped"].values[1:].any()
 
 
+@pytest.mark.slow
 def test_pull_off_is_that_of_jkr() -> None:
     """The lowest force on a path in depth is −1.5 πwR to 2 %."""
     end = theory(0.0).instability()
@@ -253,6 +255,7 @@ def test_stiffness_is_the_slope_of_the_path(interaction: dict[str, Any], length:
     assert float(path["stiffness"][2]) == pytest.approx(differences, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_stiffness_is_that_of_the_closed_theory_on_average() -> None:
     """Of a path whose contact grows by many cells; single steps scatter by a tenth."""
     closed = theory(1.0)
@@ -393,6 +396,7 @@ def test_lengths_and_moduli_can_be_scaled(interaction: str, length: float, modul
     assert scaled["status_code"].item() == expected["status_code"].item()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 30, 6))
 def test_statuses_of_random_problems_are_honest(first: int) -> None:
     """A step that says converged is a stationary point; most are where a dense descent ends.

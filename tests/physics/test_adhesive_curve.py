@@ -57,6 +57,7 @@ def force_at(curve: AdhesiveCurve, depth: float) -> float:
     return float(np.interp(depth, curve.depth[stable], curve.force[stable]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("length", "size"), [(0.0, 7.0), (0.1, 7.0), (1.0, 5.0), (10.0, 5.0)])
 def test_under_tension_it_is_the_closed_theory(length: float, size: float) -> None:
     """Force near a = 1.5 a₀, at zero load and pull-off is right to 0.01 πwR."""
@@ -75,6 +76,7 @@ def test_under_tension_it_is_the_closed_theory(length: float, size: float) -> No
     assert radius == pytest.approx(theory.at_force(0.0).contact_radius, rel=5e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("thickness", [7.5, 1.5])
 def test_on_a_bonded_layer_it_is_the_dense_solution(thickness: float) -> None:
     """Force near a = 1.5 a₀, where a/h = 0.2 and 1, and pull-off are right to 0.01 πwR."""
@@ -112,6 +114,7 @@ def test_the_oracle_gives_known_stiffnesses() -> None:
         assert change == pytest.approx(middle.stiffness, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_on_a_cone_it_is_the_closed_theory() -> None:
     """Force and radius of pull-off of a cone under tension are right to 1 % at 32 cells."""
     cone = Cone(half_angle=1.2)

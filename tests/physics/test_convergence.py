@@ -18,6 +18,7 @@ POINTS = np.array([16, 32, 64, 128])
 A = 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("s_over_a", [0.0, 1.0, 10.0])
 def test_force_is_second_order_and_area_first(s_over_a: float, solver: str) -> None:
     """The paraboloid's force, area and corrected area converge at the orders stated above."""

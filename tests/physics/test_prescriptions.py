@@ -135,6 +135,7 @@ def test_cantilever_with_hertz(solver: str) -> None:
     assert data["force"].item() == pytest.approx(spring * (z - depth), rel=2e-3)
 
 
+@pytest.mark.slow
 def test_cantilever_on_a_tensed_skin(solver: str) -> None:
     """Under tension δ solves F(δ) = k (z − δ), F by the axisymmetric integral equation."""
     spring, z = 2.0, 3e-5

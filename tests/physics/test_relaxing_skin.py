@@ -56,6 +56,7 @@ def solved(*arguments: Any, **changes: Any) -> Any:
     return result.dataset
 
 
+@pytest.mark.slow
 def test_flat_punch_with_tension_after_a_step_of_the_depth() -> None:
     """Within 0.3 % of correspondence, extrapolated over two grids in a domain of 8 radii.
 

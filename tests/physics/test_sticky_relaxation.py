@@ -100,6 +100,7 @@ def test_limits_are_elastic(law: dict[str, Any], time: float, share: float) -> N
         np.testing.assert_allclose(slow[name][after], other[name][after], rtol=1e-7)
 
 
+@pytest.mark.slow
 def test_pull_off_at_a_speed_depends_on_the_range_and_not_on_the_cells() -> None:
     """Fast retraction pulls harder than slow; twice the points change either by 2 % at most."""
     pulls = [[pulled_off(points, speed, LINEAR, 16) for points in (32, 64)] for speed in (0.01, 1)]

@@ -62,6 +62,7 @@ def test_one_pressed_cell_gives_the_reference_influence_coefficients(s_over_d: f
         assert abs(u[int(row["i"]), int(row["j"])] - expected) <= 1e-9 * expected + 1e-15
 
 
+@pytest.mark.slow
 def test_the_published_figure_3(solver: str) -> None:
     """Yuan & Wang 2020, Figure 3: the counted area is 4 % off at N = 32, < 0.5 % beyond N = 256."""
     from pellicle_plugins.analytic.axisymmetric import indent

@@ -115,6 +115,7 @@ def test_sphere_held_at_a_depth_relaxes_as_the_modulus() -> None:
     np.testing.assert_allclose(data["force"] / data["force"][0], modulus, rtol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("boundary", "size"), [("periodic", 4e-4), ("free", 8e-4)])
 def test_plateau_is_tension_alone(boundary: str, size: float) -> None:
     """A liquid at a prescribed contact radius keeps F = 2πτ₀a²/R, at first order in the cell size.

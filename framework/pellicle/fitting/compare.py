@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from pellicle.errors import ConvergenceError
-from pellicle.units import decimal, readable
+from pellicle.units import readable
 
 from .comparison import Comparison, Intervals, RivalFit
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
@@ -76,16 +76,15 @@ def compare(
     minima = _minima(chi_squared, best, without, pairs=pairs, report=report)
     quiet, failed = _at_its_noise(chi_squared, minima)
     best_rival, best_minimum = _best(chi_squared, minima)
-    widened = _disagreement(quiet, best_rival, best_minimum)
-    quiet = quiet.with_members([replace(m, noise=widened * m.noise) for m in quiet.members])
+    excess = _disagreement(quiet, best_rival, best_minimum)
+    if excess is not None:
+        widened = float(np.sqrt(excess.factor))
+        quiet = quiet.with_members([replace(m, noise=widened * m.noise) for m in quiet.members])
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
     comparison = replace(judge(quiet, fits, failed, threshold), unseen=_unseen(chi_squared))
-    if widened > 1 and comparison.sentence:
-        sentence = (
-            f"{comparison.sentence}; under {best_rival.words} the curves do not agree on the "
-            f"shared parameters either, and the intervals are widened by {decimal(widened, 2)}"
-        )
+    if excess is not None and comparison.sentence:
+        sentence = f"{comparison.sentence}; under {best_rival.words}, too, {excess.agreement()}"
         comparison = replace(comparison, sentence=sentence)
     if comparison.chosen is not None:
         comparison = _with_intervals(quiet, comparison, comparison.chosen, threshold)
@@ -165,15 +164,14 @@ def _over_alternatives(
     others = [fit for fit in comparison.alternatives if fit is not chosen]
     searched = [MODULUS, TENSION] if is_needed else [MODULUS]
     own = _estimates_of(chi_squared, chosen, threshold, searched)
+    ends = {p: _in_coordinates(p, own[p.name]) for p in searched}
+    for fit in others:
+        closed = {p: known for p, known in ends.items() if known != OPEN}
+        ends |= _extended(chi_squared, fit, threshold, closed)
     over_all = {}
     for parameter in searched:
-        estimate = own[parameter.name]
-        ends = _in_coordinates(parameter, estimate)
-        for fit in others:
-            if ends != OPEN:
-                ends = _extended(chi_squared, fit, threshold, parameter, ends)
-        low, high = (None if end is None else parameter.value(end) for end in ends)
-        over_all[parameter] = replace(estimate, low=low, high=high)
+        low, high = (None if end is None else parameter.value(end) for end in ends[parameter])
+        over_all[parameter] = replace(own[parameter.name], low=low, high=high)
     comparison = replace(comparison, modulus=over_all[MODULUS])
     if not is_needed:
         return comparison
@@ -189,16 +187,18 @@ def _over_alternatives(
 
 
 def _extended(
-    chi_squared: ChiSquared, fit: RivalFit, threshold: float, parameter: Parameter, ends: Ends
-) -> Ends:
-    """Return an interval of coordinates, extended to that of another explanation."""
+    chi_squared: ChiSquared, fit: RivalFit, threshold: float, ends: Mapping[Parameter, Ends]
+) -> dict[Parameter, Ends]:
+    """Return intervals of coordinates, extended to those of another explanation."""
+    free = fit.rival.of(chi_squared).free
+    fitted = {p: known for p, known in ends.items() if p in free}
     if fit.intervals == "profile":
-        known = fit.estimates.get(parameter.name)
-        return ends if known is None else united(ends, _in_coordinates(parameter, known))
-    if parameter not in fit.rival.of(chi_squared).free:
-        return ends
+        return {
+            p: united(known, _in_coordinates(p, fit.estimates[p.name]))
+            for p, known in fitted.items()
+        }
     minimum = Minimum(fit.parameters, fit.chi_squared)
-    return fit.rival.extended(chi_squared, minimum, threshold, parameter, ends)
+    return fit.rival.extended(chi_squared, minimum, threshold, fitted)
 
 
 def _in_coordinates(parameter: Parameter, estimate: Estimate) -> Ends:
@@ -317,22 +317,24 @@ def _best(chi_squared: ChiSquared, minima: _Minima) -> tuple[Rival, Minimum]:
     return min(minima.values(), key=partial(_criterion, chi_squared))
 
 
-def _disagreement(chi_squared: ChiSquared, rival: Rival, minimum: Minimum) -> float:
-    """Return the factor by which disagreement of curves on shared parameters raises their noise.
+def _disagreement(chi_squared: ChiSquared, rival: Rival, minimum: Minimum) -> Excess | None:
+    """Return the excess of χ² by which disagreement of curves under an explanation raises noise.
 
-    It is that under an explanation (quasi-likelihood, Wedderburn 1974); 1 if they agree.
+    The noise is raised by the root of its factor (quasi-likelihood, Wedderburn 1974).  None is
+    returned if the curves agree.
     """
     of_rival = rival.of(chi_squared)
     curves = of_rival.curves(minimum.parameters)
     if len(curves) == 1:
-        return 1.0
+        return None
     together = [member.chi_squared(part) for member, part in curves]
     alone = []
     for (member, part), shared in zip(curves, together, strict=True):
         with suppress(ConvergenceError):
             shared = min(shared, member.minimise(part, rough=True).chi_squared)
         alone.append(shared)
-    return float(np.sqrt(Excess.of(of_rival, sum(together), alone).factor))
+    excess = Excess.of(of_rival, sum(together), alone)
+    return excess if excess.factor > 1 else None
 
 
 def _ranked(chi_squared: ChiSquared, minima: _Minima, threshold: float | None) -> list[RivalFit]:

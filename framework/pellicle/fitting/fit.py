@@ -210,7 +210,7 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
             *problem.curve.messages,
             *single.messages,
             *profile.messages,
-            *check_plausible(likelihood, best),
+            *check_plausible(likelihood, best, profile.estimate),
             *undecided,
         ),
         parameters=best,

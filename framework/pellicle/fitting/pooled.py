@@ -18,7 +18,7 @@ from .compare import compare
 from .config import FitConfig
 from .curves.curve import Note
 from .curves.sources import Curves, Source
-from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates
+from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
 from .problem import FitProblem, problems
 from .record import Stopwatch, data_of
 from .result import FitResult, thickness_of
@@ -28,7 +28,12 @@ from .statistics.design import pooled_advice
 from .statistics.likelihood import Likelihood
 from .statistics.noise import FailedCheck, doubt_of_tension, is_beyond_chance
 from .statistics.pooled_likelihood import Excess, Pool
-from .statistics.profile import Estimate, chi_squared_threshold, profile_likelihood
+from .statistics.profile import (
+    Estimate,
+    ProfileResult,
+    chi_squared_threshold,
+    profile_likelihood,
+)
 from .wording import column_scale, interval_text
 
 _NAMED = 5
@@ -226,7 +231,7 @@ def _fit_pool(
     profile = profile_likelihood(pool, start, threshold, parameters, without, report)
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
     curves = [
-        _curve(*single, *member, alone, profile.estimate(point))
+        _curve(*single, *member, alone, point, profile)
         for single, member, alone, point in zip(
             singles, pool.curves(profile.best.parameters), own, points, strict=True
         )
@@ -235,6 +240,7 @@ def _fit_pool(
     advice, undecided = pooled_advice(modulus, tension)
     doubt, rivals = _doubt(curves) or doubt_of_tension(shapes), None
     agree = excess.factor == 1
+    worst = max(curves, key=lambda curve: curve.chi_squared - curve.chi_squared_alone)
     if TENSION in pool.free and (compared or doubt or not agree or tension.low is not None):
         rivals = compare(
             pool,
@@ -260,7 +266,7 @@ def _fit_pool(
         doubt=doubt,
         rivals=rivals,
         curves=tuple(curves),
-        agreement=_agreement(curves, excess),
+        agreement=excess.agreement(worst.name),
         agree=agree,
         contact_points=contact_points,
         pool=pool,
@@ -274,13 +280,15 @@ def _curve(
     member: Likelihood,
     part: Coordinates,
     alone: Minimum,
-    contact_point: Estimate,
+    contact_point: Parameter,
+    profile: ProfileResult,
 ) -> PooledCurve:
     """Return a curve at its ``part`` of the pooled parameters, beside its minimum ``alone``."""
+    plausible = check_plausible(member, part, profile.estimate)
     return PooledCurve(
         name=problem.name,
         model=member.force_model.description(),
-        contact_point=contact_point,
+        contact_point=profile.estimate(contact_point),
         offset=part[OFFSET],
         slope=part[SLOPE],
         noise=member.noise,
@@ -290,20 +298,7 @@ def _curve(
         reduced_modulus_alone=float(np.exp(alone.parameters[MODULUS])),
         tension_alone=alone.parameters[TENSION],
         failed_checks=single.failed_checks,
-        messages=(*problem.curve.messages, *single.messages, *check_plausible(member, part)),
-    )
-
-
-def _agreement(curves: Sequence[PooledCurve], excess: Excess) -> str:
-    """Return in words whether the curves agree, and by how much the intervals are widened."""
-    figures = f"Δχ² = {decimal(excess.chi_squared, 3)} for {excess.degrees} degrees of freedom"
-    if excess.factor == 1:
-        return f"the curves agree ({figures} against each on its own)"
-    worst = max(curves, key=lambda curve: curve.chi_squared - curve.chi_squared_alone)
-    return (
-        f"the curves do not agree on the shared parameters ({figures} against each on its own), "
-        f"{worst.name} least of all; the intervals are widened by "
-        f"{decimal(np.sqrt(excess.factor), 2)}"
+        messages=(*problem.curve.messages, *single.messages, *plausible),
     )
 
 

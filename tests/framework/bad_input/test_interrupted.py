@@ -48,6 +48,7 @@ def long_run(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
         process.communicate()
 
 
+@pytest.mark.slow
 def test_interrupt(tmp_path: Path, long_run: subprocess.Popen[str]) -> None:
     """Ctrl-C leaves every finished step, says where, and exits with 130."""
     long_run.send_signal(signal.SIGINT)
@@ -63,6 +64,7 @@ def test_interrupt(tmp_path: Path, long_run: subprocess.Popen[str]) -> None:
     assert shown.exit_code == 1
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
 def test_kill(tmp_path: Path, long_run: subprocess.Popen[str]) -> None:
     """A run that is killed leaves a whole file with every finished step."""

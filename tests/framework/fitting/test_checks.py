@@ -67,6 +67,7 @@ def test_no_tension_is_claimed_in_silence_where_the_curve_shows_another_cause(na
     assert not any(outcome.is_silent for outcome in outcomes(MARKED[name], 5, seed=7))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize("name", CONTROLS)
 def test_curves_of_the_model_pass(name: str) -> None:
@@ -161,6 +162,7 @@ def test_noise_of_residuals_is_not_told_as_that_before_contact() -> None:
     assert not any("by that factor" in text for text in result.messages)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals")
 def test_correlated_noise_widens_and_white_noise_does_not() -> None:
     """Noise of the same size makes wider intervals where neighbours share it, and they hold."""
@@ -230,6 +232,7 @@ def test_deep_paraboloid_says_what_a_sphere_changes(depth: float, ratio: float) 
     assert not any("sphere" in text for text in fit(*white(1)).messages)
 
 
+@pytest.mark.slow
 def test_tie_names_its_look_alikes_and_what_would_tell() -> None:
     """Where relaxation explains a curve as well, the fit says so, and which measurement tells."""
     result = fit(*white(5, length=0.3 * RADIUS))
@@ -250,6 +253,7 @@ def test_tie_names_its_look_alikes_and_what_would_tell() -> None:
     assert (over.high or 0.0) >= (own.high or 0.0) * (1 - 1e-4)
 
 
+@pytest.mark.slow
 def test_range_of_tied_models_is_the_union_of_their_intervals() -> None:
     """It is sought only where a model reaches beyond the others, with the same ends."""
     curve = white(5, length=0.3 * RADIUS)
@@ -266,6 +270,7 @@ def test_range_of_tied_models_is_the_union_of_their_intervals() -> None:
     assert short.modulus.high == pytest.approx(max(highs), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_tables_and_pools_carry_failed_checks(cli: Callable[..., Result], tmp_path: Path) -> None:
     """CSV and JSON of many curves and of a pool hold code and sentence of each failed check."""
     curves = {
@@ -294,6 +299,7 @@ def test_tables_and_pools_carry_failed_checks(cli: Callable[..., Result], tmp_pa
     assert not pool["tension_needed"]
 
 
+@pytest.mark.slow
 def test_pool_of_curves_that_fail_needs_no_tension() -> None:
     """Where more curves of a pool fail a check than by chance, it claims no tension, and why."""
     softening = RIVALS["softening by 15 %"]
@@ -313,6 +319,7 @@ def _cantilever(stiffness: float) -> tuple[Array, Array]:
     return base - seen / stiffness, seen
 
 
+@pytest.mark.slow
 def test_fit_with_a_cantilever_and_a_baseline_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     """A curve that the model cannot describe takes no more than thousands of evaluations."""
     count = 0
@@ -375,6 +382,24 @@ def test_absurd_spring_constants_are_refused(stiffness: float) -> None:
 
 
 @pytest.mark.usefixtures("no_rivals")
+@pytest.mark.usefixtures("no_rivals")
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [(1.0, ""), (1e-4, "a modulus below 3.46 mPa is not plausible: are the units right?")],
+)
+def test_only_a_whole_interval_is_implausible(factor: float, words: str) -> None:
+    """The best value of an interval that is open there is one of many, not a wrong unit."""
+    depth, modulus, tension = np.linspace(-1e-6, 0.4e-6, 300), 1e-3, 5e-3
+    force = modulus * Paraboloid(radius=5e-6).force_curve(depth, 2 * tension / modulus).force
+    noise = 0.02 * force.max() * np.random.default_rng(4).standard_normal(depth.size)
+    result = pl.fit(depth, factor * (force + noise), indenter="paraboloid", radius=5e-6)
+    assert result.reduced_modulus.value < 1.0
+    assert result.reduced_modulus.low is None
+    assert [text for text in result.warnings if "plausible" in text] == [words] * bool(words)
+    bound = "34.6 Pa" if factor == 1 else "3.46 mPa"
+    assert any(f"the modulus is open (it is below {bound})" in text for text in result.warnings)
+
+
 def test_no_interval_is_narrower_than_its_bound() -> None:
     """Near the end of a tension, and where a model is far from linear, no bound is given."""
     cone = Cone(half_angle=1.2)
@@ -404,6 +429,7 @@ def test_fit_reports_what_it_is_at() -> None:
         report("shows nothing without a terminal")
 
 
+@pytest.mark.slow
 def test_a_curve_without_noise_has_no_steps() -> None:
     """Equal forces before contact are no steps of a detector where the others lie anywhere."""
     position, force = white(4, length=0.3 * RADIUS, noise=0)

@@ -209,6 +209,7 @@ def test_hdf5_by_path(tmp_path: Path, write: Callable[[Path], str]) -> None:
     assert all(map(is_the_curve, both.values()))
 
 
+@pytest.mark.slow
 def test_thousands_of_groups(tmp_path: Path) -> None:
     """Thousands of curves are read; a wrong path is refused with a few of the right ones."""
     path = tmp_path / "map.h5"

@@ -75,6 +75,7 @@ def test_three_ways_make_one_object(tmp_path: Path) -> None:
     assert config == pickle.loads(pickle.dumps(config))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals", "shared_fits")
 def test_three_ways_give_one_result(cli: Cli) -> None:
     """One curve, many and a pool: the numbers are equal to the last digit."""

@@ -48,6 +48,7 @@ def mapped(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_images(mapped: Path) -> None:
     """Most intervals hold the truth of their pixel, and nothing is made up where there is none."""
     expected = truth(COLUMNS, ROWS)
@@ -78,6 +79,7 @@ def test_vti(mapped: Path) -> None:
     assert np.array_equal(arrays["tension_high [N/m]"].reshape(ROWS, COLUMNS), image, True)
 
 
+@pytest.mark.slow
 def test_killed_and_resumed(mapped: Path) -> None:
     """Killed without warning, the same command goes on, and ends with the same numbers."""
     source, folder = mapped / "cell.jpk-force-map", mapped / "killed"
@@ -98,6 +100,7 @@ def test_killed_and_resumed(mapped: Path) -> None:
     xr.testing.assert_identical(images, pl.fit_map(source, fix={"tension": 0}, **OPTIONS))
 
 
+@pytest.mark.slow
 def test_places_as_text(tmp_path: Path) -> None:
     """Places may be texts with units, in a file of afmformats or in a table of files."""
     curves = [replace(c, place=None, grid=None) for c in recordings(3, 1, points=60)]

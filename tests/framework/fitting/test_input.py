@@ -45,6 +45,7 @@ def _holds(estimate: dict[str, Any], truth: float) -> bool:
     return bool(estimate["low"] <= truth <= estimate["high"])
 
 
+@pytest.mark.slow
 def test_command_gives_json(cli: Cli) -> None:
     """JSON has value, interval and unit of each parameter, and the words."""
     _write(*_curve())
@@ -95,6 +96,7 @@ def test_command_leaves_files(cli: Cli) -> None:
     assert any("does not describe the curve" in message for message in report["messages"])
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals")
 def test_command_leaves_a_page(cli: Cli) -> None:
     """The page has what was found and what to be careful of, and loads nothing."""

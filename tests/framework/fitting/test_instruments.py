@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.fitting.curves.columns import Calibration
-from pellicle.fitting.curves.curve import Curve
+from pellicle.fitting.curves.curve import Curve, Note
 from pellicle.fitting.curves.readers import read
 from pellicle.fitting.models.force_model import tension_model
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE, TENSION, Coordinates
@@ -93,6 +93,25 @@ def test_approach_of_an_unlabelled_file_is_fitted(
         assert estimate.low is not None
         assert estimate.high is not None
         assert estimate.low < truth < estimate.high
+
+
+def test_time_that_does_not_serve(tmp_path: Path, recording: instruments.Recording) -> None:
+    """A time that stands still is left out with a note, as from a table; one that grows is kept."""
+    path = tmp_path / "chiaro.txt"
+    instruments.chiaro(path, recording)
+    kept = only(path)
+    assert kept.time is not None
+    assert not kept.messages
+    header, _, table = path.read_text(encoding="ISO-8859-1").partition("Time (s)")
+    names, *rows = table.splitlines()
+    rows = ["0\t" + row.partition("\t")[2] for row in rows]
+    path.write_text("\n".join([f"{header}Time (s){names}", *rows]) + "\n", encoding="ISO-8859-1")
+    curve = only(path)
+    assert curve.time is None
+    assert "time" not in curve.origin.columns
+    (note,) = curve.messages
+    assert isinstance(note, Note)
+    assert "column time falls, stands still" in note
 
 
 @pytest.mark.parametrize("name", instruments.MAPS)
@@ -188,6 +207,7 @@ TRUTH: Coordinates = {
 }
 
 
+@pytest.mark.slow
 def test_noise_of_the_deflection_is_in_the_position_too() -> None:
     """With a spring as soft as the contact errors are those of the bound, and nothing is widened.
 

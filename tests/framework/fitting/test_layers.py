@@ -83,6 +83,7 @@ def test_of_given_thickness() -> None:
     assert result["model"]["kernel"] == {"type": "coated", "substrate": LAYER}
 
 
+@pytest.mark.slow
 def test_of_free_thickness() -> None:
     """The thickness is a parameter like others; without it the curve tells less of the modulus."""
     fit = pl.fit(*curve(), thickness="free", **BEAD)
@@ -143,6 +144,7 @@ def test_the_layer_is_simulated_where_it_has_no_curve() -> None:
     )
 
 
+@pytest.mark.slow
 def test_several_curves_share_the_thickness() -> None:
     """A pool of beads of two radii determines the thickness better than either."""
     radii = [RADIUS, 3 * RADIUS]
@@ -158,6 +160,7 @@ def test_several_curves_share_the_thickness() -> None:
     assert fit.thickness.bound < single.thickness.bound
 
 
+@pytest.mark.slow
 def test_on_the_command_line(cli: Cli) -> None:
     """``--thickness`` is all it takes; tables and the page have the thickness."""
     position, force = curve()

@@ -130,6 +130,7 @@ class Stiffer:
         return pl.ForceCurve(*(self.factor * values for values in curve))
 
 
+@pytest.mark.slow
 def test_each_change_is_another_fit(tmp_path: Path) -> None:
     """Radius, indenter and solid make another fit of the same curve; an executor does not."""
     common: dict[str, Any] = {"fix": {"tension": 0}, "directory": tmp_path, "progress": False}

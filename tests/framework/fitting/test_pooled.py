@@ -74,6 +74,7 @@ def fit(measured: dict[str, tuple[Array, Array]]) -> pl.PooledFit:
     return pooled(measured, contact_points=True)
 
 
+@pytest.mark.slow
 def test_errors_reach_the_pooled_bound_and_intervals_shrink_to_it() -> None:
     """Over random curves errors and intervals are those of the Cramér–Rao bound of the pool."""
     random = np.random.default_rng(8)
@@ -135,6 +136,7 @@ def test_pool_of_the_same_curve_twice(measured: dict[str, tuple[Array, Array]]) 
     assert points[1] - points[0] == pytest.approx(1e-6, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_slopes_and_bound_are_those_of_all_points(fit: pl.PooledFit) -> None:
     """The six rows that stand for a curve keep χ², its gradient and the Fisher information."""
     pool = Pool.of([replace(member, free=member.parameters) for member in fit.pool.members])
@@ -286,6 +288,7 @@ def test_curves_are_told_apart_without_colour(fit: pl.PooledFit) -> None:
     assert len(styles) == len(set(styles)) == len(RADII)
 
 
+@pytest.mark.slow
 def test_command(measured: dict[str, tuple[Array, Array]], cli: Callable[..., Result]) -> None:
     """``--pool`` prints, and leaves JSON, a figure and a page."""
     for number, (position, force) in enumerate(measured.values()):

@@ -72,6 +72,7 @@ def timeless(text: str) -> str:
     return re.sub(r'\n *"(date|wall_time)": .*', "", text)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals")
 def test_three_ways_give_the_same_bytes(cli: Cli) -> None:
     """Configuration, options and Python leave the same JSON but for date and wall time."""
@@ -122,6 +123,7 @@ def test_record(cli: Cli) -> None:
     )
 
 
+@pytest.mark.slow
 def test_record_of_many(cli: Cli) -> None:
     """The tables have the same of every curve, and the page has it too."""
     Path("beads").mkdir()
@@ -152,6 +154,7 @@ def test_record_of_many(cli: Cli) -> None:
     assert [row["tension"] for row in json.loads(again)["curves"]] == [r["tension"] for r in rows]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals", "shared_fits")
 def test_again(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     """The same fit gives the same numbers, from another folder too; a change of file is told."""
@@ -224,6 +227,7 @@ def test_file_that_is_replaced_while_it_is_read(
         read(path)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals")
 def test_read_curves_and_draw_them(tmp_path: Path) -> None:
     """Curves are read by name, drawn, fitted; one that cannot be read is warned of."""
@@ -252,6 +256,7 @@ def _visible(page: Path) -> str:
     return html.unescape(re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", body)))
 
 
+@pytest.mark.slow
 def test_page_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The page begins with the answer in units of its size; an open interval is a bound."""
     depth = np.linspace(-0.5e-6, 1.5e-6, 300)

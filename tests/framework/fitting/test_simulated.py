@@ -109,6 +109,7 @@ def test_plan_knows_no_units() -> None:
     assert other.points[0].run.identity != one.points[0].run.identity
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("few_nodes")
 def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Curves of an independent run are recovered; the study serves every size and then is there."""

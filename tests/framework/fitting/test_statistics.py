@@ -53,6 +53,7 @@ def fitted(position: Array, force: Array, **options: Any) -> pl.Fit:
     return pl.fit(position, force, indenter="paraboloid", radius=RADIUS, **options)
 
 
+@pytest.mark.slow
 def test_errors_reach_the_bound_and_intervals_hold() -> None:
     """Over random curves errors are those of the Cramér–Rao bound, and 95 % means 95 %.
 
@@ -67,6 +68,7 @@ def test_errors_reach_the_bound_and_intervals_hold() -> None:
     assert sum(score.covers_tension for score in sample) >= 26
 
 
+@pytest.mark.slow
 def test_tension_is_not_claimed_where_there_is_none() -> None:
     """Without tension the interval reaches down to none, nearly always."""
     sample = list(scores(12, seed=6, points=400, tensed=False))
@@ -262,6 +264,7 @@ def test_curve_of_the_solver_is_recovered(type_: str, points: int, size: int) ->
         assert estimate.high / estimate.low < 1.5
 
 
+@pytest.mark.slow
 def test_figures_leave_gaps_where_a_search_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

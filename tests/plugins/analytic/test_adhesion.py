@@ -110,6 +110,7 @@ def test_tension_alone_pulls_off_at_the_force_of_a_liquid() -> None:
     assert far.contact_radius == pytest.approx(1e5**-0.5, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_cone_steeper_than_the_rim_is_never_pulled() -> None:
     """A contact under tension sticks to a cone only if cot α < √(2w/τ₀)."""
     cone = Cone(half_angle=radians(80))

@@ -120,6 +120,7 @@ def test_nothing_is_started_here() -> None:
         dask(address="tcp://127.0.0.1:8786", workers=2)
 
 
+@pytest.mark.slow
 @posix
 def test_task_of_a_killed_worker_runs_elsewhere(start_dask: Any, tmp_path: Path) -> None:
     """The table is that of an undisturbed study, and no finished task was begun again."""
@@ -149,6 +150,7 @@ def test_no_workers_are_warned_of(start_dask: Any, monkeypatch: pytest.MonkeyPat
         list(dask(address=address).map(square, [Job(2)], silence))
 
 
+@pytest.mark.slow
 def test_workers_may_come_later(start_dask: Any, tmp_path: Path) -> None:
     """Runs wait for the first worker, as a queue may take its time to start one."""
     with start_dask(0) as address, worker_of(address, tmp_path), warnings.catch_warnings():
@@ -177,6 +179,7 @@ def test_a_scheduler_that_dies_fails_its_tasks(start_dask: Any) -> None:
         assert str(outcome) == "the connection to the scheduler was lost"
 
 
+@pytest.mark.slow
 def test_task_larger_than_every_worker(start_dask: Any) -> None:
     """It is not sent off to die four times; the others run."""
     jobs = [Job(0, memory=3 * 10**9), Job(2)]
@@ -254,6 +257,7 @@ def worker_of(address: str, folder: Path, **environment: str) -> Iterator[None]:
         worker.wait()
 
 
+@pytest.mark.slow
 @posix
 def test_workers_without_pellicle(start_dask: Any, tmp_path: Path) -> None:
     """A cluster that lacks it says so, for each task."""

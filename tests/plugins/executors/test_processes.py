@@ -194,6 +194,7 @@ def test_linear_algebra_is_pinned(threads: int, monkeypatch: pytest.MonkeyPatch)
     assert seen["OMP_NUM_THREADS"] == seen["OPENBLAS_NUM_THREADS"] == str(threads)
 
 
+@pytest.mark.slow
 def test_runs_are_the_same_as_here() -> None:
     """A worker computes to the last bit what this process does."""
     jobs = [Job(i) for i in range(3)]
@@ -251,6 +252,7 @@ def left_of(group: int) -> Iterator[psutil.Process]:
             continue
 
 
+@pytest.mark.slow
 def test_script_without_guard(tmp_path: Path) -> None:
     """A plain script runs once, with work that it defines itself."""
     run = script(tmp_path, sleep="")

@@ -59,6 +59,7 @@ def test_summary_and_curve_are_those_of_the_bead(tmp_path: Path) -> None:
     assert np.any(colourfulness(tmp_path / "bead-adhesive_curve.png") > 0.5)
 
 
+@pytest.mark.slow
 def test_a_study_has_a_curve_for_each_value(tmp_path: Path) -> None:
     """Tension weakens pull-off, from 1.5 πwR towards πwR."""
     output = OUTPUT | {"by": "kernel.tension", "label": "{1e3 * kernel.tension}"}

@@ -271,6 +271,7 @@ def test_the_profile_is_that_of_each_mapped_step(ran: tuple[Path, xr.Dataset]) -
     assert len({picture["source"] for picture in profiles["pictures"]}) == 2
 
 
+@pytest.mark.slow
 def test_of_many_steps_some_profiles_are_drawn(tmp_path: Path) -> None:
     """With more mapped steps than profiles a frame shows the nearest, which its caption names."""
     few = {**RUN, "grid": {"points": 16, "size": "0.4 mm"}, "corrections": []}

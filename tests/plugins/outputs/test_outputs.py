@@ -113,6 +113,7 @@ def _line_colours(path: Path) -> set[str]:
     return {to_hex((float(stroke[0]), float(stroke[1]), float(stroke[2]))) for stroke in strokes}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("format_", ["png", "svg", "pdf"])
 def test_figures(tmp_path: Path, format_: str) -> None:
     """Every figure is drawn in the format that is asked for."""
@@ -183,6 +184,7 @@ NAMES = {
 OF_RUNS = {".h5", ".csv", ".pvd", "-0001.vts", "-0002.vts"}
 
 
+@pytest.mark.slow
 def test_names_of_files(tmp_path: Path) -> None:
     """Every output writes files of the names that users know."""
     pl.run(_run(EVERYTHING), directory=tmp_path, progress=False)
@@ -190,6 +192,7 @@ def test_names_of_files(tmp_path: Path) -> None:
     assert names == NAMES | {f"-{figure}.png" for figure in FIGURES}
 
 
+@pytest.mark.slow
 def test_names_of_files_of_a_study(tmp_path: Path) -> None:
     """The table and the figures lie in the folder of a study, what shows single runs in runs."""
     study = pl.Study(run=_run(EVERYTHING), vary={"indenter.radius": [1e-3, 2e-3]})

@@ -49,6 +49,7 @@ def result(folder: Path) -> pl.Result:
     return pl.load(folder / "bead.h5")
 
 
+@pytest.mark.slow
 def test_figure_over_time_has_what_the_result_has(result: pl.Result) -> None:
     """Force, depth and area have a curve each over the time; without times there is no figure."""
     figure = Figure()

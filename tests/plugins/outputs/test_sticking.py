@@ -95,6 +95,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+@pytest.mark.slow
 def test_the_path_is_summarised_where_the_result_is(bead: tuple[Path, pl.Result]) -> None:
     """Result, page and terminal have the same numbers, which are those of the steps."""
     folder, result = bead
@@ -179,6 +180,7 @@ def test_distribution_of_pressure_gives_the_force(bead: tuple[Path, pl.Result]) 
     assert mean * area == pytest.approx(data["force"].item(), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_path_that_never_touches_is_drawn(tmp_path: Path) -> None:
     """At negative depths there is nothing to draw, and everything that draws it still ends."""
     changes = {"loading": {"depth": ["-1 m", "-2 m", "-0.5 m"]}, "outputs": OUTPUTS}
@@ -191,6 +193,7 @@ def test_a_path_that_never_touches_is_drawn(tmp_path: Path) -> None:
     assert "<td" in (tmp_path / "run.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_a_study_has_one_path_for_each_run(study: tuple[Path, xr.Dataset]) -> None:
     """Pull-off has no step: it is a curve against what varies, in table, CSV, page and terminal."""
     folder, table = study

@@ -155,6 +155,7 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[list[str],
         yield texts, run, study
 
 
+@pytest.mark.slow
 def test_no_figure_has_a_key(drawn: tuple[list[str], Path, Path]) -> None:
     """Whatever is drawn of a run or a study is in words."""
     texts, *_ = drawn
@@ -200,6 +201,7 @@ RELAXING: dict[str, Any] = {
 
 
 # Cells of a quick test are wide for the zone; what is drawn is not less.
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
 @pytest.mark.parametrize(
     ("run", "word"),
@@ -217,6 +219,7 @@ def test_adhesion_and_time_are_in_words(run: dict[str, Any], word: str, tmp_path
     assert keys([*texts, *shown], run) == set()
 
 
+@pytest.mark.slow
 def test_fits_and_populations_are_in_words(tmp_path: Path) -> None:
     """Nor have figures and pages of one curve, a pool and a population, nor what notebooks show."""
     bead, random = pl.indenter("sphere", radius="5 um"), np.random.default_rng(2)

@@ -155,6 +155,7 @@ def assert_solved(problem: Problem, solver: Solver | InOtherUnits) -> None:
     assert state.depth == pytest.approx(depth, abs=np.sqrt(TOLERANCE) * stiffest)
 
 
+@pytest.mark.slow
 @settings(max_examples=500, deadline=None, derandomize=True)
 @given(problem=problems())
 def test_active_set(problem: Problem) -> None:
@@ -211,6 +212,7 @@ UNITS = st.tuples(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(problem=problems(), units=UNITS)
 def test_active_set_on_any_length_and_modulus(problem: Problem, units: tuple[float, float]) -> None:

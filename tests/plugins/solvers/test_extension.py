@@ -255,6 +255,7 @@ def test_preconditioner_is_nearly_the_inverse(tension: float) -> None:
     assert condition(TensedMembrane(reduced_modulus=1.0, tension=tension), 24) < 30
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("length", "most"), [(0.1, 4), (1.0, 60)])
 def test_preconditioner_of_a_skin_that_bends_is_nearly_the_inverse(
     length: float, most: float
@@ -264,6 +265,7 @@ def test_preconditioner_of_a_skin_that_bends_is_nearly_the_inverse(
     assert condition(kernel, 32) < most  # 2.0, 48
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("length", "most"), [(0.1, 4), (1.0, 25)])
 @pytest.mark.parametrize("points", [(56, 18), (18, 56)])
 def test_preconditioner_of_a_skin_that_bends_on_cells_of_one_to_three(

@@ -53,6 +53,7 @@ def assert_solved(problem: Problem, most: int) -> None:
     assert applications <= most
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("points", "depth", "most"),
     [(64, 0.5e-6, 200), (64, 2e-6, 200), (64, 1e-5, 200), (128, 2e-6, 500)],

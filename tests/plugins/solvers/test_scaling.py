@@ -195,6 +195,7 @@ def test_parameters_beyond_numbers_are_refused(
         make_operator(pl.kernel(type_, **parameters), grid)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("type_", ["paraboloid", "sphere"])
 def test_a_radius_beyond_the_domain_is_flat(type_: str) -> None:
     """A radius of 1e308 m overflows nowhere: its profile is flat to rounding."""

@@ -31,6 +31,7 @@ def test_solutions_have_the_same_bits(boundary: str) -> None:
     np.testing.assert_array_equal(pressures[2], pressures[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("orders", [[1.0] * 5, [4.0, 4.0, 3.0, 2.0, 1.0]])
 def test_extensions_have_the_same_bits(orders: list[float]) -> None:
     """E and its transpose, with and without the sweeps of skins that bend."""

@@ -17,7 +17,7 @@ from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.units import Quantity
 
 from .cleaning import grows
-from .columns import Calibration
+from .columns import Calibration, Channel, unused_time
 from .curve import Axis, Curve, Site
 from .origin import CurveOrigin
 
@@ -114,7 +114,7 @@ class _Recordings(Mapping[str, Curve | PellicleError]):
                 curve = _curve(self._path, recording, self._overrides, self._segment)
         except PellicleError as error:
             return error
-        messages = tuple(dict.fromkeys((*self._messages, *_texts(caught))))
+        messages = tuple(dict.fromkeys((*self._messages, *_texts(caught), *curve.messages)))
         return replace(curve, messages=messages)
 
 
@@ -163,14 +163,26 @@ def _curve(
     if "segment" in data and segment != "both":
         rows = _rows_of(np.asarray(data["segment"]), tip, segment)
     used = {"position": f"{source} [m]", "force": "force [N]"}
-    time = _time(data, rows)
+    time = np.asarray(data["time"], dtype=float)[rows] if "time" in data else None
+    messages: tuple[str, ...] = ()
+    if time is not None and not grows(time):
+        messages = (unused_time(Channel("s", time)),)
+        time = None
     origin = CurveOrigin(
         columns=used if time is None else used | {"time": "time [s]"},
         sensitivity=metadata.get("sensitivity", overrides.get("sensitivity")),
         library="afmformats",
     )
     site = _site(metadata)
-    return Curve(-tip[rows], force[rows], stiffness=stiffness, time=time, origin=origin, site=site)
+    return Curve(
+        -tip[rows],
+        force[rows],
+        messages=messages,
+        stiffness=stiffness,
+        time=time,
+        origin=origin,
+        site=site,
+    )
 
 
 def _rows_of(segments: Array, tip: Array, segment: str) -> Mask:
@@ -189,14 +201,6 @@ def _rows_of(segments: Array, tip: Array, segment: str) -> Mask:
         chosen = next(iter(numbers[far & ~down][::-1]), numbers[-1])
     mask: Mask = segments == chosen
     return mask
-
-
-def _time(data: Mapping[str, Any], rows: Any) -> Array | None:
-    """Return the time [s]; None where the file holds none that grows."""
-    if "time" not in data:
-        return None
-    time = np.asarray(data["time"], dtype=float)[rows]
-    return time if grows(time) else None
 
 
 def _site(metadata: Mapping[str, Any]) -> Site | None:

@@ -116,7 +116,7 @@ def from_columns(columns: Mapping[str, Channel], calibration: Calibration) -> Cu
     time = _time(columns, np.isfinite(position) & np.isfinite(force))
     messages: tuple[str, ...] = ()
     if TIME in columns and time is None:
-        messages = (_unused_time(columns[TIME]),)
+        messages = (unused_time(columns[TIME]),)
         columns = {role: channel for role, channel in columns.items() if role != TIME}
     return Curve(
         position,
@@ -143,7 +143,7 @@ def _time(columns: Mapping[str, Channel], rows: Mask) -> Array | None:
     return factor(TIME, columns[TIME].unit) * time
 
 
-def _unused_time(column: Channel) -> Note:
+def unused_time(column: Channel) -> Note:
     """Return the note on a column of times that do not serve."""
     reason = "falls, stands still or has a row without a number" if column.unit else "has no unit"
     return Note(f"column {column.name or TIME} {reason}, so the curve is taken as one without time")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from pellicle.errors import ConfigError, ConvergenceError
 from pellicle.fitting.models.force_model import ClosedFormModel, ForceModel
 from pellicle.fitting.models.layer import LayerModel, with_thickness
 from pellicle.fitting.models.solid import lengths
-from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates
+from pellicle.fitting.parameters import CONTACT_POINT, MODULUS, TENSION, Coordinates, Parameter
 from pellicle.units import decimal, readable
 
 from .chi_squared import ChiSquared, Minimum, best_minimum
@@ -21,7 +22,7 @@ from .initial_guess import initial_guesses
 from .likelihood import Likelihood
 from .long_memory import exponent_of
 from .noise import FailedCheck, Noise, NoiseEstimate, Residuals, check_baseline
-from .profile import CONFIDENCE
+from .profile import CONFIDENCE, Estimate
 
 _QUIET = 20
 """Least number of points before contact from which the noise is estimated."""
@@ -142,8 +143,12 @@ def judged(likelihood: Likelihood, parameters: Coordinates) -> tuple[NoiseEstima
     return NoiseEstimate(noise, failed, messages=messages), source
 
 
-def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str]:
+def check_plausible(
+    likelihood: Likelihood, parameters: Coordinates, estimate: Callable[[Parameter], Estimate]
+) -> list[str]:
     """Return warnings of implausible results, such as a wrong unit or radius causes.
+
+    ``estimate`` returns that of a parameter of the force model.
 
     Raises
     ------
@@ -161,13 +166,24 @@ def check_plausible(likelihood: Likelihood, parameters: Coordinates) -> list[str
             f"{readable(radius, 'm', 3)}: are radius and units right?"
         )
     for parameter in model.parameters:
-        value, (low, high) = parameter.value(parameters[parameter]), parameter.plausible
-        if not low <= value <= high:
+        known, (least_value, most) = estimate(parameter), parameter.plausible
+        # The best value of an open interval is one of many.
+        low = -np.inf if known.low is None else known.low
+        high = np.inf if known.high is None else known.high
+        if low > most or high < least_value:
             messages.append(
-                f"a {parameter.word} of {readable(value, parameter.unit, 3)} is not plausible: "
-                "are the units right?"
+                f"a {parameter.word} {_size(known)} is not plausible: are the units right?"
             )
     return messages
+
+
+def _size(estimate: Estimate) -> str:
+    """Return the value of an estimate in words, or the end that its open interval has."""
+    if estimate.low is None and estimate.high is not None:
+        return f"below {readable(estimate.high, estimate.unit, 3)}"
+    if estimate.high is None and estimate.low is not None:
+        return f"above {readable(estimate.low, estimate.unit, 3)}"
+    return f"of {readable(estimate.value, estimate.unit, 3)}"
 
 
 def check_depth(model: ForceModel, depth: float, parameters: Coordinates) -> None:
