@@ -23,7 +23,7 @@ from .statistics.noise import FailedCheck, is_beyond_chance
 from .statistics.pooled_likelihood import Excess
 from .statistics.profile import OPEN, Ends, Estimate, curvature_interval, estimate_of, united
 from .statistics.rival import Rival
-from .statistics.rivals import NONE, TENSED, rivals
+from .statistics.rivals import NONE, SLOPED, TENSED, rivals, sloped
 from .verdict import MANY_MARGIN, judge
 from .wording import words
 
@@ -134,6 +134,13 @@ def _minima(
             # so a pair with next to no tension had beaten the adhesion in it by 15.
             if pair and single in minima and _criterion(chi_squared, pair) < alone[single]:
                 add(singles[single], [pair[1].parameters])
+    leading, least = _best(chi_squared, minima)
+    if leading.code in (SLOPED.code, sloped(TENSED).code):
+        # A slope that was found may hide what bends the curves, as one that is given does not.
+        for effect in singles.values():
+            if effect.code in minima and effect not in (NONE, TENSED, SLOPED):
+                known = minima[effect.code][1].parameters
+                add(sloped(effect), [least.parameters | {p: known[p] for p in effect.own}])
     return minima
 
 

@@ -219,6 +219,31 @@ def test_two_speeds_show_relaxation() -> None:
 
 
 @pytest.mark.slow
+def test_a_slope_that_was_found_hides_no_other_effect() -> None:
+    """A slope that is found leaves the same models as one that is given, and no claim between."""
+    depth, modulus, tension = np.linspace(-0.4e-6, 0.4e-6, 400), 2e3, 1e-3
+    bead = Paraboloid(radius=5e-6)
+    force = modulus * bead.force_curve(depth, 2 * tension / modulus).force
+    force += 0.005 * force.max() * np.random.default_rng(1).standard_normal(depth.size)
+    force += 3e-5 * (depth - depth[0])
+    found, given = (
+        pl.fit(depth, force, indenter=bead, baseline=baseline).rivals
+        for baseline in ("none", "slope")
+    )
+    assert found is not None
+    assert given is not None
+    assert found.verdict == given.verdict == "undecided"
+    by_code = {fit.rival.code: fit for fit in found.fits}
+    for fit in given.tied:
+        if not fit.rival.code.startswith("tension+"):
+            sloped = by_code[f"{fit.rival.code}+baseline_slope"]
+            assert sloped.aic == pytest.approx(fit.aic, abs=0.1)
+    # The elastic solid on a flat baseline, which is far behind, is not one of the models.
+    assert found.chosen is found.best
+    assert "tension" not in {fit.rival.code for fit in found.alternatives}
+
+
+@pytest.mark.slow
 def test_a_jump_within_the_noise_does_not_stop_the_search() -> None:
     """χ² jumps as the contact point passes a row, where a search had stopped seven rows off."""
     name = "tension and adhesion"
