@@ -131,6 +131,58 @@ def test_a_step_that_is_held_does_not_jump(law: str, prescribed: str, values: li
     assert not path["jump_energy"].values[1:].any()
 
 
+def _flat(
+    points: int, size: float, kernel: dict[str, object], work: float, loading: dict[str, object]
+) -> xr.Dataset:
+    """Return the path of a flat indenter that touches with all cells at once."""
+    heights = np.zeros((points, points)).tolist()
+    interaction = {"type": "jkr", "work_of_adhesion": work, "estimate_error": False}
+    return pl.run(
+        {
+            "grid": {"points": points, "size": size},
+            "kernel": kernel,
+            "indenter": {"type": "heights", "values": heights, "unit": 1.0},
+            "interaction": interaction,
+            "loading": loading,
+        },
+        progress=False,
+    ).dataset
+
+
+@pytest.mark.parametrize(
+    ("points", "size", "kernel", "work", "depths"),
+    [
+        (1, 8e-5, {"type": "half_space", "reduced_modulus": 1e4}, 1e-3, [1e-6, 2e-6, 0.0, -1e-6]),
+        (
+            2, 1.0, {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.3}, 0.01,
+            [0.02, 0.05, 0.02, 0.0, -0.01],
+        ),
+    ],
+)  # fmt: skip
+def test_steps_of_one_inner_solve_are_closed(
+    points: int, size: float, kernel: dict[str, object], work: float, depths: list[float]
+) -> None:
+    """Not in single precision only, in which an inner solve adds to the displacement."""
+    path = _flat(points, size, kernel, work, {"depth": depths})
+    assert path["converged"].values.all(), path["status"].values
+    assert path["contact"].values.all()
+
+
+@pytest.mark.parametrize("points", [1, 8])
+@pytest.mark.parametrize(
+    "kernel",
+    [
+        {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.3},
+        {"type": "winkler", "foundation": 1.0},
+    ],
+)
+def test_no_force_is_met_to_rounding(points: int, kernel: dict[str, object]) -> None:
+    """Wall pressure and attraction of a flat cancel under no force, cell by cell."""
+    path = _flat(points, 1.0, kernel, 0.01, {"force": [0.01, 0.05, 0.0, 0.02]})
+    assert path["converged"].values.all(), path["status"].values
+    assert path["contact"].values.all()
+
+
 def test_full_contact_that_is_rigid_does_not_jump() -> None:
     """Any force leaves it as it is; round-off of its energy is no jump."""
     x = np.cos(2 * pi * (np.arange(22) + 0.5) / 22)
