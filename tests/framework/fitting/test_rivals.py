@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.special import beta
 
 import pellicle as pl
-from pellicle.fitting.compare import _unseen
+from pellicle.fitting.alternatives import unseen_pairs
 from pellicle.fitting.comparison import Comparison, RivalFit, Verdict
 from pellicle.fitting.curves.curve import Segment
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
@@ -488,7 +488,7 @@ def test_what_measurements_do_not_show() -> None:
             )
             for path in rows
         ]
-        return _unseen(Pool.of(curves) if len(curves) > 1 else curves[0])
+        return unseen_pairs(Pool.of(curves) if len(curves) > 1 else curves[0])
 
     adhesion, relaxation = "tension+adhesion", "tension+power_law"
     assert unseen(path()) == (adhesion, relaxation)
