@@ -106,6 +106,102 @@ def test_a_jump_of_one_asperity_is_named() -> None:
     assert np.nansum(path["jump_energy"].values) == pytest.approx(lost, rel=0.02)
 
 
+@pytest.mark.parametrize("law", ["jkr", "dugdale"])
+@pytest.mark.parametrize(
+    ("prescribed", "values"),
+    [("depth", ["1 um", "2 um"]), ("force", ["100 nN", "200 nN"])],
+)
+def test_a_step_that_is_held_does_not_jump(law: str, prescribed: str, values: list[str]) -> None:
+    """The error that the tolerance leaves in the energy does not count as lost in a jump."""
+    reach = {"range": "1 um"} if law == "dugdale" else {"estimate_error": False}
+    path = pl.run(
+        {
+            "grid": {"points": 32, "size": "80 um"},
+            "kernel": {
+                "type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "10 mN/m"
+            },
+            "indenter": {"type": "paraboloid", "radius": "0.1 mm"},
+            "interaction": {"type": law, "work_of_adhesion": "1 mJ/m^2", **reach},
+            "loading": {prescribed: [*values, values[1], values[1], *values[::-1], values[0]]},
+        },
+        progress=False,
+    ).dataset  # fmt: skip
+    assert path["converged"].values.all()
+    assert path["jumped"].values.tolist() == [True, *[False] * 6]
+    assert not path["jump_energy"].values[1:].any()
+
+
+def _flat(
+    points: int, size: float, kernel: dict[str, object], work: float, loading: dict[str, object]
+) -> xr.Dataset:
+    """Return the path of a flat indenter that touches with all cells at once."""
+    heights = np.zeros((points, points)).tolist()
+    interaction = {"type": "jkr", "work_of_adhesion": work, "estimate_error": False}
+    return pl.run(
+        {
+            "grid": {"points": points, "size": size},
+            "kernel": kernel,
+            "indenter": {"type": "heights", "values": heights, "unit": 1.0},
+            "interaction": interaction,
+            "loading": loading,
+        },
+        progress=False,
+    ).dataset
+
+
+@pytest.mark.parametrize(
+    ("points", "size", "kernel", "work", "depths"),
+    [
+        (1, 8e-5, {"type": "half_space", "reduced_modulus": 1e4}, 1e-3, [1e-6, 2e-6, 0.0, -1e-6]),
+        (
+            2, 1.0, {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.3}, 0.01,
+            [0.02, 0.05, 0.02, 0.0, -0.01],
+        ),
+    ],
+)  # fmt: skip
+def test_steps_of_one_inner_solve_are_closed(
+    points: int, size: float, kernel: dict[str, object], work: float, depths: list[float]
+) -> None:
+    """Not in single precision only, in which an inner solve adds to the displacement."""
+    path = _flat(points, size, kernel, work, {"depth": depths})
+    assert path["converged"].values.all(), path["status"].values
+    assert path["contact"].values.all()
+
+
+@pytest.mark.parametrize("points", [1, 8])
+@pytest.mark.parametrize(
+    "kernel",
+    [
+        {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 0.3},
+        {"type": "winkler", "foundation": 1.0},
+    ],
+)
+def test_no_force_is_met_to_rounding(points: int, kernel: dict[str, object]) -> None:
+    """Wall pressure and attraction of a flat cancel under no force, cell by cell."""
+    path = _flat(points, 1.0, kernel, 0.01, {"force": [0.01, 0.05, 0.0, 0.02]})
+    assert path["converged"].values.all(), path["status"].values
+    assert path["contact"].values.all()
+
+
+def test_full_contact_that_is_rigid_does_not_jump() -> None:
+    """Any force leaves it as it is; round-off of its energy is no jump."""
+    x = np.cos(2 * pi * (np.arange(22) + 0.5) / 22)
+    heights = 0.001 * (x[:, None] + x)
+    layer = {"thickness": 0.04, "reduced_modulus": 1.0, "poissons_ratio": 0.5}
+    path = pl.run(
+        {
+            "grid": {"points": 22, "size": 1.0, "boundary": "periodic"},
+            "kernel": {"type": "bonded_layer", **layer},
+            "indenter": {"type": "heights", "values": heights.tolist(), "unit": 1.0},
+            "interaction": {"type": "jkr", "work_of_adhesion": 0.1, "estimate_error": False},
+            "loading": {"force": [0.1, 10.0, 0.2, 3.0, 0.1]},
+        },
+        progress=False,
+    ).dataset
+    assert path["contact"].values.all()
+    assert not path["jumped"].values[1:].any()
+
+
 @pytest.mark.slow
 def test_pull_off_is_that_of_jkr() -> None:
     """The lowest force on a path in depth is −1.5 πwR to 2 %."""

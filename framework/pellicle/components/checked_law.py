@@ -25,6 +25,10 @@ from .kernel import Kernel
 # law that drops within one of these gaps still passes.
 _GAPS = 2001
 _ENERGY_ERROR = 1e-2
+# Error of a slope over the mean one, and the share of the range in which it may be larger: a law
+# may drop or have kinks.
+_SLOPE_ERROR = 1e-2
+_KINKS = 0.1
 # Relative rounding error of tractions.
 _ROUNDING = 1e-12
 # Relative rounding error of displacements, with some digits left for the gap.
@@ -39,8 +43,9 @@ def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
     ConfigError
         The range is below the rounding error of the displacements that the strength causes.
     PluginError
-        The traction repels, grows with the gap or is not the derivative of the energy, or a value
-        is not a finite number.
+        The traction repels, grows with the gap or is not the derivative of the energy, the energy
+        is not 0 at the cutoff, the slope is not the derivative of the traction, or a value is not a
+        finite number.
     """
 
     def resolve(grid: Grid) -> _CheckedLaw:
@@ -59,6 +64,7 @@ def law_of(interaction: Interaction, kernel: Kernel, grid: Grid) -> Law:
     energy, traction = law.energy(gaps), law.traction(gaps)
     _require_attraction(interaction, gaps, traction)
     _require_derivative(interaction, gaps, energy, traction)
+    _require_slope(interaction, gaps, traction, law.slope(gaps))
     with errors_attributed_to(kernel):
         compliance = kernel.compliance(np.array([np.pi / grid.cell_size])).item()
     strength = -float(traction[0])
@@ -106,12 +112,29 @@ def _require_derivative(
             f"{name}: energy(0) is {energy[0]:g} J/m²; it has to be negative: minus the work of "
             "adhesion"
         )
+    if not abs(energy[-1]) <= _ENERGY_ERROR * depth:
+        raise PluginError(
+            f"{name}: energy(gap) is {energy[-1]:.3g} J/m² at the cutoff of {gaps[-1]:.3g} m; it "
+            "has to be 0 there, as nothing acts beyond: give a larger cutoff"
+        )
     work = np.concatenate([[0.0], np.cumsum(0.5 * (traction[1:] + traction[:-1])) * gaps[1]])
     missed = float(np.abs(energy - energy[0] + work).max()) / depth
     if missed > _ENERGY_ERROR:
         raise PluginError(
             f"{name}: traction(gap) is not −dγ/dg of energy(gap): their difference over the range "
             f"is {missed:.1e} of the work of adhesion"
+        )
+
+
+def _require_slope(interaction: Interaction, gaps: Array, traction: Array, slope: Array) -> None:
+    """Refuse a law whose slope, which stiffnesses follow from, is not dσ/dg."""
+    measured = np.diff(traction) / gaps[1]
+    missed = np.abs(0.5 * (slope[1:] + slope[:-1]) - measured)
+    share = float(np.mean(missed > _SLOPE_ERROR * -traction[0] / gaps[-1]))
+    if share > _KINKS:
+        raise PluginError(
+            f"{component_name(interaction)}: slope(gap) is not dσ/dg of traction(gap) over "
+            f"{share:.0%} of the range; leave it out to have it measured"
         )
 
 

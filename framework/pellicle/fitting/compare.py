@@ -10,37 +10,27 @@ from functools import partial
 import numpy as np
 
 from pellicle.errors import ConvergenceError
-from pellicle.units import decimal, readable
+from pellicle.units import readable
 
+from .alternatives import over_alternatives, reported_estimates, reported_parameters, unseen_pairs
 from .comparison import Comparison, Intervals, RivalFit
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
-from .models.relaxing import EXPONENT
-from .parameters import CONTACT_POINT, MODULUS, OFFSET, SLOPE, TENSION, Coordinates, Parameter
+from .parameters import TENSION, Coordinates, Parameter
 from .statistics.checks import judged
 from .statistics.chi_squared import ChiSquared, Minimum
 from .statistics.likelihood import Likelihood
 from .statistics.noise import FailedCheck, is_beyond_chance
 from .statistics.pooled_likelihood import Excess
-from .statistics.profile import OPEN, Ends, Estimate, curvature_interval, estimate_of, united
+from .statistics.profile import Ends, curvature_interval
 from .statistics.rival import Rival
-from .statistics.rivals import NONE, TENSED, rivals
+from .statistics.rivals import NONE, SLOPED, TENSED, rivals, sloped
 from .verdict import MANY_MARGIN, judge
-from .wording import words
 
 _FIRST_TENSIONS = (0.03, 0.3)
 """Tensions from which a search for one starts, over modulus and depth."""
 _FAR = 100.0
 """Difference of AIC beyond which intervals come from the curvature of χ²: their models describe the
 curves so badly that profiles, a third of the time of a comparison, would say nothing more."""
-_ONE_SPEED = 1.5
-"""Ratio of speeds up to which curves count as measured at one."""
-_UNSEEN = {
-    "tension+adhesion": (WORK_OF_ADHESION, "on approach {} would not show, on retraction it would"),
-    "tension+power_law": (EXPONENT, "at one speed {} would not show, at a second it would"),
-}
-"""By the code of a pair, the parameter of its effect and what of it a measurement does not show."""
-_NUISANCES = {CONTACT_POINT.name, OFFSET.name, SLOPE.name}
-"""Parameters of every curve, whose values a comparison does not report."""
 _Minima = dict[str, tuple[Rival, Minimum]]
 """Explanations with their minima of χ², by code."""
 
@@ -76,20 +66,19 @@ def compare(
     minima = _minima(chi_squared, best, without, pairs=pairs, report=report)
     quiet, failed = _at_its_noise(chi_squared, minima)
     best_rival, best_minimum = _best(chi_squared, minima)
-    widened = _disagreement(quiet, best_rival, best_minimum)
-    quiet = quiet.with_members([replace(m, noise=widened * m.noise) for m in quiet.members])
+    excess = _disagreement(quiet, best_rival, best_minimum)
+    if excess is not None:
+        widened = float(np.sqrt(excess.factor))
+        quiet = quiet.with_members([replace(m, noise=widened * m.noise) for m in quiet.members])
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
-    comparison = replace(judge(quiet, fits, failed, threshold), unseen=_unseen(chi_squared))
-    if widened > 1 and comparison.sentence:
-        sentence = (
-            f"{comparison.sentence}; under {best_rival.words} the curves do not agree on the "
-            f"shared parameters either, and the intervals are widened by {decimal(widened, 2)}"
-        )
+    comparison = replace(judge(quiet, fits, failed, threshold), unseen=unseen_pairs(chi_squared))
+    if excess is not None and comparison.sentence:
+        sentence = f"{comparison.sentence}; under {best_rival.words}, too, {excess.agreement()}"
         comparison = replace(comparison, sentence=sentence)
     if comparison.chosen is not None:
         comparison = _with_intervals(quiet, comparison, comparison.chosen, threshold)
-    return _over_alternatives(quiet, comparison, threshold)
+    return over_alternatives(quiet, comparison, threshold)
 
 
 def _minima(
@@ -125,7 +114,7 @@ def _minima(
             or (
                 single == "adhesion" and alone.get(single, np.inf) + MANY_MARGIN <= alone[NONE.code]
             )
-            or (single == "power_law" and rival.code in _unseen(chi_squared))
+            or (single == "power_law" and rival.code in unseen_pairs(chi_squared))
         )
         if single and (every_pair or leads):
             start = minima.get(single, (NONE, without))[1]
@@ -135,98 +124,14 @@ def _minima(
             # so a pair with next to no tension had beaten the adhesion in it by 15.
             if pair and single in minima and _criterion(chi_squared, pair) < alone[single]:
                 add(singles[single], [pair[1].parameters])
+    leading, least = _best(chi_squared, minima)
+    if leading.code in (SLOPED.code, sloped(TENSED).code):
+        # A slope that was found may hide what bends the curves, as one that is given does not.
+        for effect in singles.values():
+            if effect.code in minima and effect not in (NONE, TENSED, SLOPED):
+                known = minima[effect.code][1].parameters
+                add(sloped(effect), [least.parameters | {p: known[p] for p in effect.own}])
     return minima
-
-
-def _unseen(chi_squared: ChiSquared) -> tuple[str, ...]:
-    """Return the codes of pairs that curves of this kind may need and do not show.
-
-    Beside a tension approaches do not show a weak adhesion, nor those of one speed relaxation.
-    """
-    curves = chi_squared.members
-    if any(curve.segment != "approach" for curve in curves):
-        return ()
-    speeds = [float(np.median(curve.history.velocity)) for curve in curves]
-    several = max(speeds) > _ONE_SPEED * min(speeds)
-    if several or any(curve.history.dwells for curve in curves):
-        return ("tension+adhesion",)
-    return tuple(_UNSEEN)
-
-
-def _over_alternatives(
-    chi_squared: ChiSquared, comparison: Comparison, threshold: float
-) -> Comparison:
-    """Return the comparison with the intervals of modulus and tension over all alternatives."""
-    if len(comparison.alternatives) < 2:
-        return comparison
-    is_needed = comparison.verdict == "needed"
-    code = TENSED.code if comparison.chosen is None else comparison.chosen.rival.code
-    chosen = next(fit for fit in comparison.alternatives if fit.rival.code == code)
-    others = [fit for fit in comparison.alternatives if fit is not chosen]
-    searched = [MODULUS, TENSION] if is_needed else [MODULUS]
-    own = _estimates_of(chi_squared, chosen, threshold, searched)
-    over_all = {}
-    for parameter in searched:
-        estimate = own[parameter.name]
-        ends = _in_coordinates(parameter, estimate)
-        for fit in others:
-            if ends != OPEN:
-                ends = _extended(chi_squared, fit, threshold, parameter, ends)
-        low, high = (None if end is None else parameter.value(end) for end in ends)
-        over_all[parameter] = replace(estimate, low=low, high=high)
-    comparison = replace(comparison, modulus=over_all[MODULUS])
-    if not is_needed:
-        return comparison
-    comparison = replace(comparison, tension=over_all[TENSION])
-    by_code = {fit.rival.code: fit for fit in others}
-    hidden = []
-    for code, (parameter, sentence) in _UNSEEN.items():
-        if code in comparison.unseen and code in by_code:
-            estimates = _estimates_of(chi_squared, by_code[code], threshold, [parameter])
-            high = estimates[parameter.name].high
-            hidden.append(sentence.format(_up_to(parameter.name, high, parameter.unit)))
-    return replace(comparison, sentence="; ".join([comparison.sentence, *hidden]))
-
-
-def _extended(
-    chi_squared: ChiSquared, fit: RivalFit, threshold: float, parameter: Parameter, ends: Ends
-) -> Ends:
-    """Return an interval of coordinates, extended to that of another explanation."""
-    if fit.intervals == "profile":
-        known = fit.estimates.get(parameter.name)
-        return ends if known is None else united(ends, _in_coordinates(parameter, known))
-    if parameter not in fit.rival.of(chi_squared).free:
-        return ends
-    minimum = Minimum(fit.parameters, fit.chi_squared)
-    return fit.rival.extended(chi_squared, minimum, threshold, parameter, ends)
-
-
-def _in_coordinates(parameter: Parameter, estimate: Estimate) -> Ends:
-    """Return the interval of an estimate in coordinates of its parameter."""
-    low, high = estimate.low, estimate.high
-    return (
-        None if low is None else parameter.coordinate(low),
-        None if high is None else parameter.coordinate(high),
-    )
-
-
-def _up_to(name: str, high: float | None, unit: str) -> str:
-    """Return what a parameter may be at most beside a tension, in words."""
-    size = "" if high is None else f" up to {readable(high, unit, 2)}"
-    return f"a {words(name)}{size} beside it"
-
-
-def _estimates_of(
-    chi_squared: ChiSquared, fit: RivalFit, threshold: float, searched: Sequence[Parameter]
-) -> dict[str, Estimate]:
-    """Return the estimates of an explanation, with intervals at least of those ``searched``."""
-    if fit.intervals == "profile":
-        return fit.estimates
-    of_rival = fit.rival.of(chi_squared)
-    minimum = Minimum(fit.parameters, fit.chi_squared)
-    free = [p for p in searched if p in of_rival.free]
-    minimum, ends = fit.rival.intervals(chi_squared, minimum, threshold, free)
-    return _estimates(of_rival, minimum, ends)
 
 
 def _with_intervals(
@@ -237,12 +142,14 @@ def _with_intervals(
     fits, better = comparison.fits, chosen
     if chosen.intervals != "profile":
         minimum = Minimum(chosen.parameters, chosen.chi_squared)
-        minimum, ends = chosen.rival.intervals(chi_squared, minimum, threshold, _reported(of_rival))
+        minimum, ends = chosen.rival.intervals(
+            chi_squared, minimum, threshold, reported_parameters(of_rival)
+        )
         better = replace(
             chosen,
             chi_squared=minimum.chi_squared,
             parameters=minimum.parameters,
-            estimates=_estimates(of_rival, minimum, ends),
+            estimates=reported_estimates(of_rival, minimum, ends),
             intervals="profile",
         )
         fits = tuple(better if fit is chosen else fit for fit in fits)
@@ -317,22 +224,24 @@ def _best(chi_squared: ChiSquared, minima: _Minima) -> tuple[Rival, Minimum]:
     return min(minima.values(), key=partial(_criterion, chi_squared))
 
 
-def _disagreement(chi_squared: ChiSquared, rival: Rival, minimum: Minimum) -> float:
-    """Return the factor by which disagreement of curves on shared parameters raises their noise.
+def _disagreement(chi_squared: ChiSquared, rival: Rival, minimum: Minimum) -> Excess | None:
+    """Return the excess of χ² by which disagreement of curves under an explanation raises noise.
 
-    It is that under an explanation (quasi-likelihood, Wedderburn 1974); 1 if they agree.
+    The noise is raised by the root of its factor (quasi-likelihood, Wedderburn 1974).  None is
+    returned if the curves agree.
     """
     of_rival = rival.of(chi_squared)
     curves = of_rival.curves(minimum.parameters)
     if len(curves) == 1:
-        return 1.0
+        return None
     together = [member.chi_squared(part) for member, part in curves]
     alone = []
     for (member, part), shared in zip(curves, together, strict=True):
         with suppress(ConvergenceError):
             shared = min(shared, member.minimise(part, rough=True).chi_squared)
         alone.append(shared)
-    return float(np.sqrt(Excess.of(of_rival, sum(together), alone).factor))
+    excess = Excess.of(of_rival, sum(together), alone)
+    return excess if excess.factor > 1 else None
 
 
 def _ranked(chi_squared: ChiSquared, minima: _Minima, threshold: float | None) -> list[RivalFit]:
@@ -350,13 +259,14 @@ def _ranked(chi_squared: ChiSquared, minima: _Minima, threshold: float | None) -
         ends: dict[Parameter, Ends] = {}
         intervals: Intervals = "none"
         if threshold is not None and aic - least <= _FAR:
-            reported = _reported(of_rival)
+            reported = reported_parameters(of_rival)
             minimum, ends = rival.intervals(chi_squared, minimum, threshold, reported)
             intervals = "profile"
         elif threshold is not None:
             bounds = of_rival.deviations(minimum.parameters)
             ends = {
-                p: curvature_interval(p, minimum, bounds, threshold) for p in _reported(of_rival)
+                p: curvature_interval(p, minimum, bounds, threshold)
+                for p in reported_parameters(of_rival)
             }
             intervals = "curvature"
         fits.append(
@@ -366,7 +276,7 @@ def _ranked(chi_squared: ChiSquared, minima: _Minima, threshold: float | None) -
                 _aic(minimum.chi_squared, size),
                 minimum.chi_squared + float(np.log(points)) * size,
                 minimum.parameters,
-                _estimates(of_rival, minimum, ends),
+                reported_estimates(of_rival, minimum, ends),
                 intervals,
             )
         )
@@ -378,20 +288,3 @@ def _ranked(chi_squared: ChiSquared, minima: _Minima, threshold: float | None) -
 def _size(rival: Rival, chi_squared: ChiSquared) -> int:
     """Return the number of fitted parameters as criteria count them."""
     return len(chi_squared.free) + rival.searched
-
-
-def _reported(chi_squared: ChiSquared) -> list[Parameter]:
-    """Return the fitted parameters whose values a comparison reports."""
-    return [p for p in chi_squared.parameters if p in chi_squared.free and p.name not in _NUISANCES]
-
-
-def _estimates(
-    chi_squared: ChiSquared, minimum: Minimum, ends: dict[Parameter, Ends]
-) -> dict[str, Estimate]:
-    """Return the estimates by name, without nuisances and a tension that is fixed."""
-    bounds = chi_squared.deviations(minimum.parameters)
-    return {
-        p.name: estimate_of(p, chi_squared, minimum, ends.get(p, (None, None)), bounds)
-        for p in chi_squared.parameters
-        if p.name not in _NUISANCES and (p in chi_squared.free or p != TENSION)
-    }

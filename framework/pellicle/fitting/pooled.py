@@ -240,6 +240,7 @@ def _fit_pool(
     advice, undecided = pooled_advice(modulus, tension)
     doubt, rivals = _doubt(curves) or doubt_of_tension(shapes), None
     agree = excess.factor == 1
+    worst = max(curves, key=lambda curve: curve.chi_squared - curve.chi_squared_alone)
     if TENSION in pool.free and (compared or doubt or not agree or tension.low is not None):
         rivals = compare(
             pool,
@@ -265,7 +266,7 @@ def _fit_pool(
         doubt=doubt,
         rivals=rivals,
         curves=tuple(curves),
-        agreement=_agreement(curves, excess),
+        agreement=excess.agreement(worst.name),
         agree=agree,
         contact_points=contact_points,
         pool=pool,
@@ -298,19 +299,6 @@ def _curve(
         tension_alone=alone.parameters[TENSION],
         failed_checks=single.failed_checks,
         messages=(*problem.curve.messages, *single.messages, *plausible),
-    )
-
-
-def _agreement(curves: Sequence[PooledCurve], excess: Excess) -> str:
-    """Return in words whether the curves agree, and by how much the intervals are widened."""
-    figures = f"Δχ² = {decimal(excess.chi_squared, 3)} for {excess.degrees} degrees of freedom"
-    if excess.factor == 1:
-        return f"the curves agree ({figures} against each on its own)"
-    worst = max(curves, key=lambda curve: curve.chi_squared - curve.chi_squared_alone)
-    return (
-        f"the curves do not agree on the shared parameters ({figures} against each on its own), "
-        f"{worst.name} least of all; the intervals are widened by "
-        f"{decimal(np.sqrt(excess.factor), 2)}"
     )
 
 

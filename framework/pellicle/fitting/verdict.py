@@ -83,8 +83,9 @@ def judge(
     curves = "this curve" if len(chi_squared.members) == 1 else "these curves"
     chosen: RivalFit | None = None
     sentence = advice = ""
-    if doubted:
+    if doubted or verdict == "undecided":
         chosen = fits[0] if by_code[TENSED.code].aic >= margin else None
+    if doubted:
         sentence = _undescribed(curves, fits[0], failed)
     elif verdict == "needed":
         chosen = tensed

@@ -15,6 +15,8 @@ from .solution import Solution, State
 
 # Traction over the strength of a law up to which a cell does not count as part of the zone.
 _ZONE = 1e-2
+# Rounding error of a force over the sum of wall pressure and attraction.
+_ROUNDING = 1e-14
 
 
 @dataclass(frozen=True)
@@ -150,12 +152,18 @@ class Equilibrium:
 
     @property
     def residual_load(self) -> float:
-        """|force − prescribed| over the prescribed force, with a law over Σ|p|; 0 at a depth."""
+        """|force − prescribed| over the prescribed force, with a law over Σ|p|; 0 at a depth.
+
+        Where wall pressure and attraction cancel, Σ|p| is mere rounding, and so is what is missed.
+        """
         control = self.problem.control
         missed = abs(self.force - control.value) if isinstance(control, Force) else 0.0
         if self.problem.law:
-            scale = self._magnitude * self.problem.grid.cell_area
-            return missed / (scale or abs(control.value)) if missed else 0.0
+            attracting = np.abs(self.pressure - self.wall).sum()
+            parts = float(np.abs(self.wall).sum() + attracting) * self.problem.grid.cell_area
+            if missed <= _ROUNDING * parts:
+                return 0.0
+            return missed / (self._magnitude * self.problem.grid.cell_area or abs(control.value))
         return missed / control.value if missed else 0.0
 
     @property

@@ -112,8 +112,10 @@ def asperity_jumped(before: State | None, equilibrium: Equilibrium) -> bool:
     return False
 
 
-def jump_energy(before: xr.Dataset | None, equilibrium: Equilibrium) -> float:
+def jump_energy(before: xr.Dataset | None, equilibrium: Equilibrium, tolerance: float) -> float:
     """Return the energy [J] that jumps have lost since the step ``before``; 0 if it cannot be told.
+
+    ``tolerance`` is the residual to which both are solved.
 
     Without a jump the energy changes by the work ∫F dδ of the step, whatever is prescribed; a jump
     loses the rest. That counts if it is more than the trapezoidal rule may miss, so every jump
@@ -123,27 +125,34 @@ def jump_energy(before: xr.Dataset | None, equilibrium: Equilibrium) -> float:
     if before is None or not before["converged"].item():
         return float("nan")
     depth, force, energy = (before[name].item() for name in ("depth", "force", "energy"))
-    lost, uncertain = _lost_energy(depth, force, energy, equilibrium)
+    lost, uncertain = _lost_energy(depth, force, energy, equilibrium, tolerance)
     return 0.0 if lost <= uncertain else lost
 
 
-def leaves_path(before: PathPoint, equilibrium: Equilibrium) -> bool:
+def leaves_path(before: PathPoint, equilibrium: Equilibrium, tolerance: float) -> bool:
     """Return whether an equilibrium is not the continuous continuation of the step ``before``.
 
     A patch has come or gone, or the energy changed by more or less than the work of the step.
     """
     state = before.state
     force = float(state.pressure.sum()) * equilibrium.problem.grid.cell_area
-    lost, uncertain = _lost_energy(state.depth, force, before.energy, equilibrium)
+    lost, uncertain = _lost_energy(state.depth, force, before.energy, equilibrium, tolerance)
     return not abs(lost) <= uncertain or asperity_jumped(state, equilibrium)
 
 
 def _lost_energy(
-    depth: float, force: float, energy: float, equilibrium: Equilibrium
+    depth: float, force: float, energy: float, equilibrium: Equilibrium, tolerance: float
 ) -> tuple[float, float]:
-    """Return the energy [J] lost since a state, and by how much it is uncertain."""
+    """Return the energy [J] lost since a state, and by how much it is uncertain.
+
+    Energies are known to the tolerance of their elastic and adhesive parts, which may cancel.
+    """
+    problem = equilibrium.problem
+    assert problem.law
+    acting = np.count_nonzero(equilibrium.pressure) * problem.grid.cell_area
+    parts = max(abs(energy), abs(equilibrium.energy)) + 2 * acting * problem.law.work_of_adhesion()
     step = equilibrium.depth - depth
     lost = energy - equilibrium.energy + 0.5 * (force + equilibrium.force) * step
     missed = 0.5 * abs((equilibrium.force - force) * step)
     greatest = max(abs(force), abs(equilibrium.force)) * abs(step)
-    return float(lost), _MISSED * missed + _UNCERTAIN * greatest
+    return float(lost), _MISSED * missed + _UNCERTAIN * greatest + tolerance * parts

@@ -168,6 +168,32 @@ def test_traction_is_not_the_derivative() -> None:
     assert result.dataset["force"][0] < 0.33e-3
 
 
+def test_slope_is_not_the_derivative() -> None:
+    """It is refused; a stiffness would follow from it, converged and wrong."""
+
+    class Flat(Lying):
+        factor = 1.0
+
+        def slope(self, gap: Any) -> Any:
+            return np.zeros_like(gap)
+
+    with pytest.raises(pl.PluginError, match=r"slope\(gap\) is not dσ/dg of traction\(gap\)"):
+        pl.run(pl.Run(**STICKY | {"interaction": Flat()}), progress=False)
+
+
+def test_law_that_goes_on_beyond_its_cutoff() -> None:
+    """It is refused: nothing acts beyond, so the energy would rise at once there."""
+
+    class Cut(Lying):
+        factor = 1.0
+
+        def cutoff(self) -> float:
+            return 5e-6
+
+    with pytest.raises(pl.PluginError, match=r"energy.* at the cutoff of 5e-06 m; it has to be 0"):
+        pl.run(pl.Run(**STICKY | {"interaction": Cut()}), progress=False)
+
+
 @pytest.mark.parametrize(
     ("added", "message"),
     [(0.3, r"which repels; it has to be ≤ 0"), (-0.3, r"the attraction has to be strongest")],

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.special import beta
 
 import pellicle as pl
-from pellicle.fitting.compare import _unseen
+from pellicle.fitting.alternatives import unseen_pairs
 from pellicle.fitting.comparison import Comparison, RivalFit, Verdict
 from pellicle.fitting.curves.curve import Segment
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel, attachment
@@ -211,11 +211,36 @@ def test_two_speeds_show_relaxation() -> None:
     assert exponent.low is not None
     assert exponent.high is not None
     assert exponent.high - exponent.low < 6 * exponent.bound
-    assert "either" not in pool.comparison
+    assert "do not agree" not in pool.comparison
     # Two such solids, one half as stiff again, do not agree whatever describes them.
     stiffer = thin[0]._replace(force=1.5 * thin[0].force)
     other = fit_rivals.pooled(solid, [thin[0], stiffer])
-    assert "the curves do not agree on the shared parameters either" in other.comparison
+    assert ", too, the curves do not agree on the shared parameters (Δχ²" in other.comparison
+
+
+@pytest.mark.slow
+def test_a_slope_that_was_found_hides_no_other_effect() -> None:
+    """A slope that is found leaves the same models as one that is given, and no claim between."""
+    depth, modulus, tension = np.linspace(-0.4e-6, 0.4e-6, 400), 2e3, 1e-3
+    bead = Paraboloid(radius=5e-6)
+    force = modulus * bead.force_curve(depth, 2 * tension / modulus).force
+    force += 0.005 * force.max() * np.random.default_rng(1).standard_normal(depth.size)
+    force += 3e-5 * (depth - depth[0])
+    found, given = (
+        pl.fit(depth, force, indenter=bead, baseline=baseline).rivals
+        for baseline in ("none", "slope")
+    )
+    assert found is not None
+    assert given is not None
+    assert found.verdict == given.verdict == "undecided"
+    by_code = {fit.rival.code: fit for fit in found.fits}
+    for fit in given.tied:
+        if not fit.rival.code.startswith("tension+"):
+            sloped = by_code[f"{fit.rival.code}+baseline_slope"]
+            assert sloped.aic == pytest.approx(fit.aic, abs=0.1)
+    # The elastic solid on a flat baseline, which is far behind, is not one of the models.
+    assert found.chosen is found.best
+    assert "tension" not in {fit.rival.code for fit in found.alternatives}
 
 
 @pytest.mark.slow
@@ -463,7 +488,7 @@ def test_what_measurements_do_not_show() -> None:
             )
             for path in rows
         ]
-        return _unseen(Pool.of(curves) if len(curves) > 1 else curves[0])
+        return unseen_pairs(Pool.of(curves) if len(curves) > 1 else curves[0])
 
     adhesion, relaxation = "tension+adhesion", "tension+power_law"
     assert unseen(path()) == (adhesion, relaxation)

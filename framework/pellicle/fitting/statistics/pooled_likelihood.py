@@ -13,6 +13,7 @@ from scipy.special import chdtrc
 
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import Coordinates, Parameter
+from pellicle.units import decimal
 
 from .chi_squared import ChiSquared, Minimum, Range, least
 from .initial_guess import GUESSES
@@ -41,6 +42,23 @@ class Excess(NamedTuple):
         if chdtrc(self.degrees, self.chi_squared) >= _CHANCE:
             return 1.0
         return max(self.chi_squared / self.degrees, 1.0)
+
+    def agreement(self, worst: str = "") -> str:
+        """Return in words whether the curves agree, and by how much the intervals are widened.
+
+        ``worst`` is the name of the curve that agrees least.
+        """
+        figures = (
+            f"(Δχ² = {decimal(self.chi_squared, 3)} for {self.degrees} degrees of freedom against "
+            "each on its own)"
+        )
+        if self.factor == 1:
+            return f"the curves agree {figures}"
+        least = f", {worst} least of all" if worst else ""
+        return (
+            f"the curves do not agree on the shared parameters {figures}{least}; the intervals are "
+            f"widened by {decimal(np.sqrt(self.factor), 2)}"
+        )
 
 
 @dataclass(frozen=True)

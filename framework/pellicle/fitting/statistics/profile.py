@@ -218,14 +218,13 @@ def united(one: Ends, other: Ends) -> Ends:
 
 
 def extended(
-    chi_squared: ChiSquared, minimum: Minimum, parameter: Parameter, ends: Ends, highest: float
+    chi_squared: ChiSquared, minimum: Minimum, threshold: float, parameter: Parameter, ends: Ends
 ) -> Ends:
-    """Return an interval, extended to where the profile of another χ² is below ``highest``."""
-    threshold = highest - minimum.chi_squared
+    """Return an interval, extended to where another profile is below its minimum + threshold."""
     thin, near = _condensed(chi_squared, minimum)
 
     def is_reached(end: float | None) -> bool:
-        """Return whether that profile is at least ``highest`` at an end."""
+        """Return whether that profile has risen by ``threshold`` at an end."""
         if end is None:
             return True
         at = near.parameters | {parameter: end}

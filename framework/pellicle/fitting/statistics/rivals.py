@@ -71,8 +71,8 @@ def _on_history(
 
 def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
     """Yield the effects, other than a tension, that can bend the curves."""
-    if any(p not in member.free for member in members for p in (OFFSET, SLOPE)):
-        yield Rival("baseline_slope", "a sloping baseline", False, _same, baseline=(OFFSET, SLOPE))
+    if any(p not in member.free for member in members for p in SLOPED.baseline):
+        yield SLOPED
     if not all(isinstance(member.force_model, TensionModel) for member in members):
         return
     if all(member.segment != "retract" for member in members):
@@ -137,6 +137,17 @@ def _shape(name: str, indenter: object) -> HasForceCurve | None:
 
 NONE = Rival("none", "no tension", False, _same)
 TENSED = Rival("tension", "tension", True, _same)
+SLOPED = Rival("baseline_slope", "a sloping baseline", False, _same, baseline=(OFFSET, SLOPE))
+
+
+def sloped(rival: Rival) -> Rival:
+    """Return an explanation beside a sloping baseline."""
+    return replace(
+        rival,
+        code=f"{rival.code}+{SLOPED.code}",
+        words=f"{rival.words} and {SLOPED.words}",
+        baseline=SLOPED.baseline,
+    )
 
 
 def rivals(chi_squared: ChiSquared, parameters: Coordinates) -> list[Rival]:
