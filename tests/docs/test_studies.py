@@ -293,6 +293,7 @@ def test_loops_lose_most_at_the_time_of_the_relaxation(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:kernel. the shares of 'coated' that relax sum to 1")
+@pytest.mark.filterwarnings("ignore:of 1 runs, in 1 the domain is small")
 def test_plateau_is_that_of_the_tension(tmp_path: Path) -> None:
     """The force of a bead at a contact radius ends at 2πτ₀a²/R, to 10 % on coarse cells."""
     run(
@@ -309,7 +310,7 @@ def test_plateau_is_that_of_the_tension(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:of 2 runs, in . the cells are too coarse")
+@pytest.mark.filterwarnings("ignore:of 2 runs, in . the (cells are too coarse|domain is small)")
 def test_oscillation_a_skin_lowers_the_phase(tmp_path: Path) -> None:
     """A skin adds more to the storage than to the loss."""
     run(

@@ -59,3 +59,14 @@ def test_a_turned_pyramid_is_as_steep(degrees: float) -> None:
             progress=False,
         )
     assert [step for step, _ in result.steep()] == [1]
+
+
+def test_a_step_between_any_two_rows_counts() -> None:
+    """The slope is the largest of blocks of rows, each of which holds the first row of the next."""
+    grid = Grid(points=(300, 400), size=(3.0, 4.0))
+    for row in range(1, 300):
+        heights = np.zeros(grid.shape)
+        heights[row:, 7] = -0.004
+        contact = np.zeros(grid.shape, dtype=bool)
+        contact[row - 1 : row + 1, 7] = True
+        assert steepest(heights, contact, grid) == pytest.approx(0.4)

@@ -9,6 +9,7 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Grid
 from pellicle.numerics.equilibrium import Equilibrium
+from pellicle.numerics.sharing import row_blocks
 
 # Relative change of G(q) q² over a decade below which it is the limit of short waves.
 _CONSTANT = 0.05
@@ -29,7 +30,13 @@ def steepest(profile: Array, contact: Mask, grid: Grid) -> float:
     grid
         The cells.
     """
-    heights = np.where(contact, profile, np.nan)
+    # Each block with the first row of the next, so that no slope between two is left out.
+    rows = [slice(block.start, block.stop + 1) for block in row_blocks(contact.shape)]
+    return max(_steepest(np.where(contact[r], profile[r], np.nan), grid) for r in rows)
+
+
+def _steepest(heights: Array, grid: Grid) -> float:
+    """Return the largest slope of heights [m], NaN off the contact."""
     by_x, by_y = (np.diff(heights, axis=axis) / width for axis, width in enumerate(grid.spacing))
     at_corners = 0.5 * np.hypot(by_x[:, 1:] + by_x[:, :-1], by_y[1:] + by_y[:-1])
     slopes = np.concatenate([np.abs(by_x).ravel(), np.abs(by_y).ravel(), at_corners.ravel()])

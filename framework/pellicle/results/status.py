@@ -42,8 +42,7 @@ class Status(Enum):
     SMALL_DOMAIN = (
         "converged, but the domain of {size} is small for a skin on a solid that relaxes: what the "
         "solid carries beyond it is known in sum only, and force and depth may be off by per cent; "
-        "use grid.size ≥ {least}: 8 contact radii, and 3 times the length 2τ₀/E* below which "
-        "the skin is stiffer than the relaxed solid"
+        "{remedy}"
     )
     JUMPED = (
         "converged; a part of the contact jumped after the last step{loss}: in between it "

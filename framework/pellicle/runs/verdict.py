@@ -28,6 +28,9 @@ _RESOLVED_ACROSS = 4
 # Slope beyond which the theory of small slopes does not hold.
 _STEEPEST = 0.3
 
+# Domain that a solid needs, over that of the run, above which no grid spans it.
+_FARTHEST = 100.0
+
 
 def judge(
     run: Run,
@@ -121,14 +124,19 @@ def _caveats(
         yield from filter(None, (zone, _steep(run, equilibrium)))
     needed = least_domain(run, index, largest_area)
     if needed > min(run.grid.size):
-        yield (
-            Status.SMALL_DOMAIN,
-            Status.SMALL_DOMAIN.value.format(
-                size=" × ".join(readable(length, "m", DIGITS) for length in run.grid.size),
-                # A little more, or the rounded length would be refused in turn.
-                least=readable(1.001 * needed, "m", DIGITS),
-            ),
+        # A little more, or the rounded length would be refused in turn.
+        least = readable(1.001 * needed, "m", DIGITS)
+        remedy = (
+            f"use grid.size ≥ {least}: 8 contact radii, and 3 times the length 2τ₀/E* below which "
+            "the skin is stiffer than the relaxed solid"
         )
+        if needed > _FARTHEST * min(run.grid.size):
+            remedy = (
+                f"no grid spans the {least} that a solid so soft would need: its depth depends on "
+                "where the domain ends, its force at a given contact hardly"
+            )
+        size = " × ".join(readable(length, "m", DIGITS) for length in run.grid.size)
+        yield Status.SMALL_DOMAIN, Status.SMALL_DOMAIN.value.format(size=size, remedy=remedy)
 
 
 def _coarse(run: Run, equilibrium: Equilibrium) -> tuple[Status, str] | None:
