@@ -9,10 +9,12 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Grid
 from pellicle.numerics.equilibrium import Equilibrium
-from pellicle.numerics.sharing import row_blocks
+from pellicle.numerics.sharing import blocks
 
 # Relative change of G(q) q² over a decade below which it is the limit of short waves.
 _CONSTANT = 0.05
+# Cells in a block of rows, few enough for its slopes to take no memory to speak of.
+_BLOCK = 2**13
 
 
 def steepest(profile: Array, contact: Mask, grid: Grid) -> float:
@@ -31,7 +33,8 @@ def steepest(profile: Array, contact: Mask, grid: Grid) -> float:
         The cells.
     """
     # Each block with the first row of the next, so that no slope between two is left out.
-    rows = [slice(block.start, block.stop + 1) for block in row_blocks(contact.shape)]
+    number = max(1, _BLOCK // contact.shape[1])
+    rows = [slice(block.start, block.stop + 1) for block in blocks(contact.shape[0], number)]
     return max(_steepest(np.where(contact[r], profile[r], np.nan), grid) for r in rows)
 
 
