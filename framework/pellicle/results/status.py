@@ -134,12 +134,11 @@ def statuses_of(code: str, message: str) -> list[tuple[Status, str]]:
     first = Status[code]
     head, *rest = message.split(_AND) if first.converged else [message]
     statuses = [(first, head)]
-    beginnings = {status: _beginning(status) for status in Status if status.converged}
     for text in rest:
-        named = [s for s, beginning in beginnings.items() if text.startswith(beginning)]
+        named = [s for s in Status if s.converged and text.startswith(_beginning(s))]
         if named:
             # "the" alone begins the message of several.
-            status = max(named, key=lambda s: len(beginnings[s]))
+            status = max(named, key=lambda s: len(_beginning(s)))
             statuses.append((status, f"{_parted(status.value)[0]}{text}"))
         else:  # written by a version with other messages
             statuses[-1] = statuses[-1][0], f"{statuses[-1][1]}{_AND}{text}"

@@ -126,11 +126,12 @@ def _caveats(
     if needed > min(run.grid.size):
         # A little more, or the rounded length would be refused in turn.
         least = readable(1.001 * needed, "m", DIGITS)
-        remedy = (
-            f"use grid.size ≥ {least}: 8 contact radii, and 3 times the length 2τ₀/E* below which "
-            "the skin is stiffer than the relaxed solid"
-        )
-        if needed > _FARTHEST * min(run.grid.size):
+        if needed <= _FARTHEST * min(run.grid.size):
+            remedy = (
+                f"use grid.size ≥ {least}: 8 contact radii, and 3 times the length 2τ₀/E* below "
+                "which the skin is stiffer than the relaxed solid"
+            )
+        else:
             remedy = (
                 f"no grid spans the {least} that a solid so soft would need: its depth depends on "
                 "where the domain ends, its force at a given contact hardly"

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pellicle.results.shape import means_something
 from pellicle.results.status import Status, statuses_of
@@ -141,14 +142,15 @@ def failures(table: xr.Dataset) -> str:
 
 def caveats(table: xr.Dataset) -> Iterator[str]:
     """Yield a message for each caveat, with the number of runs that have it."""
+    codes, messages = (_by_run(table, name) for name in ("status_code", "status"))
     statuses = [
         {
             status
-            for code, message in zip(run["status_code"].values, run["status"].values, strict=True)
+            for code, message in zip(*run, strict=True)
             if code
-            for status, _ in statuses_of(str(code), str(message))
+            for status, _ in statuses_of(code, message)
         }
-        for run in runs_of(table)
+        for run in zip(codes, messages, strict=True)
     ]
     for caveat, reason in (
         (
@@ -164,5 +166,10 @@ def caveats(table: xr.Dataset) -> Iterator[str]:
 
 def _statuses(table: xr.Dataset) -> list[list[Status]]:
     """Return the statuses of the steps of each run."""
-    codes = table["status_code"].values
-    return [[Status[code] for code in run if code] for run in codes.reshape(-1, codes.shape[-1])]
+    return [[Status[code] for code in run if code] for run in _by_run(table, "status_code")]
+
+
+def _by_run(table: xr.Dataset, name: str) -> NDArray[Any]:
+    """Return a variable of the steps, of shape (runs, steps)."""
+    values = table[name].values
+    return values.reshape(-1, values.shape[-1])

@@ -345,6 +345,7 @@ class AdhesionSolver(ScaledSolver):
                     displacement,
                     goal,
                     certainty=SIGN_CERTAINTY if change < _LOOSE_CHANGES else STRICT_SIGN_CERTAINTY,
+                    u_minus_f=u_minus_f,
                 )
                 wall, displacement = inner.pressure, inner.displacement
                 misclassified = inner.misclassified

@@ -171,19 +171,9 @@ def check_plausible(
         low = -np.inf if known.low is None else known.low
         high = np.inf if known.high is None else known.high
         if low > most or high < least_value:
-            messages.append(
-                f"a {parameter.word} {_size(known)} is not plausible: are the units right?"
-            )
+            size = known.only_end or f"of {readable(known.value, known.unit, 3)}"
+            messages.append(f"a {parameter.word} {size} is not plausible: are the units right?")
     return messages
-
-
-def _size(estimate: Estimate) -> str:
-    """Return the value of an estimate in words, or the end that its open interval has."""
-    if estimate.low is None and estimate.high is not None:
-        return f"below {readable(estimate.high, estimate.unit, 3)}"
-    if estimate.high is None and estimate.low is not None:
-        return f"above {readable(estimate.low, estimate.unit, 3)}"
-    return f"of {readable(estimate.value, estimate.unit, 3)}"
 
 
 def check_depth(model: ForceModel, depth: float, parameters: Coordinates) -> None:

@@ -66,9 +66,10 @@ def advice(
         return words, []
     is_modulus = modulus.low is None or modulus.high is None
     name, undecided = ("modulus", modulus) if is_modulus else ("tension", tension)
+    end = f" (it is {undecided.only_end})" if undecided.only_end else ""
     warning = (
         f"the curve cannot tell modulus and tension apart: the interval of the {name} is open"
-        f"{_only_end(undecided)}, and its value is one of many"
+        f"{end}, and its value is one of many"
     )
     if min(design.worse for design in (now, *others)) < _USELESS:
         length = 2 * tension.value / modulus.value
@@ -113,13 +114,6 @@ def _is_open(modulus: Estimate, tension: Estimate) -> bool:
     """Return whether both are fitted, and one has an interval that does not end."""
     fixed = modulus.held or tension.held
     return not fixed and None in (modulus.low, modulus.high, tension.high)
-
-
-def _only_end(estimate: Estimate) -> str:
-    """Return in words the end that an open interval has."""
-    ends = {"below": estimate.high, "above": estimate.low}
-    known = [f"{s} {readable(e, estimate.unit, 3)}" for s, e in ends.items() if e is not None]
-    return f" (it is {known[0]})" if known else ""
 
 
 def _bounds(subject: str, shares: Mapping[str, float]) -> str:

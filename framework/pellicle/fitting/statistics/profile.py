@@ -12,7 +12,7 @@ from scipy.special import stdtrit
 
 from pellicle.errors import ConvergenceError
 from pellicle.fitting.parameters import TENSION, Coordinates, Parameter
-from pellicle.units import decimal
+from pellicle.units import decimal, readable
 
 from .chi_squared import ChiSquared, Minimum, least
 
@@ -52,6 +52,15 @@ class Estimate:
     """Cramér–Rao bound at the value, as a standard deviation; 0 if fixed."""
     held: bool = False
     """Whether it was fixed, not fitted."""
+
+    @property
+    def only_end(self) -> str:
+        """In words the end of an interval that has one, as "below 3 kPa"; else ""."""
+        if self.low is None and self.high is not None:
+            return f"below {readable(self.high, self.unit, 3)}"
+        if self.high is None and self.low is not None:
+            return f"above {readable(self.low, self.unit, 3)}"
+        return ""
 
     def to_dict(self) -> dict[str, Any]:
         """Return JSON data, with None for an open end or a bound that is infinite."""
