@@ -192,7 +192,10 @@ def test_files(cli: Cli, tmp_path: Path) -> None:
     with Path("out/fits-groups.csv").open(encoding="utf-8", newline="") as file:
         groups = [(line["group"], line["n"]) for line in csv.DictReader(file)]
     assert groups == [("$a", "2"), ("b", "1"), ("all", "3")]
-    assert Path("out/fits-curves.pdf").read_bytes().startswith(b"%PDF")
+    sheet = Path("out/fits-curves.pdf").read_bytes()
+    assert sheet.startswith(b"%PDF")
+    # Of the letters of a font of Type 3 beyond Latin-1, and of ligatures, no text can be copied.
+    assert b"/Type3" not in sheet
     assert Path("out/fits.png").is_file()
     page = Path("out/fits.html").read_text(encoding="utf-8")
     for words in ("slipped", "lower quartile", "Each curve with its fit"):
