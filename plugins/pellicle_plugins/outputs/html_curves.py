@@ -42,7 +42,9 @@ def curves_of_run(result: Result, chosen: list[int], begin: int) -> list[Picture
     several = result.dataset.sizes["step"] > 1
     marks = partial(_marks, data=result.dataset, chosen=chosen)
     return [
-        _profiles(result, chosen, begin) if name == "profile" else _picture(fill, _CURVES[name], marks)
+        _profiles(result, chosen, begin)
+        if name == "profile"
+        else _picture(fill, _CURVES[name], marks)
         for name, fill in fills.items()
         if several or name == "profile"
     ]

@@ -265,10 +265,8 @@ def test_fitted_curve_of_a_cantilever_has_no_noise(points: int) -> None:
 @pytest.mark.parametrize("points", [2 * SEEN[0].size, 501])
 def test_fitted_curve_of_both_passes_reaches_the_deepest_point(points: int) -> None:
     """It goes in and back out along the true curve, also between the measured positions."""
-    there_and_back = (np.concatenate([values, values[::-1]]) for values in (POSITION, FORCE))
-    likelihood = Likelihood(
-        *there_and_back, tension_model(BEAD), 1e-10, tuple(TRUTH), segment="both"
-    )
+    path, pull = (np.concatenate([values, values[::-1]]) for values in (POSITION, FORCE))
+    likelihood = Likelihood(path, pull, tension_model(BEAD), 1e-10, tuple(TRUTH), segment="both")
     position, force = likelihood.resampled(points).fitted(TRUTH)
     assert force == pytest.approx(MODULUS * BEAD.force_curve(position, LENGTH).force)
     assert position[[0, -1]] == pytest.approx(POSITION[0])
