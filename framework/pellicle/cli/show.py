@@ -28,8 +28,7 @@ def show(
     results: Annotated[
         Path,
         typer.Argument(
-            metavar="RESULTS",
-            help="Folder of a run, study or fits, result file (.h5) or study.h5.",
+            metavar="RESULTS", help="Folder of a run, study or fits, result (.h5) or study.h5."
         ),
     ],
     si: Annotated[bool, typer.Option("--si", help="Print numbers in SI units.")] = False,

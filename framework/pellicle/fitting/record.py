@@ -159,15 +159,7 @@ def repetition(path: Path) -> Repetition:
 
 
 def content_of(path: Path) -> dict[str, Any]:
-    """Return what the JSON file of a fit holds.
-
-    Raises
-    ------
-    ConfigError
-        The file is not the JSON of a fit.
-    StorageError
-        The file cannot be read.
-    """
+    """Return what the JSON file of a fit holds; it raises what `repetition` does."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:

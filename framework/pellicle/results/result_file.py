@@ -60,8 +60,7 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
         if kind == "result" and "curve" in file:
             raise StorageError(
                 f"{path}: the table of fits, not a result; pellicle show {path.parent} prints it, "
-                f"pellicle fit --again {path.with_suffix('.json')} -o {path.parent} draws its "
-                "figures, and xarray.load_dataset reads it"
+                f"pellicle fit --again {path.with_suffix('.json')} -o {path.parent} draws figures"
             )
         if kind == "table" and "axes" not in attributes:
             raise StorageError(f"{path}: a result, not the table of a study")

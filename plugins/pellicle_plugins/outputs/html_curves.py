@@ -34,10 +34,7 @@ _CURVES = {
 
 
 def curves_of_run(result: Result, chosen: list[int], begin: int) -> list[Picture]:
-    """Return the curves of a run, with marks at the ``chosen`` steps, which are mapped.
-
-    The map of the step ``chosen[begin]`` is shown first.
-    """
+    """Return the curves of a run, marked at ``chosen`` steps; the ``begin``-th is shown first."""
     fills = {name: fill for name, fill in drawings(result).items() if name in _CURVES}
     several = result.dataset.sizes["step"] > 1
     marks = partial(_marks, data=result.dataset, chosen=chosen)
