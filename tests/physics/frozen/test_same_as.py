@@ -36,14 +36,13 @@ def test_differences(old: Array, new: Array, differs: bool) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["three iterations", "sticks and relaxes"])
-def test_a_commit_is_the_same_as_itself(name: str) -> None:
+def test_a_commit_is_the_same_as_itself() -> None:
     """Both are installed beside each other and solve alike, interrupted runs too."""
     git = ["git", "-C", str(ROOT), "status", "--porcelain", "framework", "plugins"]
     status = subprocess.run(git, capture_output=True, text=True, check=False)
     if status.returncode or status.stdout:
         pytest.skip("this is no checkout, or it differs from its commit")
-    command = [sys.executable, same_as.__file__, "HEAD", "--only", name]
+    command = [sys.executable, same_as.__file__, "HEAD", "--only", "sticks and relaxes"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "0 of " in done.stdout
+    assert done.stdout.startswith("0 of 2 runs")
