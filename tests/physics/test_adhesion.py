@@ -106,6 +106,22 @@ def test_a_jump_of_one_asperity_is_named() -> None:
     assert np.nansum(path["jump_energy"].values) == pytest.approx(lost, rel=0.02)
 
 
+def test_a_step_across_the_lowest_force_does_not_jump() -> None:
+    """The force is as low before as after it, and its curvature in between is no energy lost."""
+    sticky = {**JKR, "estimate_error": False}
+    down, up = [0.3, -0.3, -1.0, -1.2, -1.1], np.linspace(-1.1, -0.4, 9)[1:]
+    coarse, fine = (
+        solved(24, 0.0, [*down, *back], interaction=sticky)[["force", "jumped", "jump_energy"]]
+        for back in (up[-1:], up)
+    )
+    force = coarse["force"].values
+    assert abs(force[-1] - force[-2]) < 0.01 * FORCE
+    assert float(fine["force"][5:].min()) < min(force[-2:]) - 0.01 * FORCE
+    for path in (coarse, fine):
+        assert not path["jumped"].values[1:].any()
+        assert not path["jump_energy"].values[1:].any()
+
+
 @pytest.mark.parametrize("law", ["jkr", "dugdale"])
 @pytest.mark.parametrize(
     ("prescribed", "values"),
