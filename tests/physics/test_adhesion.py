@@ -106,6 +106,19 @@ def test_a_jump_of_one_asperity_is_named() -> None:
     assert np.nansum(path["jump_energy"].values) == pytest.approx(lost, rel=0.02)
 
 
+@pytest.mark.parametrize("length", [0.3, 3.0])
+def test_pull_off_on_few_cells_is_within_its_error(length: float) -> None:
+    """On four cells the force is off by a tenth, which two wider zones alone do not see."""
+    end = theory(length).instability()
+    steps = [0.3, *(float(end.depth) + np.array([0.3, 0.1, 0.0, -0.1, -0.2, -0.3]))]
+    result = pl.Result(solved(24, length, steps, size=6 * float(end.contact_radius)))
+    summary = result.path_summary
+    error = abs(summary["pull_off"] - float(end.force))
+    assert error > 0.05 * abs(summary["pull_off"])
+    assert error < summary["pull_off_accuracy"] < 3 * error
+    assert any("at pull-off" in message for message in result.beyond_theory().values())
+
+
 def test_a_step_across_the_lowest_force_does_not_jump() -> None:
     """The force is as low before as after it, and its curvature in between is no energy lost."""
     sticky = {**JKR, "estimate_error": False}

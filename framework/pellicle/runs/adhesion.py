@@ -23,6 +23,9 @@ _WIDER: Final = (1.5, 3.0)
 # Weight of the force of the step beside those of wider zones, in which the place of the edge on the
 # cells changes forces by half as much.
 _WEIGHT: Final = 0.5
+# Relative error of a pulled contact's force, times the cells in its radius: the largest of
+# paraboloids at pull-off with 3 to 12 cells, at s/a₀ = 0, 0.3 and 3.
+_CELLS_ERROR: Final = 0.55
 # Halvings of the interval of forces in which the contact is lost.
 _HALVINGS: Final = 6
 # Share of |ΔF Δδ|/2 by which the trapezoidal rule may miss the work of a step without a jump. It
@@ -40,6 +43,7 @@ def force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> tuple[f
     zone in proportion to its width, so a line through all three gives the limit (Richardson 1911).
     The error is the larger of those that the two narrower and the two wider zones give: they differ
     because the edge lies on cells, and because the widest may reach over half of a small contact.
+    The widest zones of a contact of few cells say too little, so it is at least a share of a pull.
     Both are NaN if the contact is lost or no solution is found with a wider zone; the result is
     None if the interaction has no such limit.
     """
@@ -67,7 +71,9 @@ def force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> tuple[f
     _, limit = np.polyfit(widths, forces, 1, w=weights)
     slopes = np.diff(forces) / np.diff(widths)
     limits = forces[:-1] - slopes * widths[:-1]
-    return float(limit), float(np.abs(limits - equilibrium.force).max())
+    cells = np.sqrt(np.count_nonzero(equilibrium.contact) / np.pi)
+    least = _CELLS_ERROR / cells * max(-equilibrium.force, 0.0)
+    return float(limit), max(least, float(np.abs(limits - equilibrium.force).max()))
 
 
 def greatest_pull(
