@@ -22,7 +22,6 @@ from pellicle.model.html import summary
 from pellicle.model.input_path import paths_relative_to
 from pellicle.model.paths import get, python_names
 from pellicle.model.ranges import Axes, expand
-from pellicle.plugins import registry
 from pellicle.results.derived import constants
 from pellicle.results.variables import (
     FIELDS,
@@ -110,8 +109,12 @@ class Study(FromFile):
         Field(description="further numbers of the table: name → arithmetic expression"),
     ] = Field(default_factory=dict)
     executor: Annotated[
-        Executor, FromRegistry(), Field(description="what carries out the runs")
-    ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
+        Annotated[Executor, FromRegistry()] | None,
+        Field(
+            description="what carries out the runs; without it this process, and processes once "
+            "the runs left would take more than 10 s"
+        ),
+    ] = None
     _points: tuple[Point, ...] = PrivateAttr()
 
     def _repr_html_(self) -> str:
@@ -249,10 +252,14 @@ class Study(FromFile):
             )
         count = len(self.vary)
         vary = {key: values for table in tables[:count] for key, values in table.items()}
-        optional = {"vary": vary, "zip": tables[count:], "derived": self.derived}
-        study = {"executor": self.executor.model_dump(mode="json", exclude_none=True)} | {
-            name: value for name, value in optional.items() if value
+        executor = self.executor and self.executor.model_dump(mode="json", exclude_none=True)
+        optional = {
+            "executor": executor,
+            "vary": vary,
+            "zip": tables[count:],
+            "derived": self.derived,
         }
+        study = {name: value for name, value in optional.items() if value}
         first = self.points[0].run
         run = {
             key: as_json(value, get(first, key), as_given=as_given)

@@ -252,8 +252,11 @@ def default_threads(grid: Grid) -> int:
     """
     nx, ny = grid.points
     transformed = nx * ny * (4 if grid.boundary == "free" else 1)
-    if transformed < _LARGE:
-        return 1
+    return 1 if transformed < _LARGE else available_cores()
+
+
+def available_cores() -> int:
+    """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

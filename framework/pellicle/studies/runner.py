@@ -7,21 +7,24 @@ import tempfile
 import threading
 import time
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
+from multiprocessing import parent_process
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from pellicle import memory
 from pellicle.checks import checked_threads, read_only_dataset
-from pellicle.components import Output, Runs, Say
+from pellicle.components import Executor, Output, Runs, Say
 from pellicle.components.calls import outcomes_of
 from pellicle.config.run import Run
-from pellicle.config.study import Study
+from pellicle.config.study import DEFAULT_EXECUTOR, Study
 from pellicle.errors import ConfigError, ConvergenceWarning, StorageError
 from pellicle.files import check_writable, is_file, is_folder
+from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.status import Status
@@ -36,7 +39,11 @@ from .summary import caveats, failures, progress_of, run_names
 if TYPE_CHECKING:
     import xarray as xr
 
+    _Outcomes = Generator[tuple["RunTask", xr.Dataset | Exception], None, None]
+
 _TABLE_SHARE = 0.05
+_LONG = 10.0
+"""Time [s] of the runs that are left, one after the other, from which processes share them."""
 _WARNINGS = "warnings"
 _recording = threading.Lock()
 
@@ -185,8 +192,6 @@ def execute(
 def _execute(
     study: Study, directory: Path, progress: bool, overwrite: bool, threads: int | None
 ) -> StudyResult:
-    import xarray as xr
-
     first = study.points[0].run
     outputs = [o for o in runner.standard_outputs(first.outputs) if o.scope != "run"]
     check_writable(directory / "study.h5")
@@ -202,12 +207,11 @@ def _execute(
     files = _Writer(directory)
     files.write(rows)
     messages: dict[str, None] = {}
-    work = partial(solve, threads=threads or study.executor.threads)
     todo = list(unfinished.values())
     try:
         with (
             StudyProgress(len(study.points), resumed, progress) as bar,
-            closing(outcomes_of(study.executor, work, todo, bar.report, xr.Dataset)) as outcomes,
+            closing(_outcomes(study.executor, todo, bar, threads)) as outcomes,
         ):
             for task, outcome in outcomes:
                 del unfinished[task.index]
@@ -233,6 +237,47 @@ def _execute(
     for message in (*messages, *(f"{message}; see status" for message in caveats(whole))):
         warnings.warn(message, stacklevel=4)
     return StudyResult(whole, (*files.paths, *chain(*written)), resumed)
+
+
+def _outcomes(
+    executor: Executor | None, todo: Sequence[RunTask], bar: StudyProgress, threads: int | None
+) -> _Outcomes:
+    """Yield each task with its outcome.
+
+    Without an executor they are executed in this process, until those left would take long at the
+    pace of the last and can be shared.
+    """
+    import xarray as xr
+
+    def outcomes(by: Executor, tasks: Sequence[RunTask]) -> _Outcomes:
+        work = partial(solve, threads=threads or by.threads)
+        return outcomes_of(by, work, tasks, bar.report, xr.Dataset)
+
+    while todo and executor is None:
+        task, *todo = todo
+        start = time.monotonic()
+        yield from outcomes(registry().make(Executor, {"type": DEFAULT_EXECUTOR}), [task])
+        left = len(todo) * (time.monotonic() - start)
+        if left > _LONG and _can_share(todo, threads or 1):
+            executor = registry().make(Executor, {"type": "processes", "threads": threads or 1})
+            bar.say(
+                f"the other {len(todo)} runs would take {left:.0f} s here: they go to processes, "
+                "as many as cores and memory allow (study.executor decides otherwise)"
+            )
+    if executor:
+        yield from outcomes(executor, todo)
+
+
+def _can_share(todo: Sequence[RunTask], threads: int) -> bool:
+    """Return whether two of the tasks can be executed at once, each in a process of its own.
+
+    A process that another one started leaves the cores to its siblings.
+    """
+    if min(len(todo), runner.available_cores() // threads) < 2 or parent_process():
+        return False
+    available = memory.available()
+    needed = 2 * (max(task.memory for task in todo) + memory.PROCESS)
+    return available is None or needed <= available
 
 
 def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
