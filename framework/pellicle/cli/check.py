@@ -114,10 +114,12 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
     """
     from pellicle.runs.advice import advise
     from pellicle.runs.runner import memory_of
+    from pellicle.studies.planned import check_outputs
     from pellicle.studies.summary import run_names
     from pellicle.studies.table import StudyTable
     from pellicle.units import readable
 
+    check_outputs(study)
     names = run_names(StudyTable(study).dataset())
     checked: list[tuple[str, Advice, float]] = []
     for name, point in zip(names, study.points, strict=True):

@@ -23,13 +23,7 @@ from pellicle.model.input_path import paths_relative_to
 from pellicle.model.paths import get, python_names
 from pellicle.model.ranges import Axes, expand
 from pellicle.results.derived import constants
-from pellicle.results.variables import (
-    FIELDS,
-    VARIABLES,
-    corrected_area,
-    corrected_fraction,
-    names_of,
-)
+from pellicle.results.variables import FIELDS, VARIABLES
 
 from .component_field import FromRegistry
 from .coordinates import Coordinate, as_json, coordinate, tell_apart
@@ -290,15 +284,12 @@ class Study(FromFile):
         """Refuse expressions with names that the table will not have, before any run is solved."""
         run = self.points[0].run
         texts = {name for name, variable in VARIABLES.items() if variable.type == "text"}
-        allowed = {*VARIABLES, *constants(json.loads(run.to_json()))}
-        allowed -= texts | {*names_of("requested")}
-        if all(point.run.interaction is None for point in self.points):
-            allowed -= {*names_of("interaction", "path")}
-        if not any(point.run.loading.oscillates for point in self.points):
-            allowed -= {*names_of("oscillation")}
-        allowed |= run.loading.variables
-        areas = [corrected_area(correction.type_name) for correction in run.corrections]
-        allowed |= {v.name for area in areas for v in (area, corrected_fraction(area))}
+        allowed = {*FIELDS, *constants(json.loads(run.to_json()))} | {
+            variable.name
+            for point in self.points
+            for variable in point.run.variables
+            if point.run is run or variable.kind in ("interaction", "path", "oscillation")
+        }
         allowed |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         names = python_names([*self.vary, *itertools.chain.from_iterable(self.zip)])
         reserved = {*FUNCTIONS, *CONSTANTS, *texts, *names.values(), "run", "step", "x", "y"}

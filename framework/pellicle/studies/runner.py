@@ -7,7 +7,7 @@ import tempfile
 import threading
 import time
 import warnings
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -34,6 +34,7 @@ from pellicle.runs.lock import locked
 from pellicle.runs.progress import ProgressReporter, StudyProgress
 
 from . import table
+from .planned import check_outputs
 from .summary import caveats, failures, progress_of, run_names
 
 if TYPE_CHECKING:
@@ -157,7 +158,14 @@ def run_study(
 
 
 def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
-    """Return all runs of a study, finished or not."""
+    """Return all runs of a study, finished or not.
+
+    Raises
+    ------
+    ConfigError
+        The settings of an output do not fit the study.
+    """
+    check_outputs(study)
     outputs = tuple(o for o in study.points[0].run.outputs or () if o.scope == "run")
     names = run_names(table.StudyTable(study).dataset())
     return [
@@ -233,7 +241,8 @@ def _execute(
         def runs() -> Runs:
             return Runs.of_study(read_only_dataset(whole), directory, study.to_json(as_given=True))
 
-        written = runner.all_done(runner.writers(outputs, runs, directory / "study", first))
+        calls = runner.writers(outputs, runs, directory / "study", first)
+        written = runner.all_done([partial(_or_warning, call, messages) for call in calls])
     for message in (*messages, *(f"{message}; see status" for message in caveats(whole))):
         warnings.warn(message, stacklevel=4)
     return StudyResult(whole, (*files.paths, *chain(*written)), resumed)
@@ -364,6 +373,17 @@ def is_table(path: Path) -> bool:
     except StorageError:
         return True
     return False
+
+
+def _or_warning(
+    write: Callable[[], tuple[Path, ...]], messages: dict[str, None]
+) -> tuple[Path, ...]:
+    """Return the files of an output; settings that do not fit are added to the messages."""
+    try:
+        return write()
+    except ConfigError as error:
+        messages[str(error)] = None
+        return ()
 
 
 def _collect(task: RunTask, rows: table.StudyTable) -> int:
