@@ -23,7 +23,7 @@ from pellicle.model.input_path import paths_relative_to
 from pellicle.model.paths import get, python_names
 from pellicle.model.ranges import Axes, expand
 from pellicle.results.derived import constants
-from pellicle.results.variables import FIELDS, VARIABLES
+from pellicle.results.variables import BEYOND_THEORY, FIELDS, VARIABLES
 
 from .component_field import FromRegistry
 from .coordinates import Coordinate, as_json, coordinate, tell_apart
@@ -292,7 +292,8 @@ class Study(FromFile):
         }
         allowed |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         names = python_names([*self.vary, *itertools.chain.from_iterable(self.zip)])
-        reserved = {*FUNCTIONS, *CONSTANTS, *texts, *names.values(), "run", "step", "x", "y"}
+        reserved = {*FUNCTIONS, *CONSTANTS, *texts, *names.values(), "run", BEYOND_THEORY, "step"}
+        reserved |= {"x", "y"}
         varying = self.varying if self.derived else set()
         problems: list[Problem] = []
         for name, text in self.derived.items():

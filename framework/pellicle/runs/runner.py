@@ -21,7 +21,7 @@ from pellicle.config.run import Run
 from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
 from pellicle.plugins import registry
-from pellicle.results.result import Result, first_message
+from pellicle.results.result import Result
 from pellicle.results.step import Steps
 
 from .compose import compose
@@ -90,10 +90,7 @@ def run(
     result = execute(run, journal, outputs, bar, threads=threads).result
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
-    for steps in (result.coarse(), result.steep(), result.cramped()):
-        if steps:
-            warnings.warn(first_message(steps), ConvergenceWarning, stacklevel=2)
-    for message in result.beyond_theory().values():
+    for message in result.caveats():
         warnings.warn(message, ConvergenceWarning, stacklevel=2)
     return result
 

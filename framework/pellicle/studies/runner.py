@@ -28,6 +28,7 @@ from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.status import Status
+from pellicle.results.variables import BEYOND_THEORY
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.lock import locked
@@ -206,6 +207,8 @@ def _execute(
     check_writable(directory / "runs" / "run.h5")
     _require_table(directory / "study.h5", overwrite)
     rows = table.StudyTable(study)
+    if not overwrite:
+        rows.recall(directory / "study.h5")
     unfinished = {
         task.index: task
         for task in tasks(study, directory, overwrite=overwrite)
@@ -228,6 +231,7 @@ def _execute(
                     rows.fail(task.index, _one_line(outcome))
                 else:
                     rows.put(task.index, outcome)
+                    rows.beyond_theory[task.index] = outcome.attrs.pop(BEYOND_THEORY)
                     messages |= dict.fromkeys(outcome.attrs.pop(_WARNINGS))
                 # On a full disk all later runs would fail: writing the table at once detects that.
                 files.write(rows, at_once=isinstance(outcome, StorageError))
@@ -243,7 +247,7 @@ def _execute(
 
         calls = runner.writers(outputs, runs, directory / "study", first)
         written = runner.all_done([partial(_or_warning, call, messages) for call in calls])
-    for message in (*messages, *(f"{message}; see status" for message in caveats(whole))):
+    for message in (*messages, *caveats(whole)):
         warnings.warn(message, stacklevel=4)
     return StudyResult(whole, (*files.paths, *chain(*written)), resumed)
 
@@ -300,9 +304,9 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
             task.run, task.journal, task.outputs, bar, threads=threads, lock=False
         )
     messages = [str(warning.message) for warning in caught]
-    # Equal messages of several runs are shown once.
-    messages += [f"in at least one run {subject}" for subject in executed.result.beyond_theory()]
-    return executed.result.dataset.drop_dims(["x", "y"]).assign_attrs({_WARNINGS: messages})
+    numbers = executed.result.dataset.drop_dims(["x", "y"])
+    beyond = "; ".join(executed.result.beyond_theory().values())
+    return numbers.assign_attrs({_WARNINGS: messages, BEYOND_THEORY: beyond})
 
 
 @contextmanager
