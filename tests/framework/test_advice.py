@@ -201,7 +201,7 @@ def test_memory_is_that_of_the_run(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("cells", [4, 8])
 def test_a_rough_surface_is_checked_on_grids_that_resolve_it(cells: int) -> None:
-    """Its shortest wave has more than two cells on each; the error of the area shrinks with them."""
+    """Its shortest wave has more than two cells on each of them."""
     rough = run(
         tension=0.0,
         grid={"points": 96, "size": 4e-5, "boundary": "periodic"},

@@ -258,7 +258,7 @@ def test_what_runs_warn_of_is_said_once(tmp_path: Path) -> None:
         warnings.simplefilter("always")
         pl.run_study(plan, tmp_path, progress=False)
     coarse, along_x, along_y = sorted(str(entry.message) for entry in records)
-    name = "surface tension 0 N/m (file "
+    name = "surface tension 0 mN/m (file "
     assert coarse.startswith(f"of 2 runs, in 2 the cells are too coarse for this contact; {name}")
     assert "step 1: converged, but" in coarse
     assert along_x.startswith("the surface is not periodic along x")
@@ -618,7 +618,11 @@ def test_long_runs_go_to_processes(
         clock += pace(task.index[0])
         return solved.copy()
 
-    solved = pl.run(RUN, progress=False).dataset.drop_dims(["x", "y"]).assign_attrs(warnings=[])
+    solved = (
+        pl.run(RUN, progress=False)
+        .dataset.drop_dims(["x", "y"])
+        .assign_attrs(warnings=[], beyond_theory="")
+    )
     monkeypatch.setattr(study_module, "solve", solve)
     monkeypatch.setattr(study_module, "time", SimpleNamespace(monotonic=lambda: clock))
     monkeypatch.setattr(Processes, "map", processes)

@@ -123,7 +123,7 @@ def _row(name: str, advice: Advice, needed: float, error: float) -> dict[str, st
         "fewest cells across": f"{min(across):.0f}" if across else "0",
         "error": _share(_worst(advice, "error")),
         "error of area": _share(_worst(advice, "area_error")),
-        f"points for {_share(error)}": f"{nx} × {ny}",
+        f"points for {_share(error)} of force and depth": f"{nx} × {ny}",
         "memory": f"{needed / 1e6:.3g} MB",
     }
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
+
+from pellicle.errors import ConfigError
 
 from .exits import INTERRUPTED
 from .printing import echo, print_json, print_table
@@ -154,12 +157,13 @@ def _run_one(
         _print_files(executed.files, executed.resumed, f"{steps} steps")
     codes = executed.result.dataset["status_code"].values
     if Status.CONTACT_AT_EDGE.name in codes:
-        x, y = (readable(edge, "m", DIGITS) for edge in size_for(run))
-        echo(
-            f'grid.size = ["{x}", "{y}"] holds the contact of every step; -o DIR solves it in '
-            f"another folder, --overwrite in place of the result in {stem.parent}",
-            err=True,
-        )
+        with suppress(ConfigError):
+            x, y = (readable(edge, "m", DIGITS) for edge in size_for(run))
+            echo(
+                f'grid.size = ["{x}", "{y}"] holds the contact of every step; -o DIR solves it in '
+                f"another folder, --overwrite in place of the result in {stem.parent}",
+                err=True,
+            )
     exit_by_convergence(executed.result)
 
 

@@ -154,9 +154,11 @@ def size_for(run: Run) -> tuple[float, float]:
     ConfigError
         A domain 64 times as wide does not.
     """
+    scale = min(1.0, _MOST / 2 / max(run.grid.points))
+    points = tuple(max(1, round(n * scale)) for n in run.grid.points)
     for factor in 2.0 ** np.arange(1, 7):
         size = factor * np.array(run.grid.size)
-        grid = _coarser(run.grid.model_copy(update={"size": (size[0], size[1])}))[-1]
+        grid = run.grid.model_copy(update={"points": points, "size": (size[0], size[1])})
         solved = _solved(run, grid)
         if _at_edge(solved):
             continue
