@@ -31,6 +31,9 @@ _SERIALISED = 2.6
 # Buffers and Python's own objects [bytes].
 _FIXED = 1e6
 
+PROCESS = 150_000_000
+"""Memory of a process that has loaded pellicle and its libraries, without a run [bytes]."""
+
 # Files of a control group: its limit, its usage, and the line of memory.stat with its file cache.
 _VERSION_2 = "memory.max", "memory.current", "inactive_file"
 _VERSION_1 = "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"

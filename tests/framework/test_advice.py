@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -76,6 +77,34 @@ def test_a_domain_far_wider_than_the_contact_is_told() -> None:
     assert advise(run(), 0.01).size is None
     periodic = run(grid={"points": 64, "size": 3e-4, "boundary": "periodic"})
     assert advise(periodic, 0.01).size is None
+
+
+def test_a_contact_at_the_edge_is_told_with_a_domain_that_holds_it(tmp_path: Path) -> None:
+    """`check` refuses what `run` refuses; both name a size in which every step is solved."""
+    loading = {"depth": [DEPTH / 2, 3 * DEPTH, 8 * DEPTH]}
+    small = run(grid={"points": 64, "size": 4e-5}, loading=loading)
+    (tmp_path / "small.toml").write_text(small.to_toml(), encoding="utf-8")
+    (tmp_path / "study.toml").write_text(
+        small.to_toml() + '\n[study.vary]\n"kernel.tension" = [0.0, 0.05]\n', encoding="utf-8"
+    )
+    sizes = []
+    for command in (["check"], ["run", "-o", str(tmp_path / "out")]):
+        done = CliRunner().invoke(app, [*command, str(tmp_path / "small.toml")])
+        assert done.exit_code == 1, done.output
+        assert "reaches the edge" in done.output
+        named = re.search(r"grid.size = (\[.*?\]) holds", done.output)
+        assert named, done.output
+        sizes.append(named[1])
+    assert sizes[0] == sizes[1]
+    assert "--overwrite" in done.output
+    data = CliRunner().invoke(app, ["check", str(tmp_path / "small.toml"), "--json"])
+    assert (data.exit_code, json.loads(data.stdout)["at_edge"]) == (1, [2, 3])
+    again = ["--overwrite", "--set", f"grid.size={sizes[0]}"]
+    done = CliRunner().invoke(app, [*command, str(tmp_path / "small.toml"), *again])
+    assert done.exit_code == 0, done.output
+    checked = CliRunner().invoke(app, ["check", str(tmp_path / "study.toml")])
+    assert checked.exit_code == 1
+    assert re.search("surface tension 0 .*: the contact of steps 2, 3 reaches", checked.output)
 
 
 @pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
@@ -168,3 +197,21 @@ def test_memory_is_that_of_the_run(tmp_path: Path) -> None:
     data = json.loads(CliRunner().invoke(app, ["check", str(path), "--json"]).stdout)
     planned = json.loads(CliRunner().invoke(app, ["run", str(path), "--dry-run", "--json"]).stdout)
     assert f"{data['memory'] / 1e6:.3g} MB" == planned["runs"][0]["memory"]
+
+
+@pytest.mark.parametrize("cells", [4, 8])
+def test_a_rough_surface_is_checked_on_grids_that_resolve_it(cells: int) -> None:
+    """Its shortest wave has more than two cells on each of them."""
+    rough = run(
+        tension=0.0,
+        grid={"points": 96, "size": 4e-5, "boundary": "periodic"},
+        indenter={
+            "type": "self_affine",
+            "rms_height": 1e-7,
+            "hurst": 0.8,
+            "cutoff_wavelength": cells * 4e-5 / 96,
+        },
+        loading={"mean_pressure": [50.0]},
+    )
+    (step,) = advise(rough, 0.01).steps
+    assert 0 < step.area_error < 1

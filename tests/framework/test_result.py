@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import re
 import tracemalloc
 from dataclasses import replace
 from importlib.metadata import version
@@ -11,8 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from typer.testing import CliRunner
 
 import pellicle as pl
+from pellicle.cli import app
 from pellicle.plugins import Origin, registry
 from pellicle.results import storage
 
@@ -176,15 +180,29 @@ def test_beyond_the_theory(kernel: dict[str, Any], depth: float, message: str) -
     assert set(result.dataset["status_code"].values) == {"CONVERGED"}
 
 
-def test_study_beyond_the_theory() -> None:
-    """A study warns once, however many of its runs go through the layer."""
+def test_study_beyond_the_theory(tmp_path: Path) -> None:
+    """A study warns once, with a run, its step and figures; its table keeps those of all runs."""
     study = {
-        "grid": {"points": 16, "size": "90 um"},
+        "grid": {"points": 40, "size": "90 um"},
         "kernel": {"type": "bonded_layer", **LAYER},
         "indenter": {"type": "paraboloid", "radius": "50 um"},
-        "loading": {"depth": ["4 um"]},
-        "study": {"vary": {"kernel.reduced_modulus": ["1 kPa", "2 kPa"]}},
+        "loading": {"depth": ["1 um", "4 um"]},
+        "outputs": [],
+        "study": {"vary": {"loading.depth.1": ["1.2 um", "4 um", "5 um"]}},
     }
-    with pytest.warns(UserWarning, match="in at least one run the surface is pressed") as caught:
-        pl.run_study(study, progress=False)
-    assert len(caught) == 1
+    for _ in ("solved", "resumed"):
+        with pytest.warns(UserWarning, match="far beyond the theory") as caught:
+            table = pl.run_study(study, tmp_path, progress=False)
+        (message,) = (str(warned.message) for warned in caught)
+        assert message.startswith("of 3 runs, in 2 the largest contact is far beyond the theory; ")
+        assert re.search(
+            r"depth 2 4 µm \(file \w+…\), step 2: .* through a layer .* thick", message
+        )
+        none, first, second = table["beyond_theory"].values
+        assert none == ""
+        assert (message.endswith(first), second.startswith("step 2: ")) == (True, True)
+        with (tmp_path / "study.csv").open(encoding="utf-8", newline="") as file:
+            texts = [row["beyond_theory"] for row in csv.DictReader(file)]
+        assert texts == ["", "", first, first, second, second]
+    shown = CliRunner().invoke(app, ["show", str(tmp_path)])
+    assert message in shown.stderr

@@ -9,6 +9,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -17,7 +18,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle import files
+from pellicle import files, memory
 from pellicle.cli import app
 from pellicle.components import Monitor
 from pellicle.results import storage
@@ -25,6 +26,8 @@ from pellicle.results.dimensions import with_paths
 from pellicle.studies import runner as study_module
 from pellicle.studies.summary import failures
 from pellicle.studies.table import StudyTable, write
+from pellicle_plugins.executors.processes import Processes
+from pellicle_plugins.executors.serial import Serial
 from pellicle_plugins.kernels.tensed_membrane import TensedMembrane
 
 RUN: dict[str, Any] = {
@@ -257,7 +260,9 @@ def test_what_runs_warn_of_is_said_once(tmp_path: Path) -> None:
         warnings.simplefilter("always")
         pl.run_study(plan, tmp_path, progress=False)
     coarse, along_x, along_y = sorted(str(entry.message) for entry in records)
-    assert coarse == "of 2 runs, in 2 the cells are too coarse for this contact; see status"
+    name = "surface tension 0 mN/m (file "
+    assert coarse.startswith(f"of 2 runs, in 2 the cells are too coarse for this contact; {name}")
+    assert "step 1: converged, but" in coarse
     assert along_x.startswith("the surface is not periodic along x")
     assert along_y.startswith("the surface is not periodic along y")
 
@@ -593,3 +598,97 @@ def test_studies_in_threads_leave_warnings_to_others(monkeypatch: pytest.MonkeyP
         warnings.warn("to be seen", stacklevel=1)
         assert shown == ["to be seen"]
         monkeypatch.undo()
+
+
+TWELVE = {TENSION: np.linspace(0.0, 1.1, 12).tolist()}
+
+
+@pytest.mark.parametrize(
+    ("here", "pace", "others"),
+    [
+        (1, lambda run: 5.0, {}),
+        (12, lambda run: 0.05, {}),
+        (4, lambda run: 0.05 if run < 3 else 5.0, {}),
+        (10, lambda run: 6.0 if run == 9 else 0.01, {}),
+        (12, lambda run: 5.0, {"cores": 1}),
+        (12, lambda run: 5.0, {"threads": 2}),
+        (12, lambda run: 5.0, {"room": 3e8}),
+        (12, lambda run: 5.0, {"parent": object()}),
+        (12, lambda run: 5.0, {"executor": {"type": "serial"}}),
+        (0, lambda run: 0.05, {"executor": {"type": "processes"}}),
+    ],
+    ids=[
+        "long",
+        "short",
+        "slower",
+        "last",
+        "core",
+        "threads",
+        "room",
+        "child",
+        "serial",
+        "processes",
+    ],
+)
+def test_long_runs_go_to_processes(
+    here: int,
+    pace: Callable[[int], float],
+    others: dict[str, Any],
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """Runs that would take more than 10 s here are shared, unless that gains nothing."""
+    clock, shared = 0.0, []
+
+    def processes(self: Processes, work: Any, tasks: list[Any], report: Any) -> Iterator[Any]:
+        shared.extend(tasks)
+        return Serial().map(work, tasks, report)
+
+    def solve(task: study_module.RunTask, say: Any, threads: int | None) -> xr.Dataset:
+        nonlocal clock
+        clock += pace(task.index[0])
+        return solved.copy()
+
+    solved = (
+        pl.run(RUN, progress=False)
+        .dataset.drop_dims(["x", "y"])
+        .assign_attrs(warnings=[], beyond_theory="")
+    )
+    monkeypatch.setattr(study_module, "solve", solve)
+    monkeypatch.setattr(study_module, "time", SimpleNamespace(monotonic=lambda: clock))
+    monkeypatch.setattr(Processes, "map", processes)
+    monkeypatch.setattr("pellicle.runs.runner.available_cores", lambda: others.get("cores", 2))
+    monkeypatch.setattr(memory, "available", lambda: others.get("room", 1e10))
+    monkeypatch.setattr(study_module, "parent_process", lambda: others.get("parent"))
+    table = pl.run_study(
+        pl.Study(run=RUN, vary=TWELVE, executor=others.get("executor")),
+        threads=others.get("threads"),
+    )
+    assert table["converged"].all()
+    assert len(shared) == 12 - here
+    told = capfd.readouterr().err.count("go to processes")
+    assert told == (len(shared) > 0 and "executor" not in others)
+
+
+@pytest.mark.slow
+def test_script_whose_runs_are_long(tmp_path: Path) -> None:
+    """A script without a guard of its main part is not run again, and finds the same numbers."""
+    script = f"""
+import pellicle as pl
+from pellicle.runs import runner as of_runs
+from pellicle.studies import runner
+runner._LONG, of_runs.available_cores = 0.0, lambda: 2
+print("once")
+print(pl.run_study(pl.Study(run={RUN!r}, vary={{"kernel.tension": [0.0, 0.5, 1.0]}}), "s")["force"]
+      .values.tolist())
+"""
+    (tmp_path / "script.py").write_text(script)
+    done = subprocess.run(
+        [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    once, forces = done.stdout.splitlines()
+    assert once == "once"
+    assert "the other 2 runs" in done.stderr
+    assert (
+        json.loads(forces) == carry_out(study({TENSION: [0.0, 0.5, 1.0]}))["force"].values.tolist()
+    )

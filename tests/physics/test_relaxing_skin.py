@@ -201,11 +201,34 @@ def test_several_caveats_are_all_told() -> None:
     ((number, message),) = result.cramped()
     assert number == 2
     assert "cells" not in message
-    table = result.dataset.expand_dims("run")
-    assert [*caveats(table)] == [
+    plan = pl.Study(run=small, vary={"solver.tolerance": [1e-6]})
+    with pytest.warns(UserWarning, match="of 1 runs"):
+        table = pl.run_study(plan, progress=False)
+    messages = [*caveats(table)]
+    assert [message.partition(";")[0] for message in messages] == [
         "of 1 runs, in 1 the cells are too coarse for this contact",
         "of 1 runs, in 1 the domain is small for a skin on a solid that relaxes",
     ]
+    assert "step 1: converged, but the cells" in messages[0]
+    assert messages[1].endswith(f"step 2: {message}")
+
+
+def test_the_largest_domain_that_a_run_needs_is_quoted() -> None:
+    """Whoever enlarges the domain as the message says has one for all steps, not for one more."""
+    times, depth = np.array([0.0, 1.0, 2.0, 3.0]), np.array([0.1, 0.2, 0.3, 0.4])
+    indenter = {"type": "paraboloid", "radius": 10.0}
+    plan: Any = {"times": times, "depth": depth, "substrate": kernel(0.05), "indenter": indenter}
+    with pytest.warns(pl.ConvergenceWarning, match="is small for a skin") as warned:
+        result = pl.run(run_of(24, size=8.0, **plan), progress=False)
+    steps = dict(result.cramped())
+    assert len(steps) > 1
+    (message,) = (str(w.message) for w in warned if "small for a skin" in str(w.message))
+    asked = re.search(r"grid.size ≥ ([\d.]+) m", message)
+    assert asked
+    assert steps[4] in message
+    larger = float(asked[1])
+    enough = pl.run(run_of(round(3 * larger), size=larger, **plan), progress=False)
+    assert enough.cramped() == []
 
 
 def _warned(*arguments: Any, **options: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,6 +12,7 @@ import typer
 
 from pellicle.errors import ConfigError
 
+from .exits import NOT_CONVERGED
 from .printing import echo, print_json, print_table
 from .scales import warn_of_scales
 
@@ -68,7 +70,7 @@ def _check_run(run: Run, error: float, *, json: bool) -> None:
     needed = memory_of(run)
     if json:
         print_json(_data(advice, needed))
-        return
+        raise typer.Exit(NOT_CONVERGED if advice.at_edge else 0)
     quantities = [name for name in ("force", "depth") if _is_unknown(advice, name)]
     rows = [
         {
@@ -83,13 +85,32 @@ def _check_run(run: Run, error: float, *, json: bool) -> None:
     print_table(list(rows[0]), rows)
     nx, ny = run.grid.points
     echo(f"{nx} × {ny} cells need {needed / 1e6:.3g} MB; errors are at most about these")
-    if advice.size:
+    if advice.size and not advice.at_edge:
         x, y = (readable(edge, "m", 3) for edge in advice.size)
         echo(f'the contact fits into a smaller domain: grid.size = ["{x}", "{y}"]')
     if advice.size or advice.points != run.grid.points:
         nx, ny = advice.points
         of, on = " and ".join(quantities), ", on that domain" if advice.size else ""
         echo(f"for {_share(error)} of {of} in every step{on}: grid.points = [{nx}, {ny}]")
+    _refuse_edge([(advice, "")])
+
+
+def _refuse_edge(checked: Sequence[tuple[Advice, str]]) -> None:
+    """Print of which domains the contact reaches the edge, and one for all; exit if there are any.
+
+    ``checked`` has the advice of each run with its name, empty for a single run.
+    """
+    from pellicle.units import readable
+
+    reaching = [(advice, name) for advice, name in checked if advice.at_edge]
+    if not reaching:
+        return
+    for advice, name in reaching:
+        steps = f"step{'s' * (len(advice.at_edge) > 1)} {', '.join(map(str, advice.at_edge))}"
+        echo(f"{name}{': ' * bool(name)}the contact of {steps} reaches the edge of the domain")
+    x, y = (readable(max(a.size[n] for a, _ in reaching if a.size), "m", 3) for n in (0, 1))
+    echo(f'grid.size = ["{x}", "{y}"] holds every step; the errors are for such a domain')
+    raise typer.Exit(NOT_CONVERGED)
 
 
 def _row(name: str, advice: Advice, needed: float, error: float) -> dict[str, str]:
@@ -102,7 +123,7 @@ def _row(name: str, advice: Advice, needed: float, error: float) -> dict[str, st
         "fewest cells across": f"{min(across):.0f}" if across else "0",
         "error": _share(_worst(advice, "error")),
         "error of area": _share(_worst(advice, "area_error")),
-        f"points for {_share(error)}": f"{nx} × {ny}",
+        f"points for {_share(error)} of force and depth": f"{nx} × {ny}",
         "memory": f"{needed / 1e6:.3g} MB",
     }
 
@@ -114,10 +135,12 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
     """
     from pellicle.runs.advice import advise
     from pellicle.runs.runner import memory_of
+    from pellicle.studies.planned import check_outputs
     from pellicle.studies.summary import run_names
     from pellicle.studies.table import StudyTable
     from pellicle.units import readable
 
+    check_outputs(study)
     names = run_names(StudyTable(study).dataset())
     checked: list[tuple[str, Advice, float]] = []
     for name, point in zip(names, study.points, strict=True):
@@ -129,7 +152,7 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
         print_json(
             {"runs": [{"run": name, **_data(advice, needed)} for name, advice, needed in checked]}
         )
-        return
+        raise typer.Exit(NOT_CONVERGED if any(a.at_edge for _, a, _ in checked) else 0)
     rows = [_row(name, advice, needed, error) for name, advice, needed in checked]
     print_table(list(rows[0]), rows)
     errors = [(w, name) for name, advice, _ in checked if (w := _worst(advice, "error")) == w]
@@ -141,6 +164,7 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
     if errors:
         worst, name = max(errors)
         echo(f"the worst: {_share(worst)}, with {name}")
+    _refuse_edge([(advice, name) for name, advice, _ in checked])
     if any(advice.size is None for _, advice, _ in checked):
         return
     edges = [max(advice.size[axis] for _, advice, _ in checked if advice.size) for axis in (0, 1)]
@@ -156,6 +180,7 @@ def _data(advice: Advice, needed: float) -> dict[str, Any]:
         "steps": [step._asdict() for step in advice.steps],
         "points": advice.points,
         "size": advice.size,
+        "at_edge": advice.at_edge,
         "memory": needed,
     }
 

@@ -198,15 +198,10 @@ def _units(data: xr.Dataset) -> dict[str, str]:
 
 def exit_by_convergence(result: Result) -> None:
     """Print which steps did not converge, or have a caveat; exit unless all converged."""
-    from pellicle.results.result import first_message
-
     failed = result.dataset.isel(step=~result.dataset["converged"].values)
     for steps, message in _grouped(_statuses(failed)):
         echo(f"{steps} did not converge: {for_document(message)}", err=True)
-    for caveats in (result.coarse(), result.steep(), result.cramped()):
-        if caveats:
-            print_warning(first_message(caveats))
-    for message in result.beyond_theory().values():
+    for message in result.caveats():
         print_warning(message)
     if not result.converged:
         raise typer.Exit(NOT_CONVERGED)

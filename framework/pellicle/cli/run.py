@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
+
+from pellicle.errors import ConfigError
 
 from .exits import INTERRUPTED
 from .printing import echo, print_json, print_table
@@ -133,9 +136,12 @@ def _print_plan(configuration: Run | Study, stem: Path, overwrite: bool, json: b
 def _run_one(
     run: Run, stem: Path, display: _Display, *, threads: int | None, overwrite: bool
 ) -> None:
+    from pellicle.results.status import Status
+    from pellicle.runs.advice import size_for
     from pellicle.runs.journal import Journal
     from pellicle.runs.progress import RunProgress
     from pellicle.runs.runner import execute, standard_outputs
+    from pellicle.units import DIGITS, readable
 
     steps = len(run.loading.values)
     journal, bar = Journal(stem, run.identity, overwrite), RunProgress(steps, not display.quiet)
@@ -149,6 +155,15 @@ def _run_one(
     elif not display.quiet:
         print_steps(executed.result, si=display.si)
         _print_files(executed.files, executed.resumed, f"{steps} steps")
+    codes = executed.result.dataset["status_code"].values
+    if Status.CONTACT_AT_EDGE.name in codes:
+        with suppress(ConfigError):
+            x, y = (readable(edge, "m", DIGITS) for edge in size_for(run))
+            echo(
+                f'grid.size = ["{x}", "{y}"] holds the contact of every step; -o DIR solves it in '
+                f"another folder, --overwrite in place of the result in {stem.parent}",
+                err=True,
+            )
     exit_by_convergence(executed.result)
 
 

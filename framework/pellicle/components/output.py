@@ -45,6 +45,13 @@ class Output(Component):
         """Ends of its file names, which follow the stem; ``*`` stands for any text."""
         return ("*",)
 
+    def check(self, runs: Runs) -> None:
+        """Refuse settings that do not fit a study, by a ConfigError; nothing is solved yet.
+
+        The table of ``runs`` has the axes, and NaN for all numbers; of each run ``open`` returns
+        the last step on four cells.
+        """
+
     @abstractmethod
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write files whose paths begin with ``stem``, such as ``f"{stem}.txt"``; return the paths.

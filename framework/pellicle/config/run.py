@@ -44,6 +44,7 @@ from pellicle.model.from_file import FromFile
 from pellicle.model.html import summary
 from pellicle.model.paths import get, replaced, walk
 from pellicle.plugins import registry
+from pellicle.results.variables import VARIABLES, Variable, corrected_area, corrected_fraction
 
 from .component_field import FromRegistry
 from .loading import Loading, refuse_pulls
@@ -202,6 +203,23 @@ class Run(FromFile):
         sentence = f"{types['indenter']} on {types['kernel']}"
         heads = "of", "input", "value", "meaning"
         return summary(self.title or "Run", sentence, heads, rows, picture=picture_of([self]))
+
+    @property
+    def variables(self) -> list[Variable]:
+        """The variables that its steps and its path will have, without fields and texts."""
+        kinds = {"main", "other", "contact", "effort", "residual", "status"}
+        kinds |= {"interaction", "path"} if self.interaction else set()
+        kinds |= {"oscillation"} if self.loading.oscillates else set()
+        areas = [corrected_area(correction.type_name) for correction in self.corrections]
+        return [
+            *(
+                variable
+                for variable in (*VARIABLES.values(), *self.loading.prescription.variables)
+                if variable.type != "text"
+                and (variable.kind in kinds or variable.name in self.loading.variables)
+            ),
+            *(variable for area in areas for variable in (area, corrected_fraction(area))),
+        ]
 
     @property
     def identity(self) -> str:

@@ -22,15 +22,8 @@ from pellicle.model.html import summary
 from pellicle.model.input_path import paths_relative_to
 from pellicle.model.paths import get, python_names
 from pellicle.model.ranges import Axes, expand
-from pellicle.plugins import registry
 from pellicle.results.derived import constants
-from pellicle.results.variables import (
-    FIELDS,
-    VARIABLES,
-    corrected_area,
-    corrected_fraction,
-    names_of,
-)
+from pellicle.results.variables import BEYOND_THEORY, FIELDS, VARIABLES
 
 from .component_field import FromRegistry
 from .coordinates import Coordinate, as_json, coordinate, tell_apart
@@ -110,8 +103,12 @@ class Study(FromFile):
         Field(description="further numbers of the table: name → arithmetic expression"),
     ] = Field(default_factory=dict)
     executor: Annotated[
-        Executor, FromRegistry(), Field(description="what carries out the runs")
-    ] = Field(default_factory=lambda: registry().make(Executor, {"type": DEFAULT_EXECUTOR}))
+        Annotated[Executor, FromRegistry()] | None,
+        Field(
+            description="what carries out the runs; without it this process, and processes once "
+            "the runs left would take more than 10 s"
+        ),
+    ] = None
     _points: tuple[Point, ...] = PrivateAttr()
 
     def _repr_html_(self) -> str:
@@ -249,10 +246,14 @@ class Study(FromFile):
             )
         count = len(self.vary)
         vary = {key: values for table in tables[:count] for key, values in table.items()}
-        optional = {"vary": vary, "zip": tables[count:], "derived": self.derived}
-        study = {"executor": self.executor.model_dump(mode="json", exclude_none=True)} | {
-            name: value for name, value in optional.items() if value
+        executor = self.executor and self.executor.model_dump(mode="json", exclude_none=True)
+        optional = {
+            "executor": executor,
+            "vary": vary,
+            "zip": tables[count:],
+            "derived": self.derived,
         }
+        study = {name: value for name, value in optional.items() if value}
         first = self.points[0].run
         run = {
             key: as_json(value, get(first, key), as_given=as_given)
@@ -283,18 +284,16 @@ class Study(FromFile):
         """Refuse expressions with names that the table will not have, before any run is solved."""
         run = self.points[0].run
         texts = {name for name, variable in VARIABLES.items() if variable.type == "text"}
-        allowed = {*VARIABLES, *constants(json.loads(run.to_json()))}
-        allowed -= texts | {*names_of("requested")}
-        if all(point.run.interaction is None for point in self.points):
-            allowed -= {*names_of("interaction", "path")}
-        if not any(point.run.loading.oscillates for point in self.points):
-            allowed -= {*names_of("oscillation")}
-        allowed |= run.loading.variables
-        areas = [corrected_area(correction.type_name) for correction in run.corrections]
-        allowed |= {v.name for area in areas for v in (area, corrected_fraction(area))}
+        allowed = {*FIELDS, *constants(json.loads(run.to_json()))} | {
+            variable.name
+            for point in self.points
+            for variable in point.run.variables
+            if point.run is run or variable.kind in ("interaction", "path", "oscillation")
+        }
         allowed |= {*self.vary, *itertools.chain.from_iterable(self.zip)}
         names = python_names([*self.vary, *itertools.chain.from_iterable(self.zip)])
-        reserved = {*FUNCTIONS, *CONSTANTS, *texts, *names.values(), "run", "step", "x", "y"}
+        reserved = {*FUNCTIONS, *CONSTANTS, *texts, *names.values(), "run", BEYOND_THEORY, "step"}
+        reserved |= {"x", "y"}
         varying = self.varying if self.derived else set()
         problems: list[Problem] = []
         for name, text in self.derived.items():

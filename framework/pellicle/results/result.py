@@ -99,6 +99,17 @@ class Result:
         """
         return beyond_theory(self.dataset, self.configuration)
 
+    def caveats(self) -> list[str]:
+        """Return a message for each kind of caveat, with the first step that has it.
+
+        Of a small domain it is the last, which needs the largest one.
+        """
+        kinds = self.coarse(), self.steep(), self.cramped()[::-1]
+        return [
+            *(first_message(steps) for steps in kinds if steps),
+            *self.beyond_theory().values(),
+        ]
+
     def _of(self, statuses: set[Status]) -> list[tuple[int, str]]:
         return [
             (number, message) for number, s, message in caveats_of(self.dataset) if s in statuses

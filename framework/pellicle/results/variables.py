@@ -219,6 +219,8 @@ COORDINATES = ("step", "x", "y")
 """Names of the coordinates of a result."""
 WALL_PRESSURE = "wall_pressure"
 """The field that a result has beside `FIELDS` if there is an interaction."""
+BEYOND_THEORY: Final = "beyond_theory"
+"""Text in the table of a study: what `limits` says of a run, if it says so of any."""
 REQUIRED = (*names_of("field", "status"), "depth", "force", "contact_area", "iterations")
 """Variables in the result files of every version."""
 
@@ -271,13 +273,14 @@ def damage(
     """Return which variable of a file is missing or has a wrong type; empty if none.
 
     Variables that are not in `VARIABLES` have to be numeric, except ``run``, the name of a run's
-    file; ``codes`` are the allowed values of ``status_code``.
+    file, and `BEYOND_THEORY`; ``codes`` are the allowed values of ``status_code``.
     """
     if missing := {*required} - {*map(str, variables)}:
         return f"lacks {', '.join(sorted(missing))}"
     for name, variable in variables.items():
         declared = VARIABLES.get(str(name))
-        allowed = _DTYPES[declared.type] if declared else "UO" if name == "run" else "fiub"
+        is_text = name in ("run", BEYOND_THEORY)
+        allowed = _DTYPES[declared.type] if declared else "UO" if is_text else "fiub"
         if variable.dtype.kind not in allowed:
             return f"has {name} of type {variable.dtype}"
     if unknown := {*variables["status_code"].values.ravel()} - {*codes}:

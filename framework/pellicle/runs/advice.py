@@ -14,6 +14,7 @@ from pellicle.components.calls import profile_of
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
+from pellicle.results.status import Status
 
 from .runner import solve
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 _SHARES = 1 / 4, 1 / 3, 1 / 2
 """Cells along an edge of the coarser grids, over those of the run."""
+_LARGEST_SHARES = (1 / 3, 5 / 12, 1 / 2), (3 / 5, 3 / 4, 9 / 10)
+"""The same where coarser ones do not resolve the indenter, however many cells these are."""
 _MOST = 128
 """Largest number of cells along an edge of the coarser grids."""
 _FEWEST = 8
@@ -92,6 +95,9 @@ class Advice(NamedTuple):
     allowed one in every step with contact."""
     size: tuple[float, float] | None
     """Edges of a domain that fits the contact closely [m]; None where it does, or has to repeat."""
+    at_edge: tuple[int, ...] = ()
+    """Numbers of the steps whose contact reaches the edge of the domain of the run, where it must
+    not; then all else is for the domain of `size`, which holds every step, in cells as wide."""
 
 
 def advise(run: Run, allowed: float) -> Advice:
@@ -107,11 +113,15 @@ def advise(run: Run, allowed: float) -> Advice:
     ConfigError
         The grid is too coarse to compare with coarser ones, or the indenter is tied to its grid.
     """
-    grids = _coarser(run.grid)
-    with warnings.catch_warnings():
-        # Coarse grids warn of being coarse.
-        warnings.simplefilter("ignore")
-        results = [solve(_on(run, grid)).dataset for grid in grids]
+    grids = _coarser_of(run)
+    results = [_solved(run, grid) for grid in grids]
+    at_edge = _at_edge(results[-1])
+    if at_edge:
+        held = size_for(run)
+        points = _points(run.grid, held, 1.0)
+        run = _on(run, run.grid.model_copy(update={"points": points, "size": held}))
+        grids = _coarser(run.grid)
+        results = [_solved(run, grid) for grid in grids]
     contacts = results[-1]["contact"].values
     smooth = _is_smooth(run, grids[-1], contacts)
     extents = [_extent(contact, grids[-1]) for contact in contacts]
@@ -126,14 +136,55 @@ def advise(run: Run, allowed: float) -> Advice:
             )
         )
     ]
-    size = _fitting_size(run, np.max(extents, axis=0))
+    size = run.grid.size if at_edge else _fitting_size(run, np.max(extents, axis=0))
     with_error = [step for step in steps if not math.isnan(step.error)]
     worst = max((step.error / allowed for step in with_error), default=1.0)
     # Fewer cells are advised only while the area, which errs most, stays known to a tenth.
     of_areas = (min(1.0, step.area_error / _AREA_ERROR) for step in with_error)
     order = (_SMOOTH if smooth else _OTHER).order
     factor = max(worst ** (1 / order), *of_areas, 0.0)
-    return Advice(tuple(steps), _points(run.grid, size or run.grid.size, factor), size)
+    return Advice(tuple(steps), _points(run.grid, size or run.grid.size, factor), size, at_edge)
+
+
+def size_for(run: Run) -> tuple[float, float]:
+    """Return edges [m] of a domain that holds the contact of every step.
+
+    Raises
+    ------
+    ConfigError
+        A domain 64 times as wide does not.
+    """
+    scale = min(1.0, _MOST / 2 / max(run.grid.points))
+    points = tuple(max(1, round(n * scale)) for n in run.grid.points)
+    for factor in 2.0 ** np.arange(1, 7):
+        size = factor * np.array(run.grid.size)
+        grid = run.grid.model_copy(update={"points": points, "size": (size[0], size[1])})
+        solved = _solved(run, grid)
+        if _at_edge(solved):
+            continue
+        extent = np.max([_extent(contact, grid) for contact in solved["contact"].values], axis=0)
+        close = np.maximum(run.grid.size, [float(f"{_MARGIN * edge:.2g}") for edge in extent])
+        # The zone of an interaction reaches beyond the contact.
+        closer = grid.model_copy(update={"size": (close[0], close[1])})
+        x, y = size if _at_edge(_solved(run, closer)) else close
+        return float(x), float(y)
+    raise ConfigError(
+        "does not hold the contact of every step, nor does 64 times that; press in less far",
+        "grid.size",
+    )
+
+
+def _solved(run: Run, grid: Grid) -> xr.Dataset:
+    with warnings.catch_warnings():
+        # Coarse grids warn of being coarse.
+        warnings.simplefilter("ignore")
+        return solve(_on(run, grid)).dataset
+
+
+def _at_edge(result: xr.Dataset) -> tuple[int, ...]:
+    """Return the numbers of the steps whose contact reaches an edge where it must not."""
+    reaches = result["status_code"].values == Status.CONTACT_AT_EDGE.name
+    return tuple(result["step"].values[reaches].tolist())
 
 
 def _errors_of_steps(
@@ -185,6 +236,21 @@ def _coarser(grid: Grid) -> list[Grid]:
                 "grid.points",
             )
         grids.append(grid.model_copy(update={"points": points}))
+    return grids
+
+
+def _coarser_of(run: Run) -> list[Grid]:
+    """Return three coarser grids, each of which resolves the indenter of a run."""
+    grids = _coarser(run.grid)
+    for shares in _LARGEST_SHARES:
+        try:
+            profile_of(run.indenter, grids[0])
+            break
+        except ConfigError:
+            cells = (
+                [round(n * share) if n > 1 else 1 for n in run.grid.points] for share in shares
+            )
+            grids = [run.grid.model_copy(update={"points": tuple(points)}) for points in cells]
     return grids
 
 

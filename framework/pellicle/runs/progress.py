@@ -189,10 +189,14 @@ class StudyProgress(_BarContext):
             if task_id is not None:
                 self._bar.remove_task(task_id)
             self._advance()
-        elif self._console is not None:
-            line = f"[{self._done}/{self._total}] {task.name}: {verdict}"
-            self._console.print(line, markup=False, highlight=False, soft_wrap=True)
+        else:
+            self.say(f"[{self._done}/{self._total}] {task.name}: {verdict}")
         self._interrupt.check()
+
+    def say(self, line: str) -> None:
+        """Show a line, above the bar if there is one."""
+        if self._console is not None:
+            self._console.print(line, markup=False, highlight=False, soft_wrap=True)
 
     def _advance(self) -> None:
         if self._bar is not None:

@@ -21,7 +21,7 @@ from pellicle.config.run import Run
 from pellicle.errors import ConfigError, ConvergenceWarning
 from pellicle.grid import Grid
 from pellicle.plugins import registry
-from pellicle.results.result import Result, first_message
+from pellicle.results.result import Result
 from pellicle.results.step import Steps
 
 from .compose import compose
@@ -90,10 +90,7 @@ def run(
     result = execute(run, journal, outputs, bar, threads=threads).result
     for step, message in result.failures():
         warnings.warn(f"step {step}: {message}", ConvergenceWarning, stacklevel=2)
-    for steps in (result.coarse(), result.steep(), result.cramped()):
-        if steps:
-            warnings.warn(first_message(steps), ConvergenceWarning, stacklevel=2)
-    for message in result.beyond_theory().values():
+    for message in result.caveats():
         warnings.warn(message, ConvergenceWarning, stacklevel=2)
     return result
 
@@ -252,8 +249,11 @@ def default_threads(grid: Grid) -> int:
     """
     nx, ny = grid.points
     transformed = nx * ny * (4 if grid.boundary == "free" else 1)
-    if transformed < _LARGE:
-        return 1
+    return 1 if transformed < _LARGE else available_cores()
+
+
+def available_cores() -> int:
+    """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

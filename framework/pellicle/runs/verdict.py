@@ -124,8 +124,8 @@ def _caveats(
         yield from filter(None, (zone, _steep(run, equilibrium)))
     needed = least_domain(run, index, largest_area)
     if needed > min(run.grid.size):
-        # A little more, or the rounded length would be refused in turn.
-        least = readable(1.001 * needed, "m", DIGITS)
+        # Cells of another size may add a hundredth to the contact, and be refused in turn.
+        least = readable(1.02 * needed, "m", DIGITS)
         if needed <= _FARTHEST * min(run.grid.size):
             remedy = (
                 f"use grid.size ≥ {least}: 8 contact radii, and 3 times the length 2τ₀/E* below "

@@ -8,36 +8,45 @@ import tempfile
 import threading
 import time
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
+from multiprocessing import parent_process
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from pellicle import memory
 from pellicle.checks import checked_threads, read_only_dataset
-from pellicle.components import Output, Runs, Say
+from pellicle.components import Executor, Output, Runs, Say
 from pellicle.components.calls import outcomes_of
 from pellicle.config.run import Run
-from pellicle.config.study import Study
+from pellicle.config.study import DEFAULT_EXECUTOR, Study
 from pellicle.errors import ConfigError, ConvergenceWarning, PluginError, StorageError
 from pellicle.files import check_writable, is_file, is_folder
+from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
 from pellicle.results.status import Status
+from pellicle.results.variables import BEYOND_THEORY
 from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.lock import locked
 from pellicle.runs.progress import ProgressReporter, StudyProgress
 
 from . import table
+from .planned import check_outputs
 from .summary import caveats, failures, progress_of, run_names
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    _Outcomes = Generator[tuple["RunTask", xr.Dataset | Exception], None, None]
+
 _TABLE_SHARE = 0.05
+_LONG = 10.0
+"""Time [s] of the runs that are left, one after the other, from which processes share them."""
 _WARNINGS = "warnings"
 _recording = threading.Lock()
 
@@ -151,7 +160,14 @@ def run_study(
 
 
 def tasks(study: Study, directory: Path, *, overwrite: bool = False) -> list[RunTask]:
-    """Return all runs of a study, finished or not."""
+    """Return all runs of a study, finished or not.
+
+    Raises
+    ------
+    ConfigError
+        The settings of an output do not fit the study.
+    """
+    check_outputs(study)
     outputs = tuple(o for o in study.points[0].run.outputs or () if o.scope == "run")
     names = run_names(table.StudyTable(study).dataset())
     return [
@@ -186,14 +202,14 @@ def execute(
 def _execute(
     study: Study, directory: Path, progress: bool, overwrite: bool, threads: int | None
 ) -> StudyResult:
-    import xarray as xr
-
     first = study.points[0].run
     outputs = [o for o in runner.standard_outputs(first.outputs) if o.scope != "run"]
     check_writable(directory / "study.h5")
     check_writable(directory / "runs" / "run.h5")
     _require_table(directory / "study.h5", overwrite)
     rows = table.StudyTable(study)
+    if not overwrite:
+        rows.recall(directory / "study.h5")
     unfinished = {
         task.index: task
         for task in tasks(study, directory, overwrite=overwrite)
@@ -203,12 +219,11 @@ def _execute(
     files = _Writer(directory)
     files.write(rows)
     messages: dict[str, None] = {}
-    work = partial(solve, threads=threads or study.executor.threads)
     todo = list(unfinished.values())
     try:
         with (
             StudyProgress(len(study.points), resumed, progress) as bar,
-            closing(outcomes_of(study.executor, work, todo, bar.report, xr.Dataset)) as outcomes,
+            closing(_outcomes(study.executor, todo, bar, threads)) as outcomes,
         ):
             for task, outcome in outcomes:
                 del unfinished[task.index]
@@ -217,6 +232,7 @@ def _execute(
                     rows.fail(task.index, _one_line(outcome))
                 else:
                     rows.put(task.index, outcome)
+                    rows.beyond_theory[task.index] = outcome.attrs.pop(BEYOND_THEORY)
                     messages |= dict.fromkeys(outcome.attrs.pop(_WARNINGS))
                 # On a full disk all later runs would fail: writing the table at once detects that.
                 files.write(rows, at_once=isinstance(outcome, StorageError))
@@ -230,10 +246,52 @@ def _execute(
         def runs() -> Runs:
             return Runs.of_study(read_only_dataset(whole), directory, study.to_json(as_given=True))
 
-        written = runner.all_done(runner.writers(outputs, runs, directory / "study", first))
-    for message in (*messages, *(f"{message}; see status" for message in caveats(whole))):
+        calls = runner.writers(outputs, runs, directory / "study", first)
+        written = runner.all_done([partial(_or_warning, call, messages) for call in calls])
+    for message in (*messages, *caveats(whole)):
         warnings.warn(message, stacklevel=4)
     return StudyResult(whole, (*files.paths, *chain(*written)), resumed)
+
+
+def _outcomes(
+    executor: Executor | None, todo: Sequence[RunTask], bar: StudyProgress, threads: int | None
+) -> _Outcomes:
+    """Yield each task with its outcome.
+
+    Without an executor they are executed in this process, until those left would take long at the
+    pace of the last and can be shared.
+    """
+    import xarray as xr
+
+    def outcomes(by: Executor, tasks: Sequence[RunTask]) -> _Outcomes:
+        work = partial(solve, threads=threads or by.threads)
+        return outcomes_of(by, work, tasks, bar.report, xr.Dataset)
+
+    while todo and executor is None:
+        task, *todo = todo
+        start = time.monotonic()
+        yield from outcomes(registry().make(Executor, {"type": DEFAULT_EXECUTOR}), [task])
+        left = len(todo) * (time.monotonic() - start)
+        if left > _LONG and _can_share(todo, threads or 1):
+            executor = registry().make(Executor, {"type": "processes", "threads": threads or 1})
+            bar.say(
+                f"the other {len(todo)} runs would take {left:.0f} s here: they go to processes, "
+                "as many as cores and memory allow (study.executor decides otherwise)"
+            )
+    if executor:
+        yield from outcomes(executor, todo)
+
+
+def _can_share(todo: Sequence[RunTask], threads: int) -> bool:
+    """Return whether two of the tasks can be executed at once, each in a process of its own.
+
+    A process that another one started leaves the cores to its siblings.
+    """
+    if min(len(todo), runner.available_cores() // threads) < 2 or parent_process():
+        return False
+    available = memory.available()
+    needed = 2 * (max(task.memory for task in todo) + memory.PROCESS)
+    return available is None or needed <= available
 
 
 def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
@@ -247,9 +305,9 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
             task.run, task.journal, task.outputs, bar, threads=threads, lock=False
         )
     messages = [str(warning.message) for warning in caught]
-    # Equal messages of several runs are shown once.
-    messages += [f"in at least one run {subject}" for subject in executed.result.beyond_theory()]
-    return executed.result.dataset.drop_dims(["x", "y"]).assign_attrs({_WARNINGS: messages})
+    numbers = executed.result.dataset.drop_dims(["x", "y"])
+    beyond = "; ".join(executed.result.beyond_theory().values())
+    return numbers.assign_attrs({_WARNINGS: messages, BEYOND_THEORY: beyond})
 
 
 @contextmanager
@@ -314,12 +372,14 @@ def _completed(rows: xr.Dataset, directory: Path) -> xr.Dataset:
     """Return the table with the steps in the files of its runs, which a kill leaves ahead of it."""
     try:
         study = Study.of(json.loads(rows.attrs["configuration"]))
+        runs = tasks(study, directory)
     except (ConfigError, PluginError):
         # A file that it reads, or a plugin, may be gone.
         return rows
     current = table.StudyTable(study)
+    current.recall(directory / "study.h5")
     of_steps = rows[[name for name in rows.data_vars if "step" in rows[name].dims]]
-    for task in tasks(study, directory):
+    for task in runs:
         current.put(task.index, of_steps.isel(dict(zip(study.dimensions, task.index, strict=True))))
         _collect(task, current)
     return current.dataset().assign_attrs(rows.attrs)
@@ -338,6 +398,17 @@ def is_table(path: Path) -> bool:
     except StorageError:
         return True
     return False
+
+
+def _or_warning(
+    write: Callable[[], tuple[Path, ...]], messages: dict[str, None]
+) -> tuple[Path, ...]:
+    """Return the files of an output; settings that do not fit are added to the messages."""
+    try:
+        return write()
+    except ConfigError as error:
+        messages[str(error)] = None
+        return ()
 
 
 def _collect(task: RunTask, rows: table.StudyTable) -> int:

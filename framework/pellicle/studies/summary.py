@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -11,8 +12,9 @@ from numpy.typing import NDArray
 
 from pellicle.results.shape import means_something
 from pellicle.results.status import Status, statuses_of
-from pellicle.results.variables import names_of
+from pellicle.results.variables import BEYOND_THEORY, names_of
 from pellicle.results.wording import wording
+from pellicle.units.conversion import factor_to_si, split
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,6 +32,14 @@ _EVENTS = (
 _SHORT = 8
 Columns = list[tuple[str, list[str]]]
 """Head and cells of each column."""
+_REASONS = {
+    Status.COARSE: "the cells are too coarse for this contact",
+    Status.COARSE_ZONE: "the cells are too coarse for this contact",
+    Status.STEEP: "slopes in contact are beyond the theory",
+    Status.SMALL_DOMAIN: "the domain is small for a skin on a solid that relaxes",
+}
+"""Phrases for messages such as "of 3 runs, in 2 slopes in contact are beyond the theory"."""
+_BEYOND = "a contact is far beyond the theory or its cells"
 _WORST_FIRST = "failed", "not run", "NOT CONVERGED"
 
 
@@ -141,27 +151,36 @@ def failures(table: xr.Dataset) -> str:
 
 
 def caveats(table: xr.Dataset) -> Iterator[str]:
-    """Yield a message for each caveat, with the number of runs that have it."""
+    """Yield a message for each caveat: how many runs have it, and a run and a step that do.
+
+    Of a small domain it is the step that needs the largest one.
+    """
     codes, messages = (_by_run(table, name) for name in ("status_code", "status"))
-    statuses = [
-        {
-            status
-            for code, message in zip(*run, strict=True)
-            if code
-            for status, _ in statuses_of(code, message)
-        }
-        for run in zip(codes, messages, strict=True)
-    ]
-    for caveat, reason in (
-        (
-            {status for status in Status if status.is_coarse},
-            "the cells are too coarse for this contact",
-        ),
-        ({Status.STEEP}, "slopes in contact are beyond the theory"),
-        ({Status.SMALL_DOMAIN}, "the domain is small for a skin on a solid that relaxes"),
-    ):
-        if count := sum(not caveat.isdisjoint(run) for run in statuses):
-            yield f"of {len(statuses)} runs, in {count} {reason}"
+    having: dict[str, list[tuple[int, str]]] = {}
+    for run, step in zip(*np.nonzero(codes), strict=True):
+        for status, message in statuses_of(codes[run, step], messages[run, step]):
+            if reason := _REASONS.get(status):
+                having.setdefault(reason, []).append((int(run), f"step {step + 1}: {message}"))
+    if BEYOND_THEORY in table:
+        texts = table[BEYOND_THEORY].values.ravel()
+        having[_BEYOND] = [(run, text) for run, text in enumerate(texts) if text]
+    if not having:
+        return
+    names, files = run_names(table), short_files(table)
+    for reason in (*dict.fromkeys(_REASONS.values()), _BEYOND):
+        if steps := having.get(reason):
+            run, message = max(steps, key=lambda step: _least_size(step[1]))
+            yield (
+                f"of {len(codes)} runs, in {len({number for number, _ in steps})} {reason}; "
+                f"{names[run]} (file {files[run]}), {message}"
+            )
+
+
+def _least_size(message: str) -> float:
+    """Return the edge [m] that the message of a small domain asks for; 0 if it is another's."""
+    asked = re.search(r"grid\.size ≥ ([^:]+):", message)
+    value, unit = (split(asked[1]) if asked else None) or (0.0, "m")
+    return value * factor_to_si(unit, "m")
 
 
 def _statuses(table: xr.Dataset) -> list[list[Status]]:

@@ -12,13 +12,14 @@ import numpy as np
 from pellicle.config.coordinates import units_of
 from pellicle.config.provenance import now_with
 from pellicle.config.study import Study
+from pellicle.errors import StorageError
 from pellicle.files import atomic_write, for_document
 from pellicle.results import storage
 from pellicle.results.derived import FIRST_RUN, VARYING, derive
 from pellicle.results.dimensions import with_python_names
 from pellicle.results.path import with_path
 from pellicle.results.status import Status
-from pellicle.results.variables import VARIABLES, header
+from pellicle.results.variables import BEYOND_THEORY, VARIABLES, header
 from pellicle.results.variables import damage as damage_of
 
 if TYPE_CHECKING:
@@ -49,6 +50,8 @@ class StudyTable:
             self._texts["status"][point.position][:count] = Status.NOT_RUN.value
             self._texts["status_code"][point.position][:count] = Status.NOT_RUN.name
             self._runs[point.position] = point.run.identity[:16]
+        self.beyond_theory = np.full(study.shape, "", dtype=object)
+        """What is far beyond the theory in each run."""
         self._numbers: dict[str, np.ndarray[Any, np.dtype[Any]]] = {}
         self._descriptions: dict[str, dict[str, str]] = {}
 
@@ -63,6 +66,18 @@ class StudyTable:
             missing = False if variable.dtype == bool else np.nan
             empty = np.full(self._texts["status"].shape, missing)
             self._numbers.setdefault(str(name), empty)[index][:count] = variable.values
+
+    def recall(self, path: Path) -> None:
+        """Take over what an earlier table of the same runs says to be beyond the theory."""
+        try:
+            earlier = storage.table(path)
+        except StorageError:
+            return
+        if BEYOND_THEORY in earlier:
+            columns = (earlier[name].values.ravel() for name in ("run", BEYOND_THEORY))
+            texts = dict(zip(*columns, strict=True))
+            for index, name in np.ndenumerate(self._runs):
+                self.beyond_theory[index] = texts.get(name, "")
 
     def fail(self, index: tuple[int, ...], reason: str) -> None:
         """Record why the remaining steps of a run are missing."""
@@ -84,6 +99,9 @@ class StudyTable:
             variables[name] = dimensions, texts.copy(), self._descriptions.get(name, {})
         description = {"long_name": "name of the run's file"}
         variables["run"] = dimensions[:-1], self._runs.copy(), description
+        if self.beyond_theory.astype(bool).any():
+            described = {"long_name": "what is far beyond the theory, or the cells"}
+            variables[BEYOND_THEORY] = dimensions[:-1], self.beyond_theory.copy(), described
         coordinates: dict[str, Any] = {
             key: (dimension, *coordinate)
             for key, (dimension, coordinate) in self._study.coordinates().items()

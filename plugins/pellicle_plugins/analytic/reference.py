@@ -24,6 +24,7 @@ from .axisymmetric import AxisymmetricContact, indent
 if TYPE_CHECKING:
     import xarray as xr
 
+_PRESCRIBED = "depth", "force", "contact_radius", "contact_area"
 _LINE = 401
 """Points of a line from the centre to the edge of the contact."""
 
@@ -39,9 +40,8 @@ def contact(run: xr.Dataset, step: int) -> AxisymmetricContact | None:
     return _contact(run.attrs["configuration"], step)
 
 
-@cache
-def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
-    run = Run.from_json(configuration)
+def require_solution(run: Run) -> None:
+    """Refuse a run that the axisymmetric equation does not describe, by a ConfigError."""
     kernel, indenter = run.kernel, run.indenter
     if run.interaction is not None:
         raise ConfigError(
@@ -61,6 +61,20 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
             "paraboloid, sphere or cone, and a free boundary",
             "reference",
         )
+    if (prescribed := run.loading.prescribed) not in _PRESCRIBED:
+        raise ConfigError(
+            f"loading.{prescribed} has no reference solution; prescribe {', '.join(_PRESCRIBED)}",
+            "reference",
+        )
+
+
+@cache
+def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
+    run = Run.from_json(configuration)
+    require_solution(run)
+    kernel, indenter = run.kernel, run.indenter
+    assert isinstance(kernel, (HalfSpace, TensedMembrane))
+    assert isinstance(indenter, HasAbelTransform)
     value = run.loading.values[step - 1]
     if value == 0:
         return None
@@ -72,14 +86,8 @@ def _contact(configuration: str, step: int) -> AxisymmetricContact | None:
             return indent(indenter, modulus, tension, contact_radius=value)
         case "contact_area":
             return indent(indenter, modulus, tension, contact_radius=float(np.sqrt(value / np.pi)))
-        case "force":
+        case _:
             return indent(indenter, modulus, tension, force=value)
-        case other:
-            raise ConfigError(
-                f"loading.{other} has no reference solution; prescribe depth, force, "
-                "contact_radius or contact_area",
-                "reference",
-            )
 
 
 def exact(runs: Runs) -> Runs:

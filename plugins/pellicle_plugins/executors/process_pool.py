@@ -20,8 +20,6 @@ _THREAD_VARIABLES = (
     "VECLIB_MAXIMUM_THREADS",
 )
 """Environment variables with a number of threads, read by linear algebra libraries on loading."""
-_WORKER_MEMORY = 150_000_000
-"""Memory of a worker that has loaded pellicle and its libraries, without a task [bytes]."""
 
 
 class ProcessPool(Generic[AnyTask]):
@@ -125,7 +123,7 @@ class ProcessPool(Generic[AnyTask]):
 
 
 def _needed(task: Any) -> float:
-    return float(task.memory) + _WORKER_MEMORY
+    return float(task.memory) + memory.PROCESS
 
 
 def _too_large(task: Any, available: float | None) -> ConfigError:

@@ -96,6 +96,11 @@ class AdhesiveCurve(TableFigure):
         """Suffixes of the figure, of the curve and of its summary."""
         return (*super().suffixes, "-summary.csv")
 
+    def check(self, runs: Runs) -> None:
+        """Refuse runs that have no adhesive curve."""
+        for _, run in self._paths(runs):
+            _refuse(run)
+
     def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
         """Write the figure, the curve and its summary."""
         paths = list(self._paths(runs))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple
 import numpy as np
 from pydantic import Field
 
+from pellicle.arrays import Array
 from pellicle.components import Output, Runs
 from pellicle.config.run import Run
 from pellicle.config.wording import words_at
@@ -28,6 +29,7 @@ from pellicle.results.result import Result
 from pellicle.results.variables import words_of_name
 from pellicle.results.wording import wording
 from pellicle.units import DIGITS, readable
+from pellicle_plugins.analytic.reference import require_solution
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -80,6 +82,11 @@ class TableFigure(Output):
         """Suffixes of the figure and of its numbers."""
         return tuple(f".{kind}" for kind in (*self.formats, *["csv"] * self.numbers))
 
+    def check(self, runs: Runs) -> None:
+        """Refuse an axis or a label that the table does not have."""
+        for _ in self.picked(runs.table):
+            pass
+
     def save(
         self, draw: Callable[[Figure], None], stem: Path, size: tuple[float, float] = SIZE
     ) -> tuple[Path, ...]:
@@ -118,6 +125,23 @@ class XYFigure(TableFigure):
 
     x_label: Annotated[str | None, Field(description="label of the horizontal axis")] = None
     y_label: Annotated[str | None, Field(description="label of the vertical axis")] = None
+
+    def check(self, runs: Runs) -> None:
+        """Refuse what cannot be drawn; a reference is not solved for that."""
+        from matplotlib.figure import Figure
+
+        figure = self
+        if getattr(self, "reference", None):
+            for run in self.compared(runs):
+                require_solution(Run.from_json(run.attrs["configuration"]))
+            figure = self.model_copy(update={"reference": None})
+        for _ in figure.draw(Figure().add_subplot(), runs):
+            pass
+
+    def compared(self, runs: Runs) -> Iterator[xr.Dataset]:
+        """Yield the runs that a reference is drawn beside."""
+        for _, run in self.steps(runs):
+            yield run
 
     @abstractmethod
     def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
@@ -166,7 +190,7 @@ def label(template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dat
         variables = names(data)
         text = _PLACEHOLDER.sub(
             lambda match: format(
-                np.nanmean(np.asarray(evaluate(match[1], variables))), match[2] or ".3g"
+                _mean(np.asarray(evaluate(match[1], variables))), match[2] or ".3g"
             ),
             template,
         )
@@ -175,6 +199,12 @@ def label(template: str | None, data: xr.Dataset, dim: str | None, whole: xr.Dat
     values = [data[axis] for axis in axes if data[axis].ndim == 0]
     words = [wording(whole[value.name]).text(value.item()) for value in values]
     return Label(", ".join(words), ", ".join(map(_assignment, values)))
+
+
+def _mean(values: Array) -> float:
+    """Return the mean of the values that are not NaN; NaN without any."""
+    numbers = values[~np.isnan(values)]
+    return float(numbers.mean()) if numbers.size else np.nan
 
 
 def _assignment(value: xr.DataArray) -> str:

@@ -17,7 +17,7 @@ from pellicle.model.expression import evaluate
 from pellicle.report.style import MARKERS, colour
 from pellicle.results.derived import names
 
-from .base import XYFigure, in_words, set_scales
+from .base import TableFigure, XYFigure, in_words, set_scales
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,6 +41,10 @@ class Compliance(XYFigure):
     type: Literal["compliance"] = "compliance"
     x: Annotated[str, Field(description="expression for the horizontal axis")] = "q"
     y: Annotated[str, Field(description="expression for the vertical axis")] = "compliance"
+
+    def check(self, runs: Runs) -> None:
+        """Refuse an axis or a label that the table does not have; the kernels are left alone."""
+        TableFigure.check(self, runs)
 
     def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
         """Draw the curves, and yield the rows of the numbers drawn."""

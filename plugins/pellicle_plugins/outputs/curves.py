@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
 import numpy as np
@@ -123,21 +122,25 @@ class Curves(XYFigure):
             raise ConfigError(f"{self.over!r} is the axis of by already; give another", "over")
         return self
 
-    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure and its numbers.
+    def _with_by(self, table: xr.Dataset) -> Curves:
+        """Return these curves with the axis that ``by`` is by default.
 
-        ``by`` is by default the only long axis beside step, or step if ``x`` is that axis.
+        It is the only long axis beside step, or step if ``x`` is that axis.
         """
-        sizes, by = runs.table.sizes, self.by
-        steps = self._over_steps(runs.table)
+        steps = self._over_steps(table)
         long = [
             str(dim)
-            for dim, size in sizes.items()
+            for dim, size in table.sizes.items()
             if size > 1 and dim != self.over and (steps or dim != "step")
         ]
-        if by is None and len(long) == 2 and (long[1] == "step" or not steps):
-            by = long[1] if long[0] in names_in(self.x) else long[0]
-        return super(Curves, self.model_copy(update={"by": by})).write(runs, stem)
+        if self.by is not None or len(long) != 2 or (long[1] != "step" and steps):
+            return self
+        by = long[1] if long[0] in names_in(self.x) else long[0]
+        return self.model_copy(update={"by": by})
+
+    def compared(self, runs: Runs) -> Iterator[xr.Dataset]:
+        """Yield all runs."""
+        yield from (run for _, run in runs.datasets() if run is not None)
 
     def _over_steps(self, table: xr.Dataset) -> bool:
         """Return whether the expressions have a value for each step, not just one for each run."""
@@ -149,6 +152,9 @@ class Curves(XYFigure):
 
     def draw(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
         """Draw the curves, and yield the rows of the numbers drawn."""
+        yield from self._with_by(runs.table)._drawn(axes, runs)
+
+    def _drawn(self, axes: Axes, runs: Runs) -> Iterator[dict[str, object]]:
         one_axis(runs.table.sizes, self.by, "by")
         one_axis(runs.table.sizes, self.over, "over")
         x, *ys = (runs.column(text) for text in (self.x, *self.y))

@@ -313,7 +313,7 @@ def _status(result: Result) -> Notice:
         details.append(f"S{first_message(steep)[1:]}")
     if cramped := result.cramped():
         sentences.append(f"In {len(cramped)} of {done} the domain is small for this solid.")
-        details.append(f"S{first_message(cramped)[1:]}")
+        details.append(f"S{first_message(cramped[::-1])[1:]}")
     for subject, message in result.beyond_theory().items():
         sentences.append(f"{subject[0].upper()}{subject[1:]}.")
         details.append(f"S{message[1:]}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import ceil
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -47,18 +47,25 @@ class Maps(TableFigure):
     field: Annotated[str, Field(description="expression for what is drawn")] = "pressure"
     field_label: Annotated[str | None, Field(description="label of the colours")] = None
 
-    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
-        """Write the figure."""
+    def check(self, runs: Runs) -> None:
+        """Refuse an axis, a label or a field that does not exist."""
+        super().check(runs)
+        list(self._panels(runs))
+
+    def _panels(self, runs: Runs) -> Iterator[tuple[Label, xr.Dataset, xr.DataArray]]:
         import xarray as xr
 
-        panels = []
         for name, run in self.steps(runs):
             # Truth values become numbers in arithmetic; alone they are drawn black on grey.
             field = run.get(self.field.strip())
             if field is None or field.dtype != bool:
                 field = as_array(self.field, run)
             values, _ = xr.broadcast(field, run["contact"])
-            panels.append((name, run, values))
+            yield name, run, values
+
+    def write(self, runs: Runs, stem: Path) -> tuple[Path, ...]:
+        """Write the figure."""
+        panels = list(self._panels(runs))
         across = min(max(len(panels), 1), _COLUMNS)
         down = ceil(max(len(panels), 1) / across)
         size = (_PANEL * across + 1.2, _PANEL * down + 1.0) if len(panels) > 1 else (5.4, 4.2)

@@ -5,13 +5,16 @@ from __future__ import annotations
 import csv
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
+import tomli_w
 import xarray as xr
+from typer.testing import CliRunner
 
 import pellicle as pl
+from pellicle.cli import app
 from pellicle.errors import ConvergenceWarning
 from pellicle.plugins import registry
 from tests.pictures import drawn_width, pixels
@@ -19,7 +22,7 @@ from tests.pictures import drawn_width, pixels
 TENSION, RADIUS = "kernel.tension", "indenter.radius"
 
 
-def study(*outputs: dict[str, Any], **derived: str) -> dict[str, Any]:
+def study(*outputs: dict[str, Any] | pl.Output, **derived: str) -> dict[str, Any]:
     """Return a small study of two tensions, two radii and two steps."""
     return {
         "grid": {"points": 16, "size": "0.4 mm"},
@@ -40,7 +43,7 @@ def rows(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def carried(folder: Path, *outputs: dict[str, Any], **derived: str) -> xr.Dataset:
+def carried(folder: Path, *outputs: dict[str, Any] | pl.Output, **derived: str) -> xr.Dataset:
     """Return the table of the study, its outputs left in the folder."""
     return pl.run_study(study(*outputs, **derived), folder, progress=False, threads=1)
 
@@ -80,15 +83,26 @@ def test_fields_of_one_run_of_a_study_say_which(tmp_path: Path) -> None:
     assert shown == {"kernel.tension = 0 N/m, indenter.radius = 1 mm"}
 
 
+class Failing(pl.Output):
+    """Finds out too late that it cannot show a study."""
+
+    type: Literal["failing"] = "failing"
+
+    def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
+        """Refuse."""
+        raise pl.ConfigError("is not what it seemed", "type")
+
+
 def test_an_output_that_fails_keeps_no_other_from_drawing(tmp_path: Path) -> None:
     """The one that fails is named by its place among the outputs."""
-    with pytest.raises(pl.ConfigError, match=r"^outputs\.1\.by: 'nothing' is not an axis"):
-        carried(
+    with pytest.warns(UserWarning, match=r"^outputs\.1\.type: is not what it"):
+        table = carried(
             tmp_path,
             {"type": "hdf5"},
-            {"type": "curves", "by": "nothing"},
+            Failing(),
             {"type": "distributions", "by": TENSION},
         )
+    assert table["converged"].all()
     assert drawn_width(tmp_path / "study-distributions.png") > 0.3
 
 
@@ -118,16 +132,38 @@ def test_wrong_derived_columns_are_known_before_running(text: str, message: str)
         ({"type": "curves", "by": "kernel.tensoin"}, "not an axis of the table; did you mean"),
         ({"type": "curves", "by": TENSION}, "would go over indenter.radius and step"),
         ({"type": "maps", "by": "seed"}, "not an axis of the table"),
+        ({"type": "maps", "field": "presure"}, "did you mean 'pressure'"),
         ({"type": "profiles", "y": "presure"}, "did you mean 'pressure'"),
+        ({"type": "curves", "y": "foce", "by": TENSION}, "did you mean 'force'"),
+        ({"type": "curves", "by": "step", "label": "{foce}"}, "did you mean 'force'"),
+        ({"type": "curves", "extrapolate": True, "by": RADIUS, "over": TENSION}, "at least 3"),
+        ({"type": "adhesive_curve", "work_of_adhesion": 1.0}, "stiffness"),
     ],
 )
 def test_what_cannot_be_drawn_is_named(
-    output: dict[str, Any], message: str, tmp_path: Path
+    output: dict[str, Any], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The message says which axis or name there is; the table is written all the same."""
-    with pytest.raises(pl.ConfigError, match=message):
-        carried(tmp_path, output)
-    assert (tmp_path / "study.h5").is_file()
+    """The message says which axis or name there is, and nothing is solved before."""
+    monkeypatch.chdir(tmp_path)
+    plan = study({"type": "hdf5"}, output)
+    (tmp_path / "plan.toml").write_text(tomli_w.dumps(plan), encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match=rf"^outputs\.1.*{message}"):
+        pl.run_study(plan, tmp_path, progress=False)
+    for command in (["run", "--dry-run"], ["check"]):
+        done = CliRunner().invoke(app, [*command, "plan.toml"])
+        assert (done.exit_code, "outputs.1" in done.output) == (2, True)
+    assert not list(tmp_path.rglob("*.h5"))
+
+
+@pytest.mark.parametrize("type_", ["curves", "profiles"])
+def test_a_reference_that_does_not_exist_is_refused_at_once(type_: str, tmp_path: Path) -> None:
+    """It is not asked for after all runs are solved, whichever of them has none."""
+    plan = study({"type": type_, "by": "indenter", "reference": "axisymmetric"})
+    quadric = {"type": "quadric", "radius_x": "1 mm", "radius_y": "2 mm"}
+    plan["study"]["vary"] = {"indenter": [plan["indenter"], quadric]}
+    with pytest.raises(pl.ConfigError, match=r"^outputs\.0\.reference: .*'quadric'"):
+        pl.run_study(plan, tmp_path, progress=False)
+    assert not list(tmp_path.rglob("*.h5"))
 
 
 def test_fields_are_reduced_for_each_run(tmp_path: Path) -> None:
