@@ -200,8 +200,8 @@ def test_memory_is_that_of_the_run(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("cells", [4, 8])
-def test_a_rough_surface_is_checked_on_grids_that_resolve_it(cells: int) -> None:
-    """Its shortest wave has more than two cells on each of them."""
+def test_a_rough_surface_is_checked_on_grids_that_resolve_it(cells: int, tmp_path: Path) -> None:
+    """Its shortest wave has more than two cells on each of them, and few of the run are told."""
     rough = run(
         tension=0.0,
         grid={"points": 96, "size": 4e-5, "boundary": "periodic"},
@@ -215,3 +215,7 @@ def test_a_rough_surface_is_checked_on_grids_that_resolve_it(cells: int) -> None
     )
     (step,) = advise(rough, 0.01).steps
     assert 0 < step.area_error < 1
+    path = tmp_path / "rough.toml"
+    path.write_text(rough.to_toml(), encoding="utf-8")
+    printed = CliRunner().invoke(app, ["check", str(path)]).stdout
+    assert ("shortest wave of the indenter has 4 cells" in printed) == (cells == 4)

@@ -194,7 +194,9 @@ def test_study_beyond_the_theory(tmp_path: Path) -> None:
         with pytest.warns(UserWarning, match="far beyond the theory") as caught:
             table = pl.run_study(study, tmp_path, progress=False)
         (message,) = (str(warned.message) for warned in caught)
-        assert message.startswith("of 3 runs, in 2 the largest contact is far beyond the theory; ")
+        assert message.startswith(
+            "of 3 runs, in 2 a contact is far beyond the theory or its cells; "
+        )
         assert re.search(
             r"depth 2 4 µm \(file \w+…\), step 2: .* through a layer .* thick", message
         )

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from pellicle.config.study import Study
     from pellicle.runs.advice import Advice
 
+_IN_WAVE = 8
+"""Cells in the shortest wave of an indenter below which its areas are warned of: with four, the
+published rough punch under 100 mN/m has a corrected area of 9.8 % in place of 8.6 %."""
 _ROUND_OFF = 1e-9
 """Relative error below which a quantity counts as prescribed."""
 
@@ -92,7 +95,18 @@ def _check_run(run: Run, error: float, *, json: bool) -> None:
         nx, ny = advice.points
         of, on = " and ".join(quantities), ", on that domain" if advice.size else ""
         echo(f"for {_share(error)} of {of} in every step{on}: grid.points = [{nx}, {ny}]")
+    _warn_of_waves([advice])
     _refuse_edge([(advice, "")])
+
+
+def _warn_of_waves(checked: Sequence[Advice]) -> None:
+    """Print the fewest cells in the shortest wave of an indenter, if they are few."""
+    cells = min((advice.cells_in_wave or math.inf for advice in checked), default=math.inf)
+    if cells < _IN_WAVE * (1 - 1e-9):
+        echo(
+            f"the shortest wave of the indenter has {cells:.3g} cells: areas are known to a tenth "
+            f"or two only; use {_IN_WAVE} or more"
+        )
 
 
 def _refuse_edge(checked: Sequence[tuple[Advice, str]]) -> None:
@@ -156,14 +170,16 @@ def _check_study(study: Study, error: float, *, json: bool) -> None:
     rows = [_row(name, advice, needed, error) for name, advice, needed in checked]
     print_table(list(rows[0]), rows)
     errors = [(w, name) for name, advice, _ in checked if (w := _worst(advice, "error")) == w]
+    areas = [(w, name) for name, advice, _ in checked if (w := _worst(advice, "area_error")) == w]
     many = sum(w > error for w, _ in errors)
     echo(
         f"{len(checked)} runs; in {many} the error of force or depth may exceed "
         f"{_share(error)} in some step; errors are at most about these"
     )
     if errors:
-        worst, name = max(errors)
-        echo(f"the worst: {_share(worst)}, with {name}")
+        (worst, of_force), (area, of_area) = max(errors), max(areas)
+        echo(f"the worst: {_share(worst)}, with {of_force}; of area {_share(area)}, with {of_area}")
+    _warn_of_waves([advice for _, advice, _ in checked])
     _refuse_edge([(advice, name) for name, advice, _ in checked])
     if any(advice.size is None for _, advice, _ in checked):
         return
@@ -181,6 +197,7 @@ def _data(advice: Advice, needed: float) -> dict[str, Any]:
         "points": advice.points,
         "size": advice.size,
         "at_edge": advice.at_edge,
+        "cells_in_wave": advice.cells_in_wave,
         "memory": needed,
     }
 

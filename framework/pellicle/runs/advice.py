@@ -14,6 +14,7 @@ from pellicle.components.calls import profile_of
 from pellicle.config.run import Run
 from pellicle.errors import ConfigError
 from pellicle.grid import Grid
+from pellicle.model.paths import walk
 from pellicle.results.status import Status
 
 from .runner import solve
@@ -98,6 +99,8 @@ class Advice(NamedTuple):
     at_edge: tuple[int, ...] = ()
     """Numbers of the steps whose contact reaches the edge of the domain of the run, where it must
     not; then all else is for the domain of `size`, which holds every step, in cells as wide."""
+    cells_in_wave: float | None = None
+    """Cells of the run in the shortest wave of a rough indenter; None if it names none."""
 
 
 def advise(run: Run, allowed: float) -> Advice:
@@ -143,7 +146,10 @@ def advise(run: Run, allowed: float) -> Advice:
     of_areas = (min(1.0, step.area_error / _AREA_ERROR) for step in with_error)
     order = (_SMOOTH if smooth else _OTHER).order
     factor = max(worst ** (1 / order), *of_areas, 0.0)
-    return Advice(tuple(steps), _points(run.grid, size or run.grid.size, factor), size, at_edge)
+    points = _points(run.grid, size or run.grid.size, factor)
+    waves = [value for path, value, _ in walk(run.indenter) if path.endswith("cutoff_wavelength")]
+    in_wave = min(waves) / run.grid.cell_size if waves else None
+    return Advice(tuple(steps), points, size, at_edge, in_wave)
 
 
 def size_for(run: Run) -> tuple[float, float]:
