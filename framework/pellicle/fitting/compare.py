@@ -41,6 +41,7 @@ def compare(
     without: Minimum,
     *,
     threshold: float,
+    elastic_fails: bool = False,
     full: bool = True,
     pairs: bool = True,
     report: Callable[[str], None] = lambda stage: None,
@@ -55,6 +56,8 @@ def compare(
         Its minima with and without tension.
     threshold
         Δχ² at the ends of intervals.
+    elastic_fails
+        Whether the elastic solid under tension fails a check of its residuals.
     full
         Whether all explanations get intervals; otherwise only the one that is chosen.
     pairs
@@ -72,10 +75,14 @@ def compare(
         quiet = quiet.with_members([replace(m, noise=widened * m.noise) for m in quiet.members])
     report("intervals")
     fits = _ranked(quiet, minima, threshold if full else None)
-    comparison = replace(judge(quiet, fits, failed, threshold), unseen=unseen_pairs(chi_squared))
+    comparison = replace(
+        judge(quiet, fits, failed, threshold, elastic_fails), unseen=unseen_pairs(chi_squared)
+    )
     if excess is not None and comparison.sentence:
         sentence = f"{comparison.sentence}; under {best_rival.words}, too, {excess.agreement()}"
         comparison = replace(comparison, sentence=sentence)
+    if comparison.untried:
+        return comparison.without_intervals()
     if comparison.chosen is not None:
         comparison = _with_intervals(quiet, comparison, comparison.chosen, threshold)
     return over_alternatives(quiet, comparison, threshold)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -69,6 +69,8 @@ class Comparison:
     """The explanation whose estimates count, if it is not an elastic solid under tension."""
     pull_off: str = ""
     """The pull-off force of an adhesive contact against its limits, in words."""
+    untried: str = ""
+    """An explanation that may be right and has no model, in words: nothing has an interval then."""
     margin: float = MARGIN
     """Difference of AIC below which explanations cannot be told apart."""
     unseen: tuple[str, ...] = ()
@@ -114,6 +116,16 @@ class Comparison:
             for fit in self.fits
             if fit.rival.code == chosen or (fit.aic < self.margin and counts(fit))
         )
+
+    def without_intervals(self) -> Comparison:
+        """Return the comparison with the values of parameters alone."""
+
+        def bare(fit: RivalFit) -> RivalFit:
+            estimates = {name: value.without_interval() for name, value in fit.estimates.items()}
+            return replace(fit, estimates=estimates, intervals="none")
+
+        chosen = None if self.chosen is None else bare(self.chosen)
+        return replace(self, fits=tuple(map(bare, self.fits)), chosen=chosen)
 
     def rows(self, *, si: bool = False) -> list[dict[str, str]]:
         """Return a line of a table for each explanation."""

@@ -194,10 +194,13 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
             profile.best,
             profile.without_tension,
             threshold=threshold,
+            elastic_fails=bool(doubt),
             full=problem.compare,
             pairs=problem.compare,
             report=report,
         )
+        if rivals.untried:
+            modulus, tension = modulus.without_interval(), tension.without_interval()
     words, undecided = advice(likelihood, best, modulus, tension)
     return Fit(
         reduced_modulus=modulus,

@@ -247,10 +247,13 @@ def _fit_pool(
             profile.best,
             profile.without_tension,
             threshold=usual,
+            elastic_fails=bool(doubt) or not agree,
             full=compared,
             pairs=compared or not agree,
             report=report,
         )
+        if rivals.untried:
+            modulus, tension = modulus.without_interval(), tension.without_interval()
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,
