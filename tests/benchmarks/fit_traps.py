@@ -121,6 +121,11 @@ KINDS: dict[str, Callable[[np.random.Generator], Curve]] = {
 }
 
 
+def curve_of(kind: str, seed: int, index: int) -> Curve:
+    """Return a curve of a kind."""
+    return KINDS[kind](np.random.default_rng([seed, list(KINDS).index(kind), index]))
+
+
 def fitted(curve: Curve, **options: Any) -> pl.Fit:
     """Return the fit of a curve."""
     return pl.fit(
@@ -138,12 +143,12 @@ def main() -> None:
     """Print the verdicts on the curves of each kind."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 12
     seed = int(sys.argv[2]) if len(sys.argv) > 2 else 1
-    for number, (name, make) in enumerate(KINDS.items()):
+    for name in KINDS:
         if len(sys.argv) > 3 and name not in sys.argv[3:]:
             continue
         verdicts: Counter[str] = Counter()
         for index in range(count):
-            fit = fitted(make(np.random.default_rng([seed, number, index])))
+            fit = fitted(curve_of(name, seed, index))
             verdicts[fit.rivals.verdict if fit.rivals else "not shown"] += 1
             estimates = fit.chosen_estimates()
             modulus, tension = estimates["reduced_modulus"], estimates.get("tension")

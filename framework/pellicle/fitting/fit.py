@@ -199,8 +199,8 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
             pairs=problem.compare,
             report=report,
         )
-        if rivals.untried:
-            modulus, tension = modulus.without_interval(), tension.without_interval()
+    if rivals is not None and rivals.untried:
+        modulus, tension = modulus.without_interval(), tension.without_interval()
     words, undecided = advice(likelihood, best, modulus, tension)
     return Fit(
         reduced_modulus=modulus,

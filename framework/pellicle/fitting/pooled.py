@@ -252,8 +252,8 @@ def _fit_pool(
             pairs=compared or not agree,
             report=report,
         )
-        if rivals.untried:
-            modulus, tension = modulus.without_interval(), tension.without_interval()
+    if rivals is not None and rivals.untried:
+        modulus, tension = modulus.without_interval(), tension.without_interval()
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,

@@ -96,9 +96,7 @@ def _of_first_curve(parameters: Coordinates) -> Coordinates:
     return {p: coordinate for p, coordinate in parameters.items() if p.curve == 0}
 
 
-def _measurements(
-    likelihood: Likelihood, point: float, *, retracts: bool
-) -> Iterator[Measurement]:
+def _measurements(likelihood: Likelihood, point: float, *, retracts: bool) -> Iterator[Measurement]:
     """Yield measurements, the easiest first, the retraction if it is to be among them."""
     base = likelihood.base
     down = np.linspace(base.min(), base.max(), _ROWS) - point
