@@ -160,8 +160,9 @@ def _undescribed(curves: str, best: RivalFit, failed: Sequence[FailedCheck]) -> 
 
 def _needed(tensed: RivalFit, other: RivalFit, none: RivalFit, lead: float) -> str:
     """Return by how much an explanation with tension beats none and the best without."""
+    gain = none.chi_squared - tensed.chi_squared
     sentence = (
-        f"tension is needed, {_UNWEIGHED} (Δχ² = {decimal(none.chi_squared - tensed.chi_squared, 3)}, "
+        f"tension is needed, {_UNWEIGHED} (Δχ² = {decimal(gain, 3)}, "
         f"ΔAIC = {decimal(none.aic - tensed.aic, 3)} against none; "
         f"ΔAIC = {decimal(lead, 3)} against {other.rival.words}, the best without it)"
     )

@@ -80,9 +80,8 @@ def test_power_law_under_tension(exponent: float, tension: float) -> None:
     text = (DATA / "relaxing_tension.csv").read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if line[0] not in "#a"]
     table = np.loadtxt(lines, delimiter=",")
-    alpha, tau, depth, time, force, spread = table[
-        (table[:, 0] == exponent) & (table[:, 1] == tension)
-    ].T
+    rows = table[(table[:, 0] == exponent) & (table[:, 1] == tension)]
+    depth, time, force, spread = rows[:, 2:].T
     pressed = np.linspace(-0.1, 1.0, 2000)
     model = PowerLawModel(ELASTIC, History.of(pressed * 5e-7, pressed * 0.5), tensed=True)
     values = {MODULUS: 2e3, TENSION: tension, EXPONENT: exponent, CONTACT_POINT: 0.0}
