@@ -150,6 +150,13 @@ def test_two_at_one_place() -> None:
     assert "2 curves are at places that have another, such as m:4" in notes[0]
 
 
+def test_open_intervals_have_no_pixel() -> None:
+    """The value of an open interval is one of many."""
+    rows = placed([(0, 0), (1, 0)])
+    rows[0]["reduced_modulus"]["high"] = None
+    assert only_image(rows)[0] == [[-1, 1]]
+
+
 def test_odd_grids() -> None:
     """Noise of the stage, a missing column and a map that is not square change no pixel."""
     noise = 0.05 * np.random.default_rng(1).standard_normal((6, 2))
