@@ -39,7 +39,9 @@ from pellicle.fitting.statistics.rival import Rival
 from pellicle.fitting.statistics.rivals import MARGIN, NONE, TENSED
 from pellicle.fitting.verdict import decision, judge
 from pellicle_plugins.analytic.adhesion import Adhesion
+from pellicle_plugins.indenters.cone import Cone
 from pellicle_plugins.indenters.paraboloid import Paraboloid
+from pellicle_plugins.indenters.sphere import Sphere
 
 Array = NDArray[np.float64]
 BEAD = Paraboloid(radius=RADIUS)
@@ -261,7 +263,7 @@ def test_a_slope_that_was_found_hides_no_other_effect() -> None:
             sloped = by_code[f"{fit.rival.code}+baseline_slope"]
             assert sloped.aic == pytest.approx(fit.aic, abs=0.1)
     # The elastic solid on a flat baseline, which is far behind, is not one of the models.
-    assert found.chosen is found.best
+    assert found.chosen is found.fits[0]
     assert "tension" not in {fit.rival.code for fit in found.alternatives}
 
 
@@ -323,6 +325,61 @@ def test_one_speed_does_not_tell_a_tension_from_relaxation_beside_it() -> None:
         assert estimate.low < value < estimate.high
     assert "at one speed a relaxation exponent up to 0.3" in fit.comparison
     assert "and the tension" in sentence_of_fit(fit)
+
+
+def listed(fit: pl.Fit) -> dict[str, Any]:
+    """Return the comparison of a fit as JSON data, without what only a comparison in full has."""
+    data: dict[str, Any] = fit.to_dict()["rivals"]
+    models = [
+        {k: v for k, v in model.items() if k not in ("intervals", "parameters")}
+        for model in data["models"]
+        if model["compared"]
+    ]
+    return data | {"models": models}
+
+
+@pytest.mark.slow
+def test_a_comparison_in_full_lists_more_and_decides_nothing() -> None:
+    """Verdict, chosen model and range of the modulus come from the same candidates without it."""
+    depth = np.linspace(-0.1, 0.3, 120) * RADIUS
+    bead = Sphere(radius=RADIUS)
+    force = MODULUS_ * bead.force_curve(depth, RADIUS).force
+    # By chance of this noise a sloping baseline beside the tension is better by 6.8 in AIC.
+    force += 0.005 * force.max() * np.random.default_rng(7).standard_normal(depth.size)
+    short, full = (pl.fit(depth + 1e-6, force, indenter=bead, compare=c) for c in (False, True))
+    assert short.rivals is not None
+    assert full.rivals is not None
+    assert full.comparison == short.comparison
+    assert sentence_of_fit(full) == sentence_of_fit(short)
+    assert listed(full) == listed(short)
+    assert full.rivals.fits[0].rival.code == "tension+baseline_slope"
+    assert not full.rivals.fits[0].compared
+    counted = [row["model"] for row in full.rivals.rows() if row["counts"]]
+    assert sorted(counted) == sorted(fit.rival.words for fit in short.rivals.alternatives)
+    assert f"over {len(counted)} models" in sentence_of_fit(full)
+    # Where nothing suggests a tension there is a table, and no verdict.
+    force = MODULUS_ * bead.force_curve(depth, 0.0).force
+    force += 0.005 * force.max() * np.random.default_rng(2).standard_normal(depth.size)
+    short, full = (pl.fit(depth + 1e-6, force, indenter=bead, compare=c) for c in (False, True))
+    assert short.rivals is None
+    assert full.rivals is not None
+    assert full.comparison == short.comparison
+    assert sentence_of_fit(full) == sentence_of_fit(short)
+    assert full.to_dict()["chosen"] == short.to_dict()["chosen"]
+
+
+@pytest.mark.slow
+def test_a_cone_in_place_of_a_bead_determines_no_modulus() -> None:
+    """Its angle is arbitrary: it decides about the tension, and has no interval of the modulus."""
+    depth = np.linspace(-0.1, 0.3, 200) * RADIUS
+    cone = Cone(half_angle=1.2)
+    force = MODULUS_ * cone.force_curve(depth, 0.0).force
+    force += 0.005 * force.max() * np.random.default_rng(1).standard_normal(depth.size)
+    fit = pl.fit(depth + 1e-6, force, indenter="sphere", radius=RADIUS)
+    assert fit.chosen is not None
+    assert fit.chosen.rival.code == "cone"
+    modulus = fit.chosen.estimates["reduced_modulus"]
+    assert (modulus.low, modulus.high) == (None, None)
 
 
 @pytest.mark.slow
@@ -438,9 +495,12 @@ def test_the_chosen_model_is_the_answer(tmp_path: Path) -> None:
     assert sentence_of_fit(fit).split(" (")[0] in page
     assert fit.rivals.pull_off[1:] in page
     many = pl.fit_many(file, progress=False, **options)
-    work = float(many["work_of_adhesion"][0])
-    assert work == chosen["parameters"]["work_of_adhesion"]["value"]
     assert str(many["chosen_model"].values[0]) == "adhesion"
+    for name, estimate in chosen["parameters"].items():
+        for key, end in (("value", ""), ("low", "_low"), ("high", "_high")):
+            assert float(many[f"{name}{end}"][0]) == estimate[key]
+    assert float(many["tension"][0]) == 0.0
+    assert float(many["r_squared"][0]) > 0.99
 
 
 @pytest.mark.parametrize(
@@ -461,6 +521,8 @@ def test_the_chosen_model_is_the_answer(tmp_path: Path) -> None:
         ("not shown", {"drag": 0.0, "tension": 1.0, "none": 5.0}, {"tension"}),
         ("not shown", {"drag": 0.0, "tension": 4.0, "none": 7.0}, {"drag", "tension"}),
         ("not shown", {"none": 0.0, "sphere": 0.3, "tension": 2.0}, {"sphere", "tension"}),
+        # The modulus of a cone depends on its angle, which is arbitrary.
+        ("undecided", {"cone": 0.0, "sphere": 1.0, "tension": 2.0}, {"sphere", "tension"}),
     ],
 )
 def test_models_whose_moduli_count(
@@ -469,7 +531,14 @@ def test_models_whose_moduli_count(
     """The modulus is told over the models that are tied, not over those that hold another."""
     fits = [
         RivalFit(
-            Rival(code, code, "tension" in code, TENSED.build, of_shape=code == "sphere"),
+            Rival(
+                code,
+                code,
+                "tension" in code,
+                TENSED.build,
+                of_shape=code in ("sphere", "cone"),
+                has_size=code != "cone",
+            ),
             0.0,
             aic,
             aic,
@@ -498,7 +567,9 @@ def test_relaxation_beside_a_tension_counts_at_one_speed(aic: float, counts: boo
 def test_what_measurements_do_not_show() -> None:
     """Adhesion in approaches; relaxation at one speed, without a dwell."""
 
-    def unseen(*rows: fit_rivals.Path, segment: Segment = "approach") -> tuple[str, ...]:
+    def unseen(
+        *rows: fit_rivals.Path, segment: Segment = "approach", timed: bool = True
+    ) -> tuple[str, ...]:
         curves = [
             Likelihood(
                 path.depth,
@@ -506,7 +577,7 @@ def test_what_measurements_do_not_show() -> None:
                 ELASTIC,
                 1.0,
                 (CONTACT_POINT,),
-                time=path.time,
+                time=path.time if timed else None,
                 segment=segment,
             )
             for path in rows
@@ -518,6 +589,10 @@ def test_what_measurements_do_not_show() -> None:
     assert unseen(path(), path(rate=1.2)) == (adhesion, relaxation)
     assert unseen(path(), path(rate=10.0)) == (adhesion,)
     assert unseen(path(dwell=True)) == (adhesion,)
+    # Where times are not known, another depth is no other speed.
+    deep = path()._replace(depth=10 * path().depth)
+    assert unseen(path(), deep) == (adhesion,)
+    assert unseen(path(), deep, timed=False) == (adhesion, relaxation)
     assert unseen(path("both"), segment="both") == ()
 
 

@@ -51,6 +51,8 @@ class Rival:
 
     of_shape: bool = False
     """Whether it is another shape, for which a tension can make up in any curve."""
+    has_size: bool = True
+    """Whether the size of a shape is known; otherwise it determines no modulus."""
     others: tuple[tuple[Rival, Minimum], ...] = ()
     """The same with more or fewer rows that touch, and their minima."""
     searched: int = 0

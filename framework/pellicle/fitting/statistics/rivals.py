@@ -137,7 +137,8 @@ def _shapes(members: Sequence[Likelihood], deepest: float) -> Iterator[Rival]:
                 assert shape is not None
                 return ClosedFormModel(shape)
 
-            yield Rival(name, f"a {name}", False, build, of_shape=True)
+            words = f"a cone of {np.degrees(_CONE):g}°" if name == "cone" else f"a {name}"
+            yield Rival(name, words, False, build, of_shape=True, has_size=name != "cone")
 
 
 def _shape(name: str, indenter: object) -> HasForceCurve | None:
