@@ -7,6 +7,7 @@ import json
 import multiprocessing
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -204,3 +205,11 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
     opened.set_script_timeout(20)
     yield opened
     opened.quit()
+
+
+@pytest.fixture
+def default_handler() -> Iterator[None]:
+    """Answer Ctrl-C as Python does of itself; in the background of a shell it is ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import runpy
 import subprocess
 import sys
@@ -13,49 +14,72 @@ from tests.framework.fitting.conftest import skip_rivals
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
 SCRIPTS = {
-    "adhesion.py": (["--points", "32", "--only", "jump_in", "wave"], 2 + 3),
-    "adhesion_random.py": (["1"], 1),
-    "fit_checks.py": (["1"], 11),
-    "fit_rivals.py": (["1", "7", "no tension"], 1),
-    "kernels.py": (["--cases", "rough", "--points", "32"], 20),
-    "next_step.py": (["--cases", "rough", "--points", "32", "--number", "4"], 3),
+    "adhesion.py": (
+        ["--points", "32", "--only", "jump_in", "wave"],
+        2 + 3,
+        {"value": r"-?0\.0[0-2]\d*"},
+    ),
+    "adhesion_random.py": (["1"], 1, {"not honest": "0", "given up": "0"}),
+    "fit_checks.py": (["1"], 11, {"claimed": "(0|100) %", "flagged": "(0|100) %"}),
+    "fit_rivals.py": (["1", "7", "no tension"], 1, {"false": "0 %", "right": "100 %"}),
+    "kernels.py": (["--cases", "rough", "--points", "32"], 20, {"rough, N = 32": r"[1-4]?\d"}),
+    "next_step.py": (
+        ["--cases", "rough", "--points", "32", "--number", "4"],
+        3,
+        {"cold": r"[2-5]\d\.\d", "two states": r"1\d\.\d", "contact known": r"\d\.\d"},
+    ),
 }
 MEASURING = {
-    "cost.py": (["--cases", "rough", "punch", "--points", "32", "--tension", "0.02"], 2),
-    "threads.py": (["--points", "32", "--repeats", "1"], 2 * 2),
+    "cost.py": (
+        ["--cases", "rough", "punch", "--points", "32", "--tension", "0.02"],
+        2,
+        {"applications": r"[1-3]\d", "contact": r"0\.\d+", "seconds": r"\d+\.\d+"},
+    ),
+    "threads.py": (
+        ["--points", "32", "--repeats", "1"],
+        2 * 2,
+        {"bits": "same", "one ÷ several": r"\d+\.\d+"},
+    ),
 }
-"""Scripts that measure a process."""
+"""Scripts that measure a process. Columns have patterns that all of their cells match."""
 
 
 @pytest.mark.parametrize(("script", "size"), SCRIPTS.items(), ids=SCRIPTS)
 def test_table(
     script: str,
-    size: tuple[list[str], int],
+    size: tuple[list[str], int, dict[str, str]],
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """A heading, the line under it, and as many rows as were asked for, of as many columns."""
-    options, rows = size
+    """A heading, the line under it, and as many rows as were asked for, with sound values."""
+    options, rows, patterns = size
     if script == "fit_checks.py":
         # Its table is that of the checks.
         skip_rivals(monkeypatch)
     monkeypatch.setattr(sys, "argv", [script, *options])
     runpy.run_path(str(BENCHMARKS / script), run_name="__main__")
-    assert_is_table(capsys.readouterr().out, rows)
+    assert_is_table(capsys.readouterr().out, rows, patterns)
 
 
 @pytest.mark.parametrize(("script", "size"), MEASURING.items(), ids=MEASURING)
-def test_table_of_a_process(script: str, size: tuple[list[str], int]) -> None:
+def test_table_of_a_process(script: str, size: tuple[list[str], int, dict[str, str]]) -> None:
     """The same of scripts that need a process of their own."""
-    options, rows = size
+    options, rows, patterns = size
     command = [sys.executable, str(BENCHMARKS / script), *options]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
-    assert_is_table(done.stdout, rows)
+    assert_is_table(done.stdout, rows, patterns)
 
 
-def assert_is_table(text: str, rows: int) -> None:
-    """Assert that a text is a table of so many rows."""
-    lines = text.splitlines()
-    assert len(lines) == 2 + rows
-    assert len({line.count(" | ") for line in lines}) == 1
+def assert_is_table(text: str, rows: int, patterns: dict[str, str]) -> None:
+    """Assert that a text is a table of so many rows, whose columns match their patterns."""
+    heads, line, *body = (
+        [cell.strip() for cell in line.removeprefix("|").removesuffix("|").split("|")]
+        for line in text.splitlines()
+    )
+    assert set(line) == {"---"}
+    assert len(body) == rows
+    assert {len(cells) for cells in (line, *body)} == {len(heads)}
+    for head, pattern in patterns.items():
+        column = [cells[heads.index(head)] for cells in body]
+        assert all(re.fullmatch(pattern, cell) for cell in column), (head, column)

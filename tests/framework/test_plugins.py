@@ -194,6 +194,7 @@ def test_a_missing_module_is_a_broken_plugin() -> None:
 INTERRUPTED = "import signal; signal.raise_signal(signal.SIGINT)"
 
 
+@pytest.mark.usefixtures("default_handler")
 @pytest.mark.parametrize(
     "source",
     [
@@ -211,6 +212,7 @@ def test_ctrl_c_ends_loading(plugin: Plugin, source: str) -> None:
     assert signal.getsignal(signal.SIGINT) is before
 
 
+@pytest.mark.usefixtures("default_handler")
 def test_a_plugin_cannot_take_ctrl_c_away(plugin: Plugin) -> None:
     """A handler that a plugin sets at import does not stay."""
     before = signal.getsignal(signal.SIGINT)

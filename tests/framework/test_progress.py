@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import signal
 import threading
-from collections.abc import Iterator
 
 import pytest
 import rich.console
@@ -62,14 +61,6 @@ def test_odd_residuals(excess: float, monkeypatch: pytest.MonkeyPatch) -> None:
         monitor(0, excess)
         monitor(1, 1.0)
         monitor(2, excess)
-
-
-@pytest.fixture
-def default_handler() -> Iterator[None]:
-    """Answer Ctrl-C as Python does of itself, whatever this process was told."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.usefixtures("default_handler")

@@ -37,6 +37,8 @@ class PathSummary:
     """Contact radius [m] at the step of lowest force."""
     pull_off_step: float = nan
     """Number of the step of lowest force, counted from 1."""
+    pull_off_accuracy: float = nan
+    """Error [N] of the force at that step, if it is known."""
     detach: float = nan
     """Depth [m] of the last step in contact before contact is first lost."""
     detach_force: float = nan
@@ -85,6 +87,7 @@ def path_summary(
     contact_radius: ArrayLike,
     energy: ArrayLike | None = None,
     converged: ArrayLike | None = None,
+    force_error: ArrayLike | None = None,
 ) -> PathSummary:
     """Return where a path of load steps pulls hardest, loses and gains contact, and its work.
 
@@ -102,6 +105,8 @@ def path_summary(
     converged
         Whether each step may be used; the others are left out, and work and dissipated energy are
         NaN if there are any.
+    force_error
+        Error of each force [N]; without it the accuracy of the pull-off is NaN.
     """
     columns = [np.asarray(values, dtype=float) for values in (depth, force, contact_radius)]
     good = np.ones(columns[0].shape, bool) if converged is None else np.asarray(converged, bool)
@@ -122,6 +127,9 @@ def path_summary(
         if energy is not None:
             ends = np.asarray(energy, dtype=float)
             summary["dissipated_energy"] = work - float(ends[-1] - ends[0])
+    if force_error is not None and "pull_off" in summary:
+        step = int(summary["pull_off_step"]) - 1
+        summary["pull_off_accuracy"] = float(np.asarray(force_error, dtype=float)[step])
     return PathSummary(**summary)
 
 

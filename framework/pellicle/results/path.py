@@ -81,8 +81,8 @@ def _events(steps: xr.Dataset) -> dict[str, float]:
     done = steps.isel(step=~np.isnan(steps["zone_area"].values))
     if not done.sizes["step"]:
         return {}
-    names = "depth", "force", "contact_radius", "energy", "converged"
-    return asdict(path_summary(*(done[name].values for name in names)))
+    names = "depth", "force", "contact_radius", "energy", "converged", "force_error"
+    return asdict(path_summary(**{name: done[name].values for name in names if name in done}))
 
 
 def with_path(table: xr.Dataset) -> xr.Dataset:

@@ -93,7 +93,7 @@ class Result:
         return self._of({Status.SMALL_DOMAIN})
 
     def beyond_theory(self) -> dict[str, str]:
-        """Return the limits of the theory that the largest contact exceeds by far, with messages.
+        """Return the limits that the contact exceeds by far, with messages; see `limits`.
 
         The equations are solved all the same, so the statuses do not show it.
         """

@@ -119,11 +119,6 @@ class Steps:
             points.append(PathPoint(self._state(index), gap, energy))
         return tuple(points)
 
-    @property
-    def last(self) -> xr.Dataset | None:
-        """The scalars of the last step, or None before the first step."""
-        return self._scalars[-1] if self._scalars else None
-
     def field(self, name: str) -> Array:
         """Return a field at the end of each step, in order; (step, nx, ny), a view."""
         if not self._scalars:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -17,21 +18,21 @@ from pellicle.numerics.path import PathPoint
 from pellicle.numerics.problem import Depth
 from pellicle.numerics.solution import State, Stop
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 # Widths of two zones over that of the step, for the limit of no width.
 _WIDER: Final = (1.5, 3.0)
 # Weight of the force of the step beside those of wider zones, in which the place of the edge on the
 # cells changes forces by half as much.
 _WEIGHT: Final = 0.5
+# Relative error of a pulled contact's force, times the cells in its radius: the largest of
+# paraboloids at pull-off with 3 to 12 cells, at s/a₀ = 0, 0.3 and 3.
+_CELLS_ERROR: Final = 0.55
 # Halvings of the interval of forces in which the contact is lost.
 _HALVINGS: Final = 6
 # Share of |ΔF Δδ|/2 by which the trapezoidal rule may miss the work of a step without a jump. It
 # is 1/3 for F ∝ √(δ − δ₀), the steepest that a force falls before it jumps.
 _MISSED: Final = 0.5
-# Share of |F Δδ| that does not count as a jump: the same near a lowest force, where ΔF is 0, and
-# the change of the energy with the place of the edge on the cells, 0.005 at two cells in the zone.
+# Share of |F Δδ| that does not count as a jump: the change of the energy with the place of the edge
+# on the cells, 0.005 at two cells in the zone.
 _UNCERTAIN: Final = 0.01
 
 
@@ -42,6 +43,7 @@ def force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> tuple[f
     zone in proportion to its width, so a line through all three gives the limit (Richardson 1911).
     The error is the larger of those that the two narrower and the two wider zones give: they differ
     because the edge lies on cells, and because the widest may reach over half of a small contact.
+    The widest zones of a contact of few cells say too little, so it is at least a share of a pull.
     Both are NaN if the contact is lost or no solution is found with a wider zone; the result is
     None if the interaction has no such limit.
     """
@@ -69,7 +71,9 @@ def force_limit(run: Run, equilibrium: Equilibrium, monitor: Monitor) -> tuple[f
     _, limit = np.polyfit(widths, forces, 1, w=weights)
     slopes = np.diff(forces) / np.diff(widths)
     limits = forces[:-1] - slopes * widths[:-1]
-    return float(limit), float(np.abs(limits - equilibrium.force).max())
+    cells = np.sqrt(np.count_nonzero(equilibrium.contact) / np.pi)
+    least = _CELLS_ERROR / cells * max(-equilibrium.force, 0.0)
+    return float(limit), max(least, float(np.abs(limits - equilibrium.force).max()))
 
 
 def greatest_pull(
@@ -112,47 +116,55 @@ def asperity_jumped(before: State | None, equilibrium: Equilibrium) -> bool:
     return False
 
 
-def jump_energy(before: xr.Dataset | None, equilibrium: Equilibrium, tolerance: float) -> float:
-    """Return the energy [J] that jumps have lost since the step ``before``; 0 if it cannot be told.
+def jump_energy(path: Sequence[PathPoint], equilibrium: Equilibrium, tolerance: float) -> float:
+    """Return the energy [J] that jumps have lost since the end of a path; 0 if too little to tell.
 
-    ``tolerance`` is the residual to which both are solved.
+    ``path`` has the last two steps, or fewer, solved to the residual ``tolerance``.
 
     Without a jump the energy changes by the work ∫F dδ of the step, whatever is prescribed; a jump
     loses the rest. That counts if it is more than the trapezoidal rule may miss, so every jump
     shows once the steps are small enough. NaN where the energy is not known, or the last step did
     not converge.
     """
-    if before is None or not before["converged"].item():
+    if not path:
         return float("nan")
-    depth, force, energy = (before[name].item() for name in ("depth", "force", "energy"))
-    lost, uncertain = _lost_energy(depth, force, energy, equilibrium, tolerance)
+    lost, uncertain = _lost_energy(path, equilibrium, tolerance)
     return 0.0 if lost <= uncertain else lost
 
 
-def leaves_path(before: PathPoint, equilibrium: Equilibrium, tolerance: float) -> bool:
-    """Return whether an equilibrium is not the continuous continuation of the step ``before``.
+def leaves_path(path: Sequence[PathPoint], equilibrium: Equilibrium, tolerance: float) -> bool:
+    """Return whether an equilibrium is not the continuous continuation of a path.
 
     A patch has come or gone, or the energy changed by more or less than the work of the step.
     """
-    state = before.state
-    force = float(state.pressure.sum()) * equilibrium.problem.grid.cell_area
-    lost, uncertain = _lost_energy(state.depth, force, before.energy, equilibrium, tolerance)
-    return not abs(lost) <= uncertain or asperity_jumped(state, equilibrium)
+    lost, uncertain = _lost_energy(path, equilibrium, tolerance)
+    return not abs(lost) <= uncertain or asperity_jumped(path[-1].state, equilibrium)
 
 
 def _lost_energy(
-    depth: float, force: float, energy: float, equilibrium: Equilibrium, tolerance: float
+    path: Sequence[PathPoint], equilibrium: Equilibrium, tolerance: float
 ) -> tuple[float, float]:
-    """Return the energy [J] lost since a state, and by how much it is uncertain.
+    """Return the energy [J] lost since the end of a path, and by how much it is uncertain.
 
-    Energies are known to the tolerance of their elastic and adhesive parts, which may cancel.
+    The trapezoidal rule misses a share of |ΔF Δδ|/2 where F is monotonic. Across an extremum, where
+    ΔF may be 0, it misses one of |B Δδ|/2, B being the departure of F from the slope of the step
+    before: F″Δδ³/12 for a constant F″, which is 1/3 at most. Energies are known to the tolerance of
+    their elastic and adhesive parts, which may cancel.
     """
-    problem = equilibrium.problem
+    problem, last = equilibrium.problem, path[-1]
     assert problem.law
-    acting = np.count_nonzero(equilibrium.pressure) * problem.grid.cell_area
-    parts = max(abs(energy), abs(equilibrium.energy)) + 2 * acting * problem.law.work_of_adhesion()
-    step = equilibrium.depth - depth
-    lost = energy - equilibrium.energy + 0.5 * (force + equilibrium.force) * step
-    missed = 0.5 * abs((equilibrium.force - force) * step)
-    greatest = max(abs(force), abs(equilibrium.force)) * abs(step)
-    return float(lost), _MISSED * missed + _UNCERTAIN * greatest + tolerance * parts
+    cell = problem.grid.cell_area
+    forces = [*(float(point.state.pressure.sum()) * cell for point in path), equilibrium.force]
+    steps = np.diff([*(point.state.depth for point in path), equilibrium.depth])
+    acting = np.count_nonzero(equilibrium.pressure) * cell
+    parts = max(abs(last.energy), abs(equilibrium.energy))
+    parts += 2 * acting * problem.law.work_of_adhesion()
+    step, greatest = float(steps[-1]), max(map(abs, forces[-2:]))
+    lost = last.energy - equilibrium.energy + 0.5 * (forces[-2] + forces[-1]) * step
+    varies = abs(forces[-1] - forces[-2])
+    if len(path) == 2 and steps[0]:
+        bend = forces[-1] - forces[-2] - (forces[1] - forces[0]) / steps[0] * step
+        # The slope of a step that was almost held is that of its errors.
+        varies = max(varies, min(abs(bend), greatest))
+    share = 0.5 * _MISSED * varies + _UNCERTAIN * greatest
+    return lost, share * abs(step) + tolerance * parts

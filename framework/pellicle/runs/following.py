@@ -27,7 +27,7 @@ def followed(
     if not solution.extrapolated:
         return solution, equilibrium
     done = solution.stop is Stop.DONE and not solution.jumped
-    if done and not leaves_path(setting.path[-1], equilibrium, solver.tolerance):
+    if done and not leaves_path(setting.path, equilibrium, solver.tolerance):
         return solution, equilibrium
     again = solution_of(solver, problem, setting.state, monitor)
     again = replace(again, iterations=solution.iterations + again.iterations)

@@ -40,7 +40,7 @@ _LIQUID: Final = 1e-12
 _FAST: Final = 0.01
 # Size of both operators of a stiffness γ, in arrays of the grid's shape.
 _PAIR: Final = {"free": 13.5, "periodic": 1.3}
-# Cells may add a hundredth to a radius.
+# 8 radii of a contact, to each of which its counted cells may add a hundredth.
 _RADII: Final = 7.9
 # Number of stiffnesses γ whose operators are kept under a skin.
 _OPERATORS: Final = 4
@@ -132,10 +132,11 @@ def warn_of_relaxation(run: Run) -> None:
 def least_domain(run: Run, index: int, largest_area: float) -> float:
     """Return the edge [m] that a domain needs at a step, for what its solid carries outside.
 
-    It is 8 radii of the largest contact so far, of ``largest_area`` [m²], since a solid remembers
-    a contact that has shrunk; and 3 times the length 1/q of the wave for which the skin is as stiff
-    as the solid is after the duration of the run so far: 2τ₀/E* under a tension. It is 0 where
-    there is nothing outside: at the first step, without a skin, and on a periodic boundary.
+    It is 8 radii of the largest contact so far, since a solid remembers a contact that has shrunk,
+    or 7.9 of those that the cells of ``largest_area`` [m²] count; and 3 times the length 1/q of the
+    wave for which the skin is as stiff as the solid is after the duration of the run so far: 2τ₀/E*
+    under a tension. It is 0 where there is nothing outside: at the first step, without a skin, and
+    on a periodic boundary.
     """
     kernel, branches = run.kernel, branches_of(run.kernel)
     if not index or not branches or run.grid.boundary == "periodic":

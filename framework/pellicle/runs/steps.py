@@ -71,7 +71,7 @@ def _solved_step(
     used = setting.operator.applications - applied + applications
     limit = force_limit(run, step.equilibrium, monitor)
     stiffness = _stiffness(run, step.equilibrium, monitor) if run.loading.stiffness else None
-    lost = jump_energy(steps.last, step.equilibrium, run.solver.tolerance) if setting.law else 0.0
+    lost = jump_energy(setting.path, step.equilibrium, run.solver.tolerance) if setting.law else 0.0
     jumped = step.jumped or lost > 0 or asperity_jumped(setting.state, step.equilibrium)
     in_part = jumped and not step.jumped and bool(step.equilibrium.contact.any())
     area = np.count_nonzero(step.equilibrium.contact) * run.grid.cell_area

@@ -24,7 +24,7 @@ _FAILURES = {
 }
 """Phrases for messages such as "3 did not converge", by verdict."""
 _EVENTS = (
-    *("pull_off", "detach", "jump_in", "dissipated_energy"),
+    *("pull_off", "pull_off_accuracy", "detach", "jump_in", "dissipated_energy"),
     *("storage_stiffness", "loss_stiffness", "phase", "cycle_dissipation"),
 )
 _SHORT = 8

@@ -315,7 +315,7 @@ def _status(result: Result) -> Notice:
         sentences.append(f"In {len(cramped)} of {done} the domain is small for this solid.")
         details.append(f"S{first_message(cramped)[1:]}")
     for subject, message in result.beyond_theory().items():
-        sentences.append(f"At the largest contact {subject}.")
+        sentences.append(f"{subject[0].upper()}{subject[1:]}.")
         details.append(f"S{message[1:]}")
     return Notice(" ".join(sentences), not details and done == total, details)
 

@@ -18,7 +18,7 @@ from pellicle.numerics.path import Start
 from pellicle.numerics.problem import Problem, adhesive_scale
 from pellicle.numerics.solution import Progress, State, Stop
 
-from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, inner_solve
+from .contact_cg import SIGN_CERTAINTY, inner_solve
 from .nested_grids import coarse_solution, coarser, prolonged
 from .preconditioner import OnContact, Preconditioner, edges
 from .scaling import ScaledSolver
@@ -50,8 +50,6 @@ _FASTER_SAME: Final = 4.0
 # Rise of the energy in a round, over the work of adhesion of the cells along the front, above which
 # the fronts have moved too far: the round is made again with half the shift.
 _RISE: Final = 0.3
-# Set changes of a round after which the strict factor of sign certainty applies.
-_LOOSE_CHANGES: Final = 6
 # Set changes after which the next round begins, whose tractions move the contact anyway. With 40 a
 # step on a rough surface takes half as many applications again; with 2 a smooth one does.
 _CHANGES: Final = 3
@@ -325,7 +323,7 @@ class AdhesionSolver(ScaledSolver):
         hard = replace(problem, law=None)
         contact = on_contact.contact
         settled, opened = False, 0.0
-        for change in range(changes):
+        for _ in range(changes):
             transferred = on_contact.transferred(wall)
             balanced = _with_wall_force(problem, contact, transferred, traction)
             if balanced is None:
@@ -344,7 +342,7 @@ class AdhesionSolver(ScaledSolver):
                     wall,
                     displacement,
                     goal,
-                    certainty=SIGN_CERTAINTY if change < _LOOSE_CHANGES else STRICT_SIGN_CERTAINTY,
+                    certainty=SIGN_CERTAINTY,
                     u_minus_f=u_minus_f,
                 )
                 wall, displacement = inner.pressure, inner.displacement

@@ -27,9 +27,11 @@ from tests.pictures import pixels
 # A coarse grid makes pictures in seconds; the units E* = R = w = 1 make slopes steep.
 pytestmark = [
     pytest.mark.filterwarnings(
-        "ignore:.*(cells wide|slopes in contact):pellicle.ConvergenceWarning"
+        "ignore:.*(cells wide|slopes in contact|at pull-off):pellicle.ConvergenceWarning"
     ),
-    pytest.mark.filterwarnings("ignore:of . runs, in . the cells are too coarse:UserWarning"),
+    pytest.mark.filterwarnings(
+        "ignore:.*(in . the cells are too coarse|pull-off force):UserWarning"
+    ),
 ]
 
 BEAD: dict[str, Any] = {
@@ -93,6 +95,25 @@ def rows_of(path: Path) -> list[dict[str, str]]:
     """Return the rows of a CSV file."""
     with path.open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def test_pull_off_on_few_cells_has_its_error_beside_it(
+    bead: tuple[Path, pl.Result], study: tuple[Path, xr.Dataset]
+) -> None:
+    """Six cells in the radius are warned of on terminal and page, and every table has the error."""
+    folder, result = bead
+    (message,) = result.beyond_theory().values()
+    assert "6.0 cells" in message
+    summary = result.path_summary
+    assert -summary["pull_off"] * 0.05 < summary["pull_off_accuracy"] < -summary["pull_off"] * 0.2
+    assert message in " ".join(
+        CliRunner().invoke(app, ["show", str(folder / "run.h5")]).output.split()
+    )
+    assert message[1:] in unescape((folder / "run.html").read_text(encoding="utf-8"))
+    errors = study[1]["pull_off_accuracy"] / -study[1]["pull_off"]
+    assert ((errors > 0.05) & (errors < 0.2)).all()
+    shown = CliRunner().invoke(app, ["show", str(study[0])]).output
+    assert "accuracy of the pull-off force" in shown
 
 
 @pytest.mark.slow

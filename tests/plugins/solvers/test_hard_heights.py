@@ -70,10 +70,10 @@ def test_a_checkerboard_under_a_plate(points: int, depth: float, most: int) -> N
 
 @pytest.mark.parametrize("depth", [1e-6, 3e-6, 1e-5])
 def test_one_wave_on_a_row_of_long_cells_under_a_plate(depth: float) -> None:
-    """256 cells a millimetre across each yield as in plane strain: 4, 25 and 467 applications."""
+    """256 cells a millimetre across each yield as in plane strain: 3 applications."""
     grid = Grid(points=(256, 1), size=LENGTH, boundary="free")
     x, _ = grid.coordinates()
-    assert_solved(make(PLATE, grid, 1e-6 * np.cos(2 * np.pi * x / LENGTH), "depth", depth), 600)
+    assert_solved(make(PLATE, grid, 1e-6 * np.cos(2 * np.pi * x / LENGTH), "depth", depth), 4)
 
 
 def test_single_peaks_that_no_coarser_cell_touches_are_seen() -> None:
@@ -83,17 +83,17 @@ def test_single_peaks_that_no_coarser_cell_touches_are_seen() -> None:
     heights[::16, ::16] = 0.0
     problem = make(SOLID, grid, heights, "depth", 1e-6)
     assert not problem.coarsened().needs_solving
-    assert_solved(problem, 12)
+    assert_solved(problem, 11)
 
 
 @pytest.mark.parametrize("kernel", KERNELS.values(), ids=KERNELS.keys())
 @pytest.mark.parametrize("share", [1e-9, 1e-6, 1e-3, 1e-2, 0.1])
 def test_white_noise_at_a_depth_near_full_contact(kernel: Kernel, share: float) -> None:
-    """The last cells off contact decide the mean pressure: 32 … 72, up to 279 under a plate."""
+    """The last cells off contact decide the mean pressure: 32 … 72, up to 112 under a plate."""
     grid = Grid(points=128, size=LENGTH, boundary="periodic")
     heights = 1e-6 * np.random.default_rng(0).normal(size=grid.shape)
     depth = (1 - share) * float(heights.max() - heights.mean())
-    assert_solved(make(kernel, grid, heights, "depth", depth), 400 if kernel is PLATE else 100)
+    assert_solved(make(kernel, grid, heights, "depth", depth), 140 if kernel is PLATE else 90)
 
 
 @pytest.mark.parametrize("kernel", KERNELS.values(), ids=KERNELS.keys())
@@ -111,18 +111,18 @@ def test_white_noise_pressed_to_full_contact(kernel: Kernel, excess: float) -> N
     problem = make(kernel, grid, heights, "force", float(expected.sum()) * grid.cell_area)
     solution, applications = solve(problem)
     assert solution.stop is Stop.DONE
-    assert applications <= 8
+    assert applications <= 6
     np.testing.assert_allclose(solution.pressure, expected, rtol=0, atol=1e-6 * expected.max())
 
 
 @pytest.mark.parametrize("share", [1e-12, 1e-6, 0.1, 0.999])
 def test_a_pit_of_one_cell(share: float) -> None:
-    """At a depth, the pressure round the only cell off contact is found in 20 … 27."""
+    """At a depth, the pressure round the only cell off contact is found in 25 … 34."""
     grid = Grid(points=256, size=LENGTH, boundary="periodic")
     heights = np.zeros(grid.shape)
     heights[128, 128] = -1e-6
     problem = make(MEMBRANE, grid, heights, "depth", -share * float(heights.mean()))
-    assert_solved(problem, 100)
+    assert_solved(problem, 42)
 
 
 @pytest.mark.parametrize("solver", [ActiveSet(), ConjugateGradient()], ids=lambda value: value.type)
