@@ -82,6 +82,8 @@ def _curves(rows: list[dict[str, Any]], si: bool) -> list[tuple[str, list[str]]]
     from pellicle.fitting.wording import column_scale
 
     columns = [("curve", [str(row["curve"]) for row in rows])]
+    if any(row.get("elastic") for row in rows):
+        columns.append(("model", [row.get("chosen", {}).get("model", "") for row in rows]))
     for name, unit in _UNITS.items():
         estimates = [row.get(name) for row in rows]
         if not any(name in row for row in rows):
@@ -123,6 +125,7 @@ def _groups(fits: ManyFits, si: bool) -> list[tuple[str, list[str]]]:
             [f"{_words(part.parameter)} [{scales[part.parameter].unit}]" for part in parts],
         ),
         ("accepted", [f"{part.n} of {part.curves}" for part in parts]),
+        ("open", [str(part.open) for part in parts]),
         ("outliers", [str(part.outliers) for part in parts]),
         ("median", [median for median, _ in quartiles]),
         ("quartiles", [ends for _, ends in quartiles]),

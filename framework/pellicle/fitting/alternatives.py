@@ -110,12 +110,13 @@ def unseen_pairs(chi_squared: ChiSquared) -> tuple[str, ...]:
     """Return the codes of pairs that curves of this kind may need and do not show.
 
     Beside a tension approaches do not show a weak adhesion, nor those of one speed relaxation.
+    Curves whose times are not known count as measured at one.
     """
     curves = chi_squared.members
     if any(curve.segment != "approach" for curve in curves):
         return ()
-    speeds = [float(np.median(curve.history.velocity)) for curve in curves]
-    several = max(speeds) > _ONE_SPEED * min(speeds)
+    speeds = [np.median(curve.history.velocity) for curve in curves if curve.time is not None]
+    several = bool(speeds) and max(speeds) > _ONE_SPEED * min(speeds)
     if several or any(curve.history.dwells for curve in curves):
         return ("tension+adhesion",)
     return tuple(_UNSEEN)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -15,15 +15,15 @@ from pellicle.units import readable
 from .alternatives import over_alternatives, reported_estimates, reported_parameters, unseen_pairs
 from .comparison import Comparison, Intervals, RivalFit
 from .models.adhesive import WORK_OF_ADHESION, AdhesiveModel
-from .parameters import TENSION, Coordinates, Parameter
+from .parameters import MODULUS, TENSION, Coordinates
 from .statistics.checks import judged
 from .statistics.chi_squared import ChiSquared, Minimum
 from .statistics.likelihood import Likelihood
 from .statistics.noise import FailedCheck, is_beyond_chance
 from .statistics.pooled_likelihood import Excess
-from .statistics.profile import Ends, curvature_interval
+from .statistics.profile import OPEN, curvature_interval
 from .statistics.rival import Rival
-from .statistics.rivals import NONE, SLOPED, TENSED, rivals, sloped
+from .statistics.rivals import MARGIN, NONE, SLOPED, TENSED, rivals, sloped
 from .verdict import MANY_MARGIN, judge
 
 _FIRST_TENSIONS = (0.03, 0.3)
@@ -41,8 +41,10 @@ def compare(
     without: Minimum,
     *,
     threshold: float,
-    full: bool = True,
-    pairs: bool = True,
+    elastic_fails: bool = False,
+    full: bool = False,
+    pairs: bool = False,
+    counts: bool = True,
     report: Callable[[str], None] = lambda stage: None,
 ) -> Comparison:
     """Return how rivals of a tension describe the curves.
@@ -55,11 +57,16 @@ def compare(
         Its minima with and without tension.
     threshold
         Δχ² at the ends of intervals.
+    elastic_fails
+        Whether the elastic solid under tension fails a check of its residuals.
     full
-        Whether all explanations get intervals; otherwise only the one that is chosen.
+        Whether all explanations get intervals, and a tension is fitted beside each other effect, to
+        be listed; what is chosen, and over which models the modulus is told, does not depend on it.
     pairs
         Whether a tension is compared beside each other effect; otherwise only if no single effect
         passes its checks, or beside one that leads, adhesion, and relaxation at one speed.
+    counts
+        Whether there is a tension to doubt; otherwise explanations are only listed.
     report
         Called with the name of each explanation.
     """
@@ -71,14 +78,33 @@ def compare(
         widened = float(np.sqrt(excess.factor))
         quiet = quiet.with_members([replace(m, noise=widened * m.noise) for m in quiet.members])
     report("intervals")
-    fits = _ranked(quiet, minima, threshold if full else None)
-    comparison = replace(judge(quiet, fits, failed, threshold), unseen=unseen_pairs(chi_squared))
-    if excess is not None and comparison.sentence:
-        sentence = f"{comparison.sentence}; under {best_rival.words}, too, {excess.agreement()}"
-        comparison = replace(comparison, sentence=sentence)
-    if comparison.chosen is not None:
-        comparison = _with_intervals(quiet, comparison, comparison.chosen, threshold)
-    return over_alternatives(quiet, comparison, threshold)
+    fits = _ranked(quiet, minima, minima)
+    comparison = Comparison(tuple(fits), "not shown", "", "", (), margin=max(MARGIN, threshold))
+    if counts:
+        comparison = judge(quiet, fits, failed, threshold, elastic_fails)
+        comparison = replace(comparison, unseen=unseen_pairs(chi_squared))
+        if excess is not None and comparison.sentence:
+            sentence = f"{comparison.sentence}; under {best_rival.words}, too, {excess.agreement()}"
+            comparison = replace(comparison, sentence=sentence)
+        if comparison.chosen is not None and not comparison.untried:
+            comparison = _with_chosen(quiet, comparison, comparison.chosen, threshold)
+        if not comparison.untried:
+            comparison = over_alternatives(quiet, comparison, threshold)
+    if not full:
+        return comparison
+    listed = dict(minima)
+    for rival in rivals(chi_squared, best.parameters):
+        if rival.code not in minima and rival.has_tension:
+            report(rival.words)
+            _, single = minima.get(rival.code.partition("+")[2], (NONE, without))
+            starts = [best.parameters, *_tensed(chi_squared, single)]
+            if pair := rival.minimum(chi_squared, starts):
+                listed[rival.code] = pair
+    further = [fit for fit in _ranked(quiet, listed, minima) if not fit.compared]
+    every = [*comparison.fits, *further]
+    if not comparison.untried:
+        every = [_with_intervals(quiet, fit, threshold) for fit in every]
+    return replace(comparison, fits=tuple(sorted(every, key=lambda fit: fit.aic)))
 
 
 def _minima(
@@ -134,27 +160,39 @@ def _minima(
     return minima
 
 
-def _with_intervals(
+def _with_chosen(
     chi_squared: ChiSquared, comparison: Comparison, chosen: RivalFit, threshold: float
 ) -> Comparison:
     """Return the comparison with intervals of the chosen explanation, and its pull-off force."""
-    of_rival = chosen.rival.of(chi_squared)
-    fits, better = comparison.fits, chosen
-    if chosen.intervals != "profile":
-        minimum = Minimum(chosen.parameters, chosen.chi_squared)
-        minimum, ends = chosen.rival.intervals(
-            chi_squared, minimum, threshold, reported_parameters(of_rival)
-        )
-        better = replace(
-            chosen,
-            chi_squared=minimum.chi_squared,
-            parameters=minimum.parameters,
-            estimates=reported_estimates(of_rival, minimum, ends),
-            intervals="profile",
-        )
-        fits = tuple(better if fit is chosen else fit for fit in fits)
-    member, part = of_rival.curves(better.parameters)[0]
+    better = _with_intervals(chi_squared, chosen, threshold)
+    fits = tuple(better if fit is chosen else fit for fit in comparison.fits)
+    member, part = better.rival.of(chi_squared).curves(better.parameters)[0]
     return replace(comparison, fits=fits, chosen=better, pull_off=_pull_off(member, part))
+
+
+def _with_intervals(chi_squared: ChiSquared, fit: RivalFit, threshold: float) -> RivalFit:
+    """Return an explanation with intervals, if it has none.
+
+    A profile may find a better minimum.  The criteria stay those by which the verdict was made.
+    """
+    if fit.intervals != "none":
+        return fit
+    of_rival, minimum = fit.rival.of(chi_squared), Minimum(fit.parameters, fit.chi_squared)
+    reported = reported_parameters(of_rival)
+    intervals: Intervals = "profile" if fit.aic <= _FAR else "curvature"
+    if intervals == "profile":
+        minimum, ends = fit.rival.intervals(chi_squared, minimum, threshold, reported)
+    else:
+        bounds = of_rival.deviations(minimum.parameters)
+        ends = {p: curvature_interval(p, minimum, bounds, threshold) for p in reported}
+    if not fit.rival.has_size:
+        ends[MODULUS] = OPEN
+    return replace(
+        fit,
+        parameters=minimum.parameters,
+        estimates=reported_estimates(of_rival, minimum, ends),
+        intervals=intervals,
+    )
 
 
 def _pull_off(member: Likelihood, part: Coordinates) -> str:
@@ -244,43 +282,26 @@ def _disagreement(chi_squared: ChiSquared, rival: Rival, minimum: Minimum) -> Ex
     return excess if excess.factor > 1 else None
 
 
-def _ranked(chi_squared: ChiSquared, minima: _Minima, threshold: float | None) -> list[RivalFit]:
-    """Return the explanations, best first; with intervals if there is a threshold of them."""
+def _ranked(chi_squared: ChiSquared, minima: _Minima, compared: Container[str]) -> list[RivalFit]:
+    """Return the explanations, best first; criteria are over the best of those ``compared``."""
     points = sum(member.force.size for member in chi_squared.members)
-    rows = []
+    fits = []
     for rival, minimum in minima.values():
         of_rival = rival.of(chi_squared)
-        start = minimum._replace(chi_squared=of_rival.chi_squared(minimum.parameters))
-        size = _size(rival, of_rival)
-        rows.append((rival, of_rival, start, size, _aic(start.chi_squared, size)))
-    least = min(aic for *_, aic in rows)
-    fits = []
-    for rival, of_rival, minimum, size, aic in rows:
-        ends: dict[Parameter, Ends] = {}
-        intervals: Intervals = "none"
-        if threshold is not None and aic - least <= _FAR:
-            reported = reported_parameters(of_rival)
-            minimum, ends = rival.intervals(chi_squared, minimum, threshold, reported)
-            intervals = "profile"
-        elif threshold is not None:
-            bounds = of_rival.deviations(minimum.parameters)
-            ends = {
-                p: curvature_interval(p, minimum, bounds, threshold)
-                for p in reported_parameters(of_rival)
-            }
-            intervals = "curvature"
+        misfit, size = of_rival.chi_squared(minimum.parameters), _size(rival, of_rival)
         fits.append(
             RivalFit(
                 rival,
-                minimum.chi_squared,
-                _aic(minimum.chi_squared, size),
-                minimum.chi_squared + float(np.log(points)) * size,
+                misfit,
+                _aic(misfit, size),
+                misfit + float(np.log(points)) * size,
                 minimum.parameters,
-                reported_estimates(of_rival, minimum, ends),
-                intervals,
+                reported_estimates(of_rival, minimum, {}),
+                compared=rival.code in compared,
             )
         )
-    aic, bic = min(fit.aic for fit in fits), min(fit.bic for fit in fits)
+    weighed = [fit for fit in fits if fit.compared]
+    aic, bic = min(fit.aic for fit in weighed), min(fit.bic for fit in weighed)
     fits = [replace(fit, aic=fit.aic - aic, bic=fit.bic - bic) for fit in fits]
     return sorted(fits, key=lambda fit: fit.aic)
 

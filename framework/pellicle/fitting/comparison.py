@@ -10,7 +10,7 @@ import numpy as np
 from pellicle.units import decimal
 
 from .parameters import Coordinates
-from .statistics.noise import FailedCheck
+from .statistics.noise import FailedCheck, doubt_of_tension
 from .statistics.profile import Estimate
 from .statistics.rival import Rival
 from .statistics.rivals import MARGIN, NONE, TENSED
@@ -31,7 +31,7 @@ class RivalFit:
     rival: Rival
     chi_squared: float
     aic: float
-    """Akaike's criterion, over that of the best."""
+    """Akaike's criterion, over that of the best that is compared."""
     bic: float
     """Bayes' criterion (Schwarz), over that of the best."""
     parameters: Coordinates
@@ -40,6 +40,8 @@ class RivalFit:
     requested."""
     intervals: Intervals = "none"
     """How the intervals were found."""
+    compared: bool = True
+    """Whether it is weighed; others are only listed, and decide nothing."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the explanation as JSON data."""
@@ -50,6 +52,7 @@ class RivalFit:
             "delta_aic": self.aic,
             "delta_bic": self.bic,
             "intervals": self.intervals,
+            "compared": self.compared,
             "parameters": {name: value.to_dict() for name, value in self.estimates.items()},
         }
 
@@ -69,6 +72,8 @@ class Comparison:
     """The explanation whose estimates count, if it is not an elastic solid under tension."""
     pull_off: str = ""
     """The pull-off force of an adhesive contact against its limits, in words."""
+    untried: str = ""
+    """An explanation that may be right and has no model, in words: nothing has an interval then."""
     margin: float = MARGIN
     """Difference of AIC below which explanations cannot be told apart."""
     unseen: tuple[str, ...] = ()
@@ -79,14 +84,14 @@ class Comparison:
     """The same of τ₀ [N/m], if a tension is needed."""
 
     @property
-    def best(self) -> RivalFit:
-        """The explanation with the least AIC."""
-        return self.fits[0]
+    def is_decided(self) -> bool:
+        """Whether the curves tell tension and none apart, and an explanation describes them."""
+        return self.verdict != "undecided" and not doubt_of_tension(self.failed_checks)
 
     @property
     def tied(self) -> tuple[RivalFit, ...]:
         """The explanations that the curves cannot tell from the best, the best included."""
-        return tuple(fit for fit in self.fits if fit.aic < self.margin)
+        return tuple(fit for fit in self.fits if fit.compared and fit.aic < self.margin)
 
     @property
     def alternatives(self) -> tuple[RivalFit, ...]:
@@ -96,10 +101,13 @@ class Comparison:
         it, and always if its effect is `unseen`: that bends a curve as a tension does, so that
         neither shows as long as the other is free.  Of curves that need no tension only other
         shapes count, which have no parameter more, and what is better than no effect by the margin.
+        A shape of unknown size, which determines no modulus, counts only if it is the one.
         """
         aic = {fit.rival.code: fit.aic for fit in self.fits}
 
         def counts(fit: RivalFit) -> bool:
+            if not (fit.compared and fit.rival.has_size):
+                return False
             if self.verdict == "not shown":
                 return fit.rival.of_shape or fit.aic + EFFECT_MARGIN <= aic[NONE.code]
             if fit.rival.code in self.unseen:
@@ -116,10 +124,12 @@ class Comparison:
         )
 
     def rows(self, *, si: bool = False) -> list[dict[str, str]]:
-        """Return a line of a table for each explanation."""
+        """Return a line of a table for each explanation, and which the modulus is told over."""
+        counted = [] if self.modulus is None else [fit.rival.code for fit in self.alternatives]
         return [
             {
                 "model": fit.rival.words,
+                "counts": "yes" if fit.rival.code in counted else "",
                 "χ²": decimal(fit.chi_squared, 4),
                 "ΔAIC": decimal(fit.aic, 3),
                 "ΔBIC": decimal(fit.bic, 3),

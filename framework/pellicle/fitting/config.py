@@ -206,6 +206,12 @@ class FitConfig(FromFile, Calibration):
                 "needs pool = true; fits of single curves always have these intervals",
                 "contact_points",
             )
+        if self.compare and TENSION.name in self.fix:
+            raise ConfigError(
+                "weighs a tension that is fitted against its rivals, and fix.tension fixes it; "
+                "leave out compare or fix.tension (--compare or --fix tension in a shell)",
+                "compare",
+            )
         if self.thickness is not None:
             self._solid = self._layer()
         if self.kernel is not None:

@@ -187,17 +187,21 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
     )
     best = profile.best.parameters
     modulus, tension = profile.estimate(MODULUS), profile.estimate(TENSION)
-    doubt, rivals = doubt_of_tension(single.failed_checks), None
-    if TENSION in likelihood.free and (problem.compare or doubt or tension.low is not None):
+    rivals, fails = None, doubt_of_tension(single.failed_checks)
+    is_doubtful = fails or tension.low is not None
+    if TENSION in likelihood.free and (problem.compare or is_doubtful):
         rivals = compare(
             likelihood,
             profile.best,
             profile.without_tension,
             threshold=threshold,
+            elastic_fails=fails,
             full=problem.compare,
-            pairs=problem.compare,
+            counts=is_doubtful,
             report=report,
         )
+    if rivals is not None and rivals.untried:
+        modulus, tension = modulus.without_interval(), tension.without_interval()
     words, undecided = advice(likelihood, best, modulus, tension)
     return Fit(
         reduced_modulus=modulus,
@@ -217,7 +221,6 @@ def fit_problem(problem: FitProblem, report: Callable[[str], None] = lambda stag
         parameters_without_tension=profile.without_tension.parameters,
         rise=threshold,
         failed_checks=single.failed_checks,
-        doubt=doubt,
         rivals=rivals,
         contact_point=profile.estimate(CONTACT_POINT),
         offset=profile.estimate(OFFSET),

@@ -20,6 +20,7 @@ from pellicle.components import Component, Say
 from pellicle.components.calls import outcomes_of
 from pellicle.errors import PellicleError
 from pellicle.files import atomic_write, check_writable, write_json
+from pellicle.plugins import registry
 from pellicle.results import storage
 from pellicle.results.variables import header
 from pellicle.runs.lock import locked
@@ -27,15 +28,16 @@ from pellicle.runs.progress import StudyProgress
 
 from .config import FitConfig
 from .curves.sources import Curves, Source, SourceStream
-from .fit import Fit, fit_problem
-from .models.adhesive import WORK_OF_ADHESION
+from .fit import fit_problem
 from .population.images import force_maps
 from .population.judgement import Row, group_of, group_pattern, judge, read_names
 from .population.sketch import Sketch, from_json, of_curve, to_json
 from .population.summary import Quartiles, summary
 from .population.table import table
 from .problem import FitProblem, problems
-from .record import Stopwatch, data_of
+from .record import Stopwatch, components_of, data_of
+from .statistics.chi_squared import Minimum
+from .statistics.profile import curvature_interval, estimate_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -281,28 +283,32 @@ def _keep(fits: ManyFits, number: int, outcome: dict[str, Any]) -> None:
 
 
 def work(task: FitTask, say: Say) -> dict[str, Any]:
-    """Fit a curve in a worker."""
+    """Fit a curve in a worker, and return its row: the chosen model, and the verdict on a tension.
+
+    Where that is not an elastic solid under tension, the estimates of one are under ``elastic``.
+    """
     fit = fit_problem(task.problem)
-    likelihood, best = fit.likelihood, fit.parameters
+    row, likelihood, best = fit.to_dict(), fit.likelihood, fit.parameters
+    if fit.chosen is not None:
+        likelihood, best = fit.chosen.rival.of_curve(likelihood), fit.chosen.parameters
+        row["elastic"] = {name: row[name] for name in fit.estimates()}
+        row["chi_squared"] = likelihood.chi_squared(best)
+        minimum, bounds = Minimum(best, row["chi_squared"]), likelihood.deviations(best)
+        for p in likelihood.parameters:
+            if p.name in row["elastic"]:
+                # A comparison seeks no interval of contact point and baseline.
+                ends = curvature_interval(p, minimum, bounds, fit.rise)
+                row[p.name] = estimate_of(p, likelihood, minimum, ends, bounds).to_dict()
+        row |= row["chosen"]["parameters"]
     residuals = likelihood.misfit(best)
     scatter = likelihood.force - np.mean(likelihood.force)
     _, force = likelihood.fitted(best)
-    return (
-        fit.to_dict()
-        | _adhesion(fit)
-        | {
-            "r_squared": 1 - float(residuals @ residuals) / float(scatter @ scatter),
-            "indentation": float(np.max(likelihood.depth(best))),
-            "largest_force": float(np.max(force)),
-            "sketch": to_json(likelihood.position, likelihood.force, force),
-        }
-    )
-
-
-def _adhesion(fit: Fit) -> dict[str, Any]:
-    """Return the work of adhesion of the chosen model, if it has one."""
-    estimate = fit.chosen_estimates().get(WORK_OF_ADHESION.name)
-    return {} if estimate is None else {WORK_OF_ADHESION.name: estimate.to_dict()}
+    return row | {
+        "r_squared": 1 - float(residuals @ residuals) / float(scatter @ scatter),
+        "indentation": float(np.max(likelihood.depth(best))),
+        "largest_force": float(np.max(force)),
+        "sketch": to_json(likelihood.position, likelihood.force, force),
+    }
 
 
 def _identity(config: FitConfig, source: Source, problem: FitProblem) -> str:
@@ -310,7 +316,9 @@ def _identity(config: FitConfig, source: Source, problem: FitProblem) -> str:
     options = config.model_dump(mode="json", exclude=_WITHOUT_EFFECT, fallback=str)
     curve = problem.curve
     of_curve = (dict(source.fields), curve.is_depth, curve.stiffness, curve.messages)
-    digest = hashlib.sha256(repr((version("pellicle"), options, of_curve)).encode())
+    plugins = registry().versions(components_of(config) - {type(config.executor)})
+    versions = version("pellicle"), sorted(plugins.items())
+    digest = hashlib.sha256(repr((versions, options, of_curve)).encode())
     if not isinstance(config.indenter, (Component, Mapping)):
         digest.update(pickle.dumps(config.indenter))
     for values in (curve.position, curve.force, *([] if curve.time is None else [curve.time])):

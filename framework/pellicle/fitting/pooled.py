@@ -36,9 +36,6 @@ from .statistics.profile import (
 )
 from .wording import column_scale, interval_text
 
-_NAMED = 5
-"""Largest number of failing curves that a message names."""
-
 
 @dataclass(frozen=True)
 class PooledCurve:
@@ -215,7 +212,10 @@ def _fit_pool(
 ) -> PooledFit:
     """Return the pooled fit of curves that were each fitted on their own."""
     report("least squares")
-    pool = Pool.of([single.likelihood for _, single in singles])
+    members = [single.likelihood for _, single in singles]
+    # Where times are not known, all curves have one speed, at which the longest takes 1 s.
+    longest = max(float(np.ptp(member.base)) for member in members)
+    pool = Pool.of([replace(m, duration=float(np.ptp(m.base)) / longest) for m in members])
     start = pool.initial_minimum([single.parameters for _, single in singles])
     own = [
         best_minimum(single.likelihood, (single.parameters, part))
@@ -238,19 +238,25 @@ def _fit_pool(
     ]
     _, shapes = check_shape(pool, profile.best)
     advice, undecided = pooled_advice(modulus, tension)
-    doubt, rivals = _doubt(curves) or doubt_of_tension(shapes), None
+    rivals, failing = None, sum(map(_fails, curves))
     agree = excess.factor == 1
     worst = max(curves, key=lambda curve: curve.chi_squared - curve.chi_squared_alone)
-    if TENSION in pool.free and (compared or doubt or not agree or tension.low is not None):
+    fails = doubt_of_tension(shapes) or is_beyond_chance(failing, len(curves)) or not agree
+    is_doubtful = fails or tension.low is not None
+    if TENSION in pool.free and (compared or is_doubtful):
         rivals = compare(
             pool,
             profile.best,
             profile.without_tension,
             threshold=usual,
+            elastic_fails=fails,
             full=compared,
-            pairs=compared or not agree,
+            pairs=not agree,
+            counts=is_doubtful,
             report=report,
         )
+    if rivals is not None and rivals.untried:
+        modulus, tension = modulus.without_interval(), tension.without_interval()
     return PooledFit(
         reduced_modulus=modulus,
         tension=tension,
@@ -263,7 +269,6 @@ def _fit_pool(
         parameters_without_tension=profile.without_tension.parameters,
         rise=threshold,
         failed_checks=tuple(shapes),
-        doubt=doubt,
         rivals=rivals,
         curves=tuple(curves),
         agreement=excess.agreement(worst.name),
@@ -302,18 +307,7 @@ def _curve(
     )
 
 
-def _failures(curve: PooledCurve) -> list[FailedCheck]:
-    """Return the checks of the model that a curve fails on its own."""
+def _fails(curve: PooledCurve) -> bool:
+    """Return whether a curve fails a check of the model on its own."""
     # The shape is judged for all curves together.
-    return [check for check in curve.failed_checks if check.of_model and check.code != "shape"]
-
-
-def _doubt(curves: Sequence[PooledCurve]) -> str:
-    """Return why the curves are not evidence of a tension, if too many fail a check."""
-    failing = [curve for curve in curves if _failures(curve)]
-    if not is_beyond_chance(len(failing), len(curves)):
-        return ""
-    names = ", ".join(curve.name for curve in failing[:_NAMED])
-    more = ", …" if len(failing) > _NAMED else ""
-    reason = doubt_of_tension([check for curve in failing for check in _failures(curve)])
-    return f"{reason}; {len(failing)} of {len(curves)} curves fail it: {names}{more}"
+    return doubt_of_tension([check for check in curve.failed_checks if check.code != "shape"])

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from pellicle.components import Component
 from pellicle.config.provenance import versions
 from pellicle.errors import ConfigError, StorageError
+from pellicle.model.paths import walk
 from pellicle.plugins import registry
 
 from .config import FitConfig
@@ -56,7 +57,7 @@ class Stopwatch:
         libraries = {entry["library"] for entry in entries if entry["library"]}
         return Record(
             entries,
-            versions(_components(config), libraries),
+            versions(components_of(config), libraries),
             datetime.now(UTC).isoformat(timespec="seconds"),
             round(perf_counter() - self._began, 3),
         )
@@ -73,10 +74,10 @@ def data_of(curve: Curve, config: FitConfig) -> dict[str, Any]:
     }
 
 
-def _components(config: FitConfig) -> set[type[Component]]:
+def components_of(config: FitConfig) -> set[type[Component]]:
     """Return the components that a fit uses; of some only the tables are known."""
-    tables = [entry for entry in (config.indenter, config.kernel) if isinstance(entry, Mapping)]
-    types = {table["type"] for table in tables}
+    fields = walk({"indenter": config.indenter, "kernel": config.kernel})
+    types = {value for path, value, _ in fields if path.endswith(".type")}
     named = {
         registered.component
         for family in registry().components.values()

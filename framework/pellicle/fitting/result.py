@@ -60,8 +60,6 @@ class FitResult:
     """Δχ² threshold, reached at the ends of the intervals."""
     failed_checks: tuple[FailedCheck, ...]
     """Checks that the residuals fail; their sentences are among the messages."""
-    doubt: str
-    """Why a better fit with tension is not evidence of a tension; empty if it is."""
     thickness: Estimate | None = field(default=None, kw_only=True)
     """h [m], if the solid is a bonded layer with a force curve."""
     config: FitConfig | None = field(default=None, kw_only=True)
@@ -102,8 +100,8 @@ class FitResult:
     @property
     def comparison(self) -> str:
         """Whether tension is needed, in words."""
-        tension, gain = self.tension, self._gain
-        figures = f"Δχ² = {decimal(gain, 3)}, ΔAIC = {decimal(gain - 2, 3)}"
+        tension, (gain, lead) = self.tension, self._gains
+        figures = f"Δχ² = {decimal(gain, 3)}, ΔAIC = {decimal(lead, 3)}"
         if tension.held and not tension.value:
             return "tension is fixed at 0, so whether it is needed was not tested"
         if tension.held:
@@ -118,9 +116,10 @@ class FitResult:
         return f"{self._subject} not show tension ({figures}), nor set a bound on it"
 
     @property
-    def _gain(self) -> float:
-        """Decrease of χ² by the tension."""
-        return self.chi_squared_without_tension - self.chi_squared
+    def _gains(self) -> tuple[float, float]:
+        """Decrease of χ² and of AIC by the tension, which is no parameter where it is held."""
+        gain = self.chi_squared_without_tension - self.chi_squared
+        return gain, gain if self.tension.held else gain - 2
 
     @property
     def sentences(self) -> list[str]:
@@ -143,7 +142,7 @@ class FitResult:
         if self.rivals.tension is not None:
             ranges += f" and the tension {_range(self.rivals.tension, si)}"
         count = len(self.rivals.alternatives)
-        return f"over the {count} models that the data cannot tell apart, {ranges}"
+        return f"over {count} models that the data cannot tell apart, {ranges}"
 
     @property
     def all_messages(self) -> list[str]:
@@ -179,11 +178,12 @@ class FitResult:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
+        gain, lead = self._gains
         result = {name: value.to_dict() for name, value in self.estimates().items()} | {
             "chosen": self._chosen_block(),
             "confidence": CONFIDENCE,
             "chi_squared": self.chi_squared,
-            "without_tension": {"delta_chi_squared": self._gain, "delta_aic": self._gain - 2},
+            "without_tension": {"delta_chi_squared": gain, "delta_aic": lead},
             "tension_needed": self.tension_needed,
             "comparison": self.comparison,
             "advice": self.advice,

@@ -13,7 +13,7 @@ from .comparison import EFFECT_MARGIN, Comparison, RivalFit, Verdict
 from .statistics.chi_squared import ChiSquared
 from .statistics.experiments import advised
 from .statistics.noise import FailedCheck, doubt_of_tension
-from .statistics.rivals import MARGIN, NONE, TENSED
+from .statistics.rivals import MARGIN, NONE, TENSED, untried_beside_tension
 
 MANY_MARGIN = 12.0
 """Difference of AIC by which the best of many rivals must beat no effect at all."""
@@ -31,11 +31,22 @@ class Decision(NamedTuple):
     """AIC of the latter over that of the former."""
 
 
-def decision(aic: Mapping[str, float], *, doubted: bool, margin: float) -> Decision:
+_UNWEIGHED = (
+    "unless the sensitivity is off by some per cent, the tip is worn or the surface is stiffer "
+    "than the bulk: these were not weighed, so check the sensitivity on a hard surface and the tip "
+    "in an image"
+)
+"""What bends curves as a tension does and is no rival of it."""
+
+
+def decision(
+    aic: Mapping[str, float], *, doubted: bool, margin: float, elastic_fails: bool = False
+) -> Decision:
     """Return the verdict on a tension by Akaike's criteria of explanations, by their names.
 
-    ``doubted`` tells whether the best fails a check of its residuals.  Explanations that differ by
-    less than ``margin`` cannot be told apart.
+    ``doubted`` and ``elastic_fails`` tell whether the best, and an elastic solid under tension,
+    fail a check of their residuals.  Explanations that differ by less than ``margin`` cannot be
+    told apart.
     """
     ranked = sorted(aic, key=aic.__getitem__)
 
@@ -56,7 +67,7 @@ def decision(aic: Mapping[str, float], *, doubted: bool, margin: float) -> Decis
     elif aic[NONE.code] - aic[tensed] < EFFECT_MARGIN:
         # The best of many rivals beats a clean curve by more than one of them does.
         verdict = "other" if aic[other] + MANY_MARGIN <= aic[NONE.code] else "not shown"
-    elif abs(lead) >= margin:
+    elif abs(lead) >= margin and not (elastic_fails and lead > 0):
         verdict = "needed" if lead > 0 else "other"
     return Decision(verdict, tensed, other, lead)
 
@@ -66,11 +77,12 @@ def judge(
     fits: Sequence[RivalFit],
     failed: Sequence[FailedCheck],
     threshold: float,
+    elastic_fails: bool = False,
 ) -> Comparison:
     """Return the verdict on explanations of the curves of a χ².
 
-    ``fits`` are sorted by their criterion; ``failed`` are the checks that the best one fails;
-    ``threshold`` is Δχ² at the ends of intervals.
+    ``fits`` are sorted by their criterion; ``failed`` are the checks that the best one fails, and
+    an elastic solid under tension may fail some; ``threshold`` is Δχ² at the ends of intervals.
     """
     # With noise from few rows intervals are wider, and that of a tension that is needed leaves 0
     # out.
@@ -78,11 +90,15 @@ def judge(
     by_code = {fit.rival.code: fit for fit in fits}
     doubted = bool(doubt_of_tension(failed))
     aic = {code: fit.aic for code, fit in by_code.items()}
-    verdict, tensed_code, other_code, lead = decision(aic, doubted=doubted, margin=margin)
+    verdict, tensed_code, other_code, lead = decision(
+        aic, doubted=doubted, margin=margin, elastic_fails=elastic_fails
+    )
     tensed, other, none = by_code[tensed_code], by_code[other_code], by_code[NONE.code]
     curves = "this curve" if len(chi_squared.members) == 1 else "these curves"
     chosen: RivalFit | None = None
-    sentence = advice = ""
+    sentence = advice = untried = ""
+    if doubted or (verdict == "undecided" and lead >= margin):
+        untried = untried_beside_tension(chi_squared)
     if doubted or verdict == "undecided":
         chosen = fits[0] if by_code[TENSED.code].aic >= margin else None
     if doubted:
@@ -98,6 +114,12 @@ def judge(
                 f"{other.rival.words} describes {curves} better than {tensed.rival.words} "
                 f"(ΔAIC = {decimal(-lead, 3)}), so this is not evidence of a tension"
             )
+    elif verdict == "undecided" and lead >= margin:
+        sentence = (
+            f"{curves} cannot tell: {tensed.rival.words} is the best explanation (ΔAIC = "
+            f"{decimal(lead, 3)} against {other.rival.words}, the best without tension), but a "
+            "tension alone fails a check, so what else bends the force may stand for it too"
+        )
     elif verdict == "undecided":
         without = [fit for fit in fits if not fit.rival.has_tension]
         tied = [fit for fit in without if abs(fit.aic - tensed.aic) < margin]
@@ -108,9 +130,20 @@ def judge(
         sentence = f"{curves} cannot tell {tensed.rival.words} from {_listed(names)}"
         explanations = [(fit.rival, fit.parameters) for fit in (tensed, *tied)]
         advice = advised(chi_squared, explanations[0], explanations[1:])
+    if untried:
+        sentence = f"{sentence}; {untried}, so there are no intervals"
     if chosen is not None and chosen.rival == TENSED:
         chosen = None
-    return Comparison(tuple(fits), verdict, sentence, advice, tuple(failed), chosen, margin=margin)
+    return Comparison(
+        tuple(fits),
+        verdict,
+        sentence,
+        advice,
+        tuple(failed),
+        chosen,
+        margin=margin,
+        untried=untried,
+    )
 
 
 def _undescribed(curves: str, best: RivalFit, failed: Sequence[FailedCheck]) -> str:
@@ -127,8 +160,9 @@ def _undescribed(curves: str, best: RivalFit, failed: Sequence[FailedCheck]) -> 
 
 def _needed(tensed: RivalFit, other: RivalFit, none: RivalFit, lead: float) -> str:
     """Return by how much an explanation with tension beats none and the best without."""
+    gain = none.chi_squared - tensed.chi_squared
     sentence = (
-        f"tension is needed (Δχ² = {decimal(none.chi_squared - tensed.chi_squared, 3)}, "
+        f"tension is needed, {_UNWEIGHED} (Δχ² = {decimal(gain, 3)}, "
         f"ΔAIC = {decimal(none.aic - tensed.aic, 3)} against none; "
         f"ΔAIC = {decimal(lead, 3)} against {other.rival.words}, the best without it)"
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,8 +17,18 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
+from pellicle.fitting.alternatives import reported_estimates
+from pellicle.fitting.comparison import Comparison, RivalFit
+from pellicle.fitting.config import FitConfig
 from pellicle.fitting.many import fit_sources
 from pellicle.fitting.models.force_model import tension_model
+from pellicle.fitting.population.judgement import judge
+from pellicle.fitting.population.summary import summary
+from pellicle.fitting.population.table import table
+from pellicle.fitting.statistics.chi_squared import Minimum
+from pellicle.fitting.statistics.likelihood import Likelihood
+from pellicle.fitting.statistics.rivals import NONE
+from pellicle.plugins import Registry
 from pellicle_plugins.indenters.paraboloid import Paraboloid
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
@@ -114,6 +124,60 @@ def test_what_is_done_is_kept(cli: Cli, tmp_path: Path) -> None:
     assert "2 of 3 fits were done before" in again.output
     assert "done before" not in cli(*common, "--baseline", "offset").output
     assert len(list(Path("out/curves").iterdir())) == 6
+
+
+def test_a_row_is_that_of_the_chosen_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here a solid without tension is chosen, whose figures are those of a fit without one."""
+
+    def compared(likelihood: Likelihood, best: Minimum, without: Minimum, **_: Any) -> Comparison:
+        """Choose the solid without tension."""
+        parts = without.chi_squared, 0.0, 0.0, without.parameters
+        chosen = RivalFit(NONE, *parts, reported_estimates(NONE.of(likelihood), without, {}))
+        return Comparison((chosen,), "other", "", "", (), chosen)
+
+    monkeypatch.setattr("pellicle.fitting.fit.compare", compared)
+    curves = {"a": curve(1), "b": curve(2)}
+    config = FitConfig(indenter=Paraboloid(radius=RADIUS))
+    row, *_ = fits = fit_sources(config, config.sources(curves), None, progress=False).rows
+    fixed = pl.fit_many(curves, config=config, fix={"tension": 0}, progress=False)
+    assert row["chosen"]["model"] == "none"
+    for name in ("reduced_modulus", "contact_point", "tension"):
+        assert row[name]["value"] == pytest.approx(float(fixed[name][0]), rel=1e-4)
+        assert row["elastic"][name]["value"] != row[name]["value"]
+    for name in ("r_squared", "indentation", "largest_force"):
+        assert row[name] == pytest.approx(float(fixed[name][0]), rel=1e-4)
+    # Intervals are by the noise of the solid under tension here.
+    low, high = (row["contact_point"][end] for end in ("low", "high"))
+    assert low < row["contact_point"]["value"] < high
+    judge(fits, [], None, None)
+    assert {part.parameter for part in summary(fits)} == {"reduced_modulus"}
+    assert str(table(fits)["chosen_model"].values[0]) == "none"
+
+
+def test_another_version_of_a_plugin_is_another_fit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is kept of an indenter is not that of its next version; that of an executor is."""
+    releases: dict[type, str] = {Paraboloid: "1", Keeps: "1"}
+
+    def versions(self: object, used: Collection[type]) -> dict[str, str]:
+        """Return the releases of the distributions of components."""
+        return {kind.__name__: releases[kind] for kind in releases if kind in used}
+
+    def fits() -> int:
+        """Fit a curve, and return how many fits are kept."""
+        bead, fixed = Paraboloid(radius=RADIUS), {"tension": 0}
+        options: dict[str, Any] = {"directory": tmp_path, "progress": False, "executor": Keeps()}
+        pl.fit_many({"a": curve(1)}, indenter=bead, fix=fixed, **options)
+        return len(list((tmp_path / "curves").iterdir()))
+
+    monkeypatch.setattr(Registry, "versions", versions)
+    monkeypatch.setattr("pellicle.fitting.report.population.save_population", lambda *_: ())
+    assert fits() == 1
+    releases[Keeps] = "2"
+    assert fits() == 1
+    releases[Paraboloid] = "2"
+    assert fits() == 2
 
 
 class Stiffer:

@@ -217,6 +217,14 @@ def test_what_is_said(fit: pl.PooledFit) -> None:
     assert [sample["model"]["indenter"]["radius"] for sample in entries] == list(RADII)
 
 
+def test_curves_without_times_have_one_speed(fit: pl.PooledFit) -> None:
+    """The approaches of a small and of a large bead do not take the same time."""
+    speeds = [float(np.median(member.history.velocity)) for member in fit.pool.members]
+    travels = [float(np.ptp(member.base)) for member in fit.pool.members]
+    assert max(travels) > 5 * min(travels)
+    assert max(speeds) == pytest.approx(min(speeds), rel=0.01)
+
+
 def test_curves_that_disagree() -> None:
     """Two solids are not one: that is said, and the intervals are widened."""
     random = np.random.default_rng(5)

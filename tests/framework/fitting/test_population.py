@@ -34,6 +34,8 @@ from pellicle.fitting.population.judgement import (
 from pellicle.fitting.population.rules import Rule, values
 from pellicle.fitting.population.summary import summary
 from pellicle.fitting.report.contact_sheet import sheets
+from pellicle.fitting.report.distributions import drawable
+from pellicle.fitting.report.sentences import sentences_of_population
 from pellicle.runs.lock import locked
 from tests.framework.fitting.test_many import OPTIONS, curve, save
 
@@ -44,12 +46,13 @@ Row = dict[str, Any]
 FIXED = (*OPTIONS, "--fix", "tension=0")
 
 
-def row(name: str, modulus: float | None = 1e3, **others: Any) -> Row:
+def row(name: str, modulus: float | None = 1e3, *, is_open: bool = False, **others: Any) -> Row:
     """Return the row of a curve."""
     result: Row = {"curve": name, "status": "fitted", "group": "", **others}
     if modulus is None:
         return result | {"status": "failed: no contact"}
-    estimate = {"value": modulus, "low": 0.9 * modulus, "high": None, "bound": 1.0}
+    high = None if is_open else 1.1 * modulus
+    estimate = {"value": modulus, "low": 0.9 * modulus, "high": high, "bound": 1.0}
     result["reduced_modulus"] = estimate | {"unit": "Pa", "held": False}
     return {"r_squared": 0.99, "chi_squared": 50.0, "points": 50} | result
 
@@ -74,7 +77,7 @@ def row(name: str, modulus: float | None = 1e3, **others: Any) -> Row:
 def test_rules(rule: str, holds: bool) -> None:
     """A rule compares numbers and quantities; no rule holds of an open end or a missing number."""
     Rule(rule).check()
-    objection = Rule(rule).objection(values(row("a")))
+    objection = Rule(rule).objection(values(row("a", is_open=True)))
     assert (not objection) == holds
     assert holds or objection.endswith(f"against {rule}")
 
@@ -152,6 +155,22 @@ def test_outliers_are_kept() -> None:
     # Equal moduli have no deviation to compare with, and four have no majority.
     assert not outliers([row("a")] * 9 + [row("b", 2e3)])
     assert not outliers([row("a", v) for v in (1e3, 1.01e3, 0.99e3, 1e6)])
+
+
+def test_open_intervals_have_no_median() -> None:
+    """Their values are some of many: they are counted, and change no statistics."""
+    rows = [row(f"{k}", modulus) for k, modulus in enumerate((1e3, 1.1e3, 1.2e3, 1.3e3, 1.4e3))]
+    rows += [row(f"open {k}", 1e6, is_open=True) for k in range(5)]
+    judge(rows, [], None, None)
+    assert not any(r["outlier"] for r in rows)
+    (part,) = summary(rows)
+    assert (part.n, part.open, part.median, part.maximum) == (10, 5, 1.2e3, 1.4e3)
+    assert "1.2 kPa (1.1 to 1.3; open in 5 of 10)" in sentences_of_population(ManyFits(rows))
+    (part,) = summary(rows[5:])
+    assert (part.n, part.open, np.isnan(part.median)) == (5, 5, True)
+    for r in rows:
+        r["tension"] = r["reduced_modulus"] | {"unit": "N/m"}
+    assert [r["curve"] for r in drawable(rows)] == list("01234")
 
 
 def test_nothing_is_left() -> None:

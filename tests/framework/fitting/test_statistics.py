@@ -224,6 +224,15 @@ def test_punch_cannot_tell_modulus_and_tension_apart() -> None:
     assert fixed.reduced_modulus.value == pytest.approx(8e3, rel=0.01)
 
 
+def test_a_fixed_tension_costs_no_parameter() -> None:
+    """AIC falls by as much as χ²: nothing was fitted."""
+    curve = synthetic(0.3, points=60)
+    for tension in (0.0, 0.3 * RADIUS * MODULUS_TRUE / 2):
+        gain = fitted(*curve, fix={"tension": tension}).to_dict()["without_tension"]
+        assert gain["delta_aic"] == gain["delta_chi_squared"]
+        assert (gain["delta_aic"] > 100) == (tension > 0)
+
+
 def test_deep_curve_leaves_tension_open() -> None:
     """Where tension hardly counts, its interval reaches 0, and a shallower range is advised."""
     fit = fitted(*synthetic(0.003))

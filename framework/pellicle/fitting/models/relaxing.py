@@ -21,6 +21,10 @@ _RAMP, _DWELL, _BACK = 72, 24, 60
 """Nodes of the path while the indenter moves in, dwells and moves out."""
 _MODULI = 6
 """Effective moduli between which the force is interpolated."""
+_ROUNDS = 4
+"""Rounds of the fixed point of the effective modulus, each some ten times nearer."""
+TENSED_ACCURACY = 5e-3
+"""Error of the force beside a tension over the largest one, by runs of the solver."""
 _STEP = 1e-4
 """Step of numerical derivatives, of the contact point over the depth, and of other coordinates."""
 _EARLIEST = 1e-4
@@ -52,8 +56,6 @@ class _Loading(NamedTuple):
     """[s]."""
     depth: Array
     """[m]."""
-    elastic_force: Array
-    """Force of the elastic solid without tension over E* [m²]."""
     log_modulus: Array
     """Logarithm of the effective modulus over E*, of shape (n − 1,): not at the first touch."""
 
@@ -77,12 +79,18 @@ class RelaxingModel(ABC):
 
     Without tension it is the solution of Lee & Radok (1960) for a growing contact and of Ting
     (1966) for a shrinking one.  Their force over that of an elastic solid at the depth at which the
-    growing contact was as large is an effective modulus, with which the tension acts: exact where
-    there is no tension, where nothing relaxes, and where everything has relaxed.
+    growing contact was as large is an effective modulus M.  Beside a tension F = M a(δ, s) with
+    s = 2τ₀/M, and M a(δ, s) = ∫ E(t − t′) da(δ(t′), s): the integral of Lee & Radok over the force
+    curve under the tension of the moment.  That is exact where there is no tension, where nothing
+    relaxes and where everything has relaxed, and `TENSED_ACCURACY` says how good it is between.
+    It holds for growing contacts alone: as one shrinks, the skin keeps it where a bare solid lets
+    go.
     """
 
     elastic: TensionModel
     history: History
+    tensed: bool = False
+    """Whether the tension is fitted too."""
     coarse: ClassVar[None] = None
     on_base: ClassVar[bool] = False
     own: ClassVar[tuple[Parameter, ...]]
@@ -100,8 +108,8 @@ class RelaxingModel(ABC):
 
     @property
     def accuracy(self) -> float:
-        """Error of the hereditary integrals relative to the largest force."""
-        return 1e-4
+        """Error of the force relative to the largest one."""
+        return TENSED_ACCURACY if self.tensed else 1e-4
 
     @abstractmethod
     def primitive(self, time: Array, values: Values) -> Array:
@@ -127,7 +135,7 @@ class RelaxingModel(ABC):
 
         The balance of a cantilever varies the depths of rows only.
         """
-        key = (point, *(values[p] for p in self.own))
+        key = (point, values[TENSION] / values[MODULUS], *(values[p] for p in self.own))
         if key not in self._recent:
             self._recent.clear()
             self._recent[key] = self._course(point, values)
@@ -147,17 +155,23 @@ class RelaxingModel(ABC):
             CONTACT_POINT: np.zeros_like(at.force),
         }
         deepest = max(float(depth.max()), float(np.ptp(depth)) * _STEP)
-        for parameter in (CONTACT_POINT, *self.own):
+        tension, modulus = values[TENSION], values[MODULUS]
+        varied = (CONTACT_POINT, *self.own, *((TENSION,) if tension else ()))
+        for parameter in varied:
             # A position is varied at equal depths, so that only the time in contact changes.
             step = _STEP * (deepest if parameter == CONTACT_POINT else 1.0)
-            if parameter.logarithmic:
+            if parameter.logarithmic or parameter == TENSION:
                 step *= values[parameter]
             other = {**values, parameter: values[parameter] + step}
-            varied = self._course(other[CONTACT_POINT], other)
-            # The course alone depends on these parameters, the force curve does not.
-            change = at.by_modulus * values[MODULUS] * (varied.modulus - course.modulus)
-            path = self._path(varied, depth) - self._path(course, depth)
-            derivatives[parameter] = (change + at.by_path * path) / step
+            course_there = self._course(other[CONTACT_POINT], other)
+            # This is what the course changes; tension and modulus change the force curve too.
+            change = at.by_modulus * modulus * (course_there.modulus - course.modulus)
+            path = self._path(course_there, depth) - self._path(course, depth)
+            by_course = (change + at.by_path * path) / step
+            derivatives[parameter] = derivatives.get(parameter, 0.0) + by_course
+            if parameter == TENSION:
+                # The course depends on both through their ratio.
+                derivatives[MODULUS] = derivatives[MODULUS] - by_course * tension / modulus
         return derivatives
 
     def at_rows(self, rows: NDArray[np.intp]) -> RelaxingModel:
@@ -184,15 +198,10 @@ class RelaxingModel(ABC):
             return _PathForce(
                 effective * curve.force, by_path * chain, curve.force, 2 * curve.by_length, by_path
             )
-        low, high = float(effective.min()), float(effective.max())
-        if high <= low * (1 + 1e-9):
-            nodes = np.array([modulus * float(course.modulus[0])])
-        else:
-            x = np.polynomial.chebyshev.chebpts1(_MODULI)
-            nodes = np.exp(np.log(low) + (x + 1) / 2 * np.log(high / low))
-        weights = _lagrange(np.log(nodes), np.log(effective))
+        nodes = _nodes(float(np.log(effective.min())), float(np.log(effective.max())))
+        weights = _lagrange(nodes, np.log(effective))
         force = np.zeros((4, depth.size))
-        for weight, node in zip(weights, nodes.tolist(), strict=True):
+        for weight, node in zip(weights, np.exp(nodes).tolist(), strict=True):
             length = 2 * tension / node
             curve = self.elastic.force_curve(path, length)
             # Forces over the modulus vary less than the forces.
@@ -230,17 +239,28 @@ class RelaxingModel(ABC):
         dwell = top + (end - top) * np.linspace(0, 1, _DWELL + 1)[1:] ** 2
         t = np.concatenate([ramp, dwell]) if end > top else ramp
         z = np.maximum.accumulate(history.positions(t, point) - point)
-        # Equal depths of the elastic solid without tension.
-        g = self.elastic.force_curve(z, 0.0).force
-        force = self._hereditary(t[1:], t, g, values)
+        weights = self._weights(t[1:], t, values)
+        log_modulus = self._log_modulus(weights, t, z, 0.0)
+        if length := 2 * values[TENSION] / values[MODULUS]:
+            # The effective modulus sets the length for which it is found: a fixed point.
+            nodes = _nodes(float(log_modulus.min()), float(log_modulus.max()))
+            at_nodes = [self._log_modulus(weights, t, z, length / np.exp(x)) for x in nodes]
+            for _ in range(_ROUNDS):
+                log_modulus = np.sum(_lagrange(nodes, log_modulus) * at_nodes, axis=0)
+        return _Loading(t, z, log_modulus)
+
+    def _log_modulus(self, weights: Array, t: Array, z: Array, length: float) -> Array:
+        """Return the logarithm of ∫ E(t − t′) da / E* a(t), a at times t, depths z and s."""
+        area = self.elastic.force_curve(z, length).force
         with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.where(g[1:] > 0, force / g[1:], np.nan)
-        return _Loading(t, z, g, _filled(np.log(np.maximum(ratio, 1e-12))))
+            ratio = np.where(area[1:] > 0, weights @ _rates(t, area) / area[1:], np.nan)
+        return _filled(np.log(np.maximum(ratio, 1e-12)))
 
     def _unloading(self, course: Course, loading: _Loading, point: float, values: Values) -> Course:
         """Return the response, completed at the rows at which the contact shrinks."""
         history, times = self.history, self.history.time
-        t, z, g, log_modulus = loading
+        t, z, log_modulus = loading
+        g = self.elastic.force_curve(z, 0.0).force
         end, (back_times, back_positions) = history.loading_path[0][-1], history.unloading_path
         u = end + (back_times[-1] - end) * np.linspace(0, 1, _BACK + 1)[1:] ** 1.5
         back = np.concatenate([[end], u])
@@ -273,12 +293,6 @@ class RelaxingModel(ABC):
         primitive = self.primitive(lag, values)
         weights: Array = primitive[:, :-1] - primitive[:, 1:]
         return weights
-
-    def _hereditary(self, at: Array, times: Array, course: Array, values: Values) -> Array:
-        """Return ∫ E(t − t′) dg / E* up to times ``at``, of a course g linear between times."""
-        rates = _rates(times, course)
-        total: Array = self._weights(at, times, values) @ rates
-        return total
 
     def _unloaded(
         self, at: Array, t: Array, z: Array, g: Array, back: Array, y: Array, values: Values
@@ -369,6 +383,14 @@ def _rates(times: Array, values: Array) -> Array:
     steps = np.diff(times)
     rates: Array = np.where(steps > 0, np.diff(values) / np.maximum(steps, 1e-300), 0.0)
     return rates
+
+
+def _nodes(low: float, high: float) -> Array:
+    """Return nodes of an interpolation between two numbers; one if they are equal to rounding."""
+    if high <= low + 1e-9:
+        return np.array([low])
+    x: Array = np.polynomial.chebyshev.chebpts1(_MODULI)
+    return low + (x + 1) / 2 * (high - low)
 
 
 def _lagrange(nodes: Array, at: Array) -> Array:

@@ -12,7 +12,7 @@ from pellicle.fitting.curves.curve import Axis
 from pellicle.fitting.parameters import CONTACT_POINT, OFFSET, SLOPE
 
 from .judgement import Row
-from .rules import NUMBERS
+from .rules import NUMBERS, is_closed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -90,6 +90,7 @@ def _numbers(row: Row) -> list[tuple[str, str, float]]:
             )
             if name in (OFFSET.name, SLOPE.name):
                 continue
+            value = value if is_closed(entry) else np.nan
             if name == CONTACT_POINT.name:
                 name, low, value, high = CONTACT_HEIGHT, -high, -value, -low
             for end, number in (("", value), ("_low", low), ("_high", high)):

@@ -17,7 +17,7 @@ from pellicle.errors import ConfigError, StorageError, shown
 from pellicle.files import read_text
 from pellicle.fitting.parameters import MODULUS
 
-from .rules import Rule, values
+from .rules import Rule, is_closed, values
 
 GROUP = "{group}"
 """The part of a pattern of file names that is the name of the group."""
@@ -181,9 +181,11 @@ def _reason(
 def outliers(rows: Sequence[Row]) -> list[Row]:
     """Return the rows whose log E* is further from the median than 3.5 robust deviations.
 
+    Rows with an open interval of it are left out.
     The deviation is 1.4826 times the median absolute deviation, which some of the outliers
     themselves do not change (Iglewicz and Hoaglin, 1993).
     """
+    rows = [row for row in rows if is_closed(row[MODULUS.name])]
     if len(rows) < _FEWEST:
         return []
     logarithms = np.log([row[MODULUS.name]["value"] for row in rows])

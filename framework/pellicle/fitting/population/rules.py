@@ -72,6 +72,14 @@ def values(row: Row) -> dict[str, float]:
     return numbers | {name: _number(pair.get(name)) for name in ("delta_chi_squared", "delta_aic")}
 
 
+def is_closed(estimate: Mapping[str, Any]) -> bool:
+    """Return whether a fitted parameter has both ends of its interval.
+
+    The value of an open interval is one of many that describe the curve as well.
+    """
+    return not estimate["held"] and None not in (estimate["low"], estimate["high"])
+
+
 def _number(value: float | None) -> float:
     return np.nan if value is None else float(value)
 

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .rules import is_closed
+
 ALL = "all"
 """Name of the line of all accepted curves."""
 _DRAWN = ("reduced_modulus", "youngs_modulus", "tension", "work_of_adhesion")
@@ -22,6 +24,8 @@ class Quartiles(NamedTuple):
     """Number of curves of the group, accepted or not."""
     n: int
     """Number of accepted curves."""
+    open: int
+    """How many of them have an open interval; their values, some of many, are left out."""
     outliers: int
     minimum: float
     lower_quartile: float
@@ -33,7 +37,7 @@ class Quartiles(NamedTuple):
 def summary(rows: Sequence[Mapping[str, Any]]) -> list[Quartiles]:
     """Return a line for each parameter and group that has an accepted curve, then for all curves.
 
-    Parameters that were fixed have none.
+    Parameters that were fixed have none.  Where all intervals are open, quartiles are NaN.
     """
     groups = list(dict.fromkeys(row["group"] for row in rows))
     several = groups if len(groups) > 1 else []
@@ -45,7 +49,8 @@ def summary(rows: Sequence[Mapping[str, Any]]) -> list[Quartiles]:
             whole = [row for row in whole if not row[name]["held"]]
             if not whole:
                 continue
-            values = [row[name]["value"] for row in whole]
+            values = [row[name]["value"] for row in whole if is_closed(row[name])]
+            quartiles = np.quantile(values or np.nan, (0, 0.25, 0.5, 0.75, 1))
             lines.append(
                 Quartiles(
                     label(group) if group is not None else ALL,
@@ -53,8 +58,9 @@ def summary(rows: Sequence[Mapping[str, Any]]) -> list[Quartiles]:
                     whole[0][name]["unit"],
                     len(members),
                     len(whole),
+                    len(whole) - len(values),
                     sum(row["outlier"] for row in whole),
-                    *np.quantile(values, (0, 0.25, 0.5, 0.75, 1)).tolist(),
+                    *quartiles.tolist(),
                 )
             )
     return lines

@@ -45,7 +45,7 @@ def _numbers(values: Iterable[float | None], unit: str = "1") -> _Column:
 
 
 def _of_fits(rows: list[Row]) -> _Columns:
-    """Return the estimates of the model of all curves, and how well it describes them."""
+    """Return the estimates of the model of each curve, and how well it describes the curve."""
     columns: _Columns = {}
     units = {
         name: value["unit"]
@@ -68,10 +68,9 @@ def _of_fits(rows: list[Row]) -> _Columns:
 def _of_models(rows: list[Row]) -> _Columns:
     """Return the model chosen for each curve, its modulus, and the evidence of a tension."""
     columns = {"chosen_model": _texts(row.get("chosen", {}).get("model", "") for row in rows)}
-    chosen = [row.get("chosen", {}).get("parameters", {}).get("reduced_modulus") for row in rows]
-    for end in ("value", "low", "high"):
-        name = f"chosen_reduced_modulus{'' if end == 'value' else f'_{end}'}"
-        columns[name] = _numbers((e and e[end] for e in chosen), "Pa")
+    for key, end in (("value", ""), ("low", "_low"), ("high", "_high")):
+        moduli = (row.get("reduced_modulus", {}).get(key) for row in rows)
+        columns[f"chosen_reduced_modulus{end}"] = _numbers(moduli, "Pa")
     for name, unit in (("reduced_modulus", "Pa"), ("tension", "N/m")):
         tied = [row.get("rivals", {}).get(name) or {} for row in rows]
         for end in ("low", "high"):

@@ -132,6 +132,8 @@ def _numbers(row: Row) -> str:
         if estimate and not (estimate["held"] and not estimate["value"]):
             factor, unit = axis_unit([estimate["value"]], estimate["unit"])
             texts.append(f"{symbol} {decimal(estimate['value'] * factor, 3)} {unit}")
+    if "elastic" in row:
+        texts.append(f"by {row['chosen']['model']}")
     if "r_squared" in row:
         texts.append(f"R² {row['r_squared']:.4f}")
         texts.append(f"χ²/n {decimal(row['chi_squared'] / row['points'], 3)}")

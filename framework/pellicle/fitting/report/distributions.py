@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import compress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.fitting.parameters import MODULUS, TENSION, Parameter
 from pellicle.fitting.population.judgement import Row
+from pellicle.fitting.population.rules import is_closed
 from pellicle.fitting.population.summary import label
 from pellicle.units import axis_unit
 
@@ -29,8 +31,9 @@ _RASTERISED = 1000
 
 
 def drawable(rows: Sequence[Row]) -> list[Row]:
-    """Return the rows of accepted curves, which are those that are drawn."""
-    return [row for row in rows if row["accepted"]]
+    """Return the rows that are drawn: of accepted curves that have a closed interval."""
+    accepted = [row for row in rows if row["accepted"]]
+    return [row for row in accepted if any(is_closed(row[p.name]) for p in (MODULUS, TENSION))]
 
 
 def distributions(rows: Sequence[Row], figure: FigureBase) -> None:
@@ -42,10 +45,11 @@ def distributions(rows: Sequence[Row], figure: FigureBase) -> None:
     labels = [label(name) for name in names[:_GROUPS]]
     if len(names) > _GROUPS:
         labels[-1] = f"{len(names) - _GROUPS + 1} other groups"
-    fitted = [p for p in (MODULUS, TENSION) if any(not row[p.name]["held"] for row in rows)]
+    fitted = [p for p in (MODULUS, TENSION) if any(is_closed(row[p.name]) for row in rows)]
     columns = figure.subplots(1, len(fitted) + (len(fitted) == 2), squeeze=False)[0]
     for parameter, axes in zip(fitted, columns, strict=False):
-        _histogram(axes, rows, parameter, kinds, labels)
+        closed = [is_closed(row[parameter.name]) for row in rows]
+        _histogram(axes, list(compress(rows, closed)), parameter, kinds[closed], labels)
     if len(fitted) == 2:
         _scatter(columns[-1], rows, kinds)
     if len(labels) > 1:

@@ -107,7 +107,8 @@ def _panels_of_population(fits: ManyFits) -> list[Panel]:
         drawings.append(Panel(partial(_estimates, fits.rows), caption))
     if distributions.drawable(fits.rows):
         caption = (
-            "Accepted curves, by group; dashed, the median; ringed, a modulus that stands out."
+            "Accepted curves, by group, in histograms those with closed intervals; dashed, the "
+            "median; ringed, a modulus that stands out."
         )
         draw = partial(distributions.distributions, fits.rows)
         drawings.append(Panel(draw, caption, distributions.SIZE))

@@ -46,6 +46,7 @@ def html_of_population(fits: ManyFits) -> str:
             f"{words(part.parameter)} [{scales[part.parameter].unit}]",
             part.group,
             f"{part.n} of {part.curves}",
+            str(part.open),
             *map(
                 scales[part.parameter].number,
                 (part.median, part.lower_quartile, part.upper_quartile),
@@ -53,7 +54,7 @@ def html_of_population(fits: ManyFits) -> str:
         ]
         for part in parts
     ]
-    heads = "parameter", "group", "accepted", "median", "lower quartile", "upper quartile"
+    heads = "parameter", "group", "accepted", "open", "median", "lower quartile", "upper quartile"
     title = f"Fits of {len(fits.rows)} curves"
     picture = _picture(panels(fits)[-1:])
     return summary(title, sentences_of_population(fits), heads, rows, picture=picture)

@@ -96,7 +96,7 @@ def _fit(fit: Fit | PooledFit) -> tuple[list[Block], list[Block]]:
     """Return results and inputs of a fit or a pooled fit."""
     results: list[Block] = [
         Text(sentence_of_fit(fit), lead=True),
-        Notice(_sentence(fit.comparison), good=not fit.doubt),
+        Notice(_sentence(fit.comparison), good=fit.rivals is None or fit.rivals.is_decided),
         *_rivals(fit),
     ]
     if isinstance(fit, Fit):
@@ -140,6 +140,10 @@ def _rows_of_curves(rows: Sequence[Row]) -> Table:
     columns[Column("curve", words=True)] = [row["curve"] for row in rows]
     if any(row["group"] for row in rows):
         columns[Column("group", words=True)] = [row["group"] for row in rows]
+    if any(row.get("elastic") for row in rows):
+        columns[Column("model", words=True)] = [
+            row.get("chosen", {}).get("model", "") for row in rows
+        ]
     for name, unit in _COLUMNS:
         estimates = [row.get(name) for row in rows]
         if any(estimates):
@@ -159,14 +163,14 @@ def _rows_of_curves(rows: Sequence[Row]) -> Table:
 
 def _groups(fits: ManyFits) -> Table:
     """Return median and quartiles of each parameter in each group."""
-    heads = ["parameter", "group", "accepted", "stand out", "median", "lower quartile"]
+    heads = ["parameter", "group", "accepted", "open", "stand out", "median", "lower quartile"]
     columns = [Column(head, words=head in heads[:2]) for head in [*heads, "upper quartile"]]
     rows, parts = [], fits.summary()
     scales = group_scales(parts)
     for part in parts:
         shown = scales[part.parameter]
         values = part.median, part.lower_quartile, part.upper_quartile
-        counts = [f"{part.n} of {part.curves}", str(part.outliers)]
+        counts = [f"{part.n} of {part.curves}", str(part.open), str(part.outliers)]
         numbers = map(shown.number, values)
         name = f"{words(part.parameter)} [{shown.unit}]"
         rows.append([name, part.group, *counts, *numbers])
@@ -260,11 +264,12 @@ def _rivals(fit: FitResult) -> list[Block]:
         return []
     rows = fit.rivals.rows()
     columns = {
-        Column(head, words=head in ("model", "parameters")): [row[head] for row in rows]
+        Column(head, words=head in ("model", "counts", "parameters")): [row[head] for row in rows]
         for head in rows[0]
     }
-    table = _table("What describes the data, best first; below 6, ΔAIC is a tie.", columns)
-    pull_off = fit.rivals.pull_off
+    margin, pull_off = fit.rivals.margin, fit.rivals.pull_off
+    caption = f"What describes the data, best first; below {decimal(margin, 3)}, ΔAIC is a tie."
+    table = _table(caption, columns)
     return [*([Text(_sentence(pull_off))] if pull_off else []), table]
 
 

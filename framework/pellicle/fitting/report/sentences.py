@@ -10,7 +10,7 @@ from pellicle.fitting.population.summary import ALL, Quartiles
 from pellicle.fitting.result import FitResult
 from pellicle.fitting.statistics.profile import CONFIDENCE
 from pellicle.fitting.wording import in_words, words
-from pellicle.units import axis_unit, decimal
+from pellicle.units import axis_unit
 
 _GROUPS = 4
 """Groups of a population that are named in a sentence; of more, only all curves are."""
@@ -73,9 +73,9 @@ def sentences_of_population(fits: ManyFits) -> str:
 
 def _quartiles(part: Quartiles) -> str:
     """Return a median with its quartiles: ``5 mN/m (4.8 to 5.2)``."""
-    factor, unit = axis_unit(np.array([part.median or part.upper_quartile]), part.unit)
+    scale = axis_unit(np.array([part.median or part.upper_quartile]), part.unit)
     median, low, high = (
-        decimal(value * factor, 3)
-        for value in (part.median, part.lower_quartile, part.upper_quartile)
+        scale.number(value, 3) for value in (part.median, part.lower_quartile, part.upper_quartile)
     )
-    return f"{median} {unit} ({low} to {high})"
+    rest = f"; open in {part.open} of {part.n}" if part.open else ""
+    return f"{median} {scale.unit} ({low} to {high}{rest})"

@@ -65,7 +65,9 @@ def advised(
     likelihood = chi_squared.members[0]
     part = _of_first_curve(tensed[1])
     best: tuple[float, str] | None = None
-    for measurement in _measurements(likelihood, part[CONTACT_POINT]):
+    # A solid that relaxes under a tension, which no approach excludes, has no model of retraction.
+    relaxes = any(rival.relaxes for rival, _ in (tensed, *others))
+    for measurement in _measurements(likelihood, part[CONTACT_POINT], retracts=not relaxes):
         worth = np.inf
         for rival, parameters in others:
             known = _of_first_curve(parameters)
@@ -94,8 +96,8 @@ def _of_first_curve(parameters: Coordinates) -> Coordinates:
     return {p: coordinate for p, coordinate in parameters.items() if p.curve == 0}
 
 
-def _measurements(likelihood: Likelihood, point: float) -> Iterator[Measurement]:
-    """Yield measurements, the easiest first."""
+def _measurements(likelihood: Likelihood, point: float, *, retracts: bool) -> Iterator[Measurement]:
+    """Yield measurements, the easiest first, the retraction if it is to be among them."""
     base = likelihood.base
     down = np.linspace(base.min(), base.max(), _ROWS) - point
     times = likelihood.history.time
@@ -107,7 +109,7 @@ def _measurements(likelihood: Likelihood, point: float) -> Iterator[Measurement]
         np.concatenate([down, down[::-1]]),
         np.concatenate([forth, duration + forth]),
     )
-    if likelihood.segment == "approach":
+    if retracts and likelihood.segment == "approach":
         yield Measurement("the retraction", there_and_back, times_of_both, "both")
     dwell = np.concatenate([down, np.full(_ROWS, down[-1])])
     yield Measurement(

@@ -62,16 +62,18 @@ class Likelihood(ChiSquared):
     memory: float = 0.0
     """Exponent d of noise whose power falls as f^(−2d); ``noise`` is that of the differences which
     make it independent."""
+    duration: float = 1.0
+    """Time of an approach [s] where that of the rows is not known."""
 
     @cached_property
     def history(self) -> History:
         """Path in time, at constant speed if the time is not known."""
         time = self.time
         if time is None and self.segment == "both":
-            time = constant_speed(self.base)
+            time = self.duration * constant_speed(self.base)
         elif time is None:
             share = (self.base - self.base[0]) / np.ptp(self.base)
-            time = share if self.segment == "approach" else 1 - share
+            time = self.duration * (share if self.segment == "approach" else 1 - share)
         return History.of(self.position, time)
 
     @cached_property

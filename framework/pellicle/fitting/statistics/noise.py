@@ -66,15 +66,9 @@ def is_beyond_chance(failing: int, curves: int) -> bool:
     return failing > 0 and bool(bdtrc(failing - 1, curves, _FAILING) <= _RARE)
 
 
-def doubt_of_tension(failed: Sequence[FailedCheck]) -> str:
-    """Return why failed checks invalidate the evidence of a tension; empty if none does."""
-    codes = list(dict.fromkeys(check.code for check in failed if check.of_model))
-    if not codes:
-        return ""
-    if "adhesion" in codes:
-        return "no tension is needed where the force dips before contact: that is adhesion"
-    checks = "a check" if len(codes) == 1 else "checks"
-    return f"this is not evidence of one, because the model fails {checks} ({', '.join(codes)})"
+def doubt_of_tension(failed: Sequence[FailedCheck]) -> bool:
+    """Return whether failed checks are such that a better fit is not evidence of a tension."""
+    return any(check.of_model for check in failed)
 
 
 class Noise(NamedTuple):

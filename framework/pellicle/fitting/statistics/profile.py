@@ -66,6 +66,10 @@ class Estimate:
         """Return JSON data, with None for an open end or a bound that is infinite."""
         return vars(self) | {"bound": self.bound if np.isfinite(self.bound) else None}
 
+    def without_interval(self) -> Estimate:
+        """Return the value alone."""
+        return replace(self, low=None, high=None)
+
     def times(self, factor: float) -> Estimate:
         """Return the estimate of a multiple."""
         low, high = (None if end is None else end * factor for end in (self.low, self.high))

@@ -12,7 +12,7 @@ from pellicle.errors import PellicleError
 from pellicle.fitting.models.adhesive import WORK_OF_ADHESION, AdhesiveModel
 from pellicle.fitting.models.force_model import ForceModel, TensionModel
 from pellicle.fitting.models.layer import FreeLayerModel
-from pellicle.fitting.models.relaxing import RelaxingModel
+from pellicle.fitting.models.relaxing import EXPONENT, SHARE, RelaxingModel
 from pellicle.fitting.parameters import CONTACT_POINT, TENSION, THICKNESS, Coordinates, Parameter
 
 from .change_points import with_change_points
@@ -51,10 +51,17 @@ class Rival:
 
     of_shape: bool = False
     """Whether it is another shape, for which a tension can make up in any curve."""
+    has_size: bool = True
+    """Whether the size of a shape is known; otherwise it determines no modulus."""
     others: tuple[tuple[Rival, Minimum], ...] = ()
     """The same with more or fewer rows that touch, and their minima."""
     searched: int = 0
     """Number of parameters for which the rows in contact count that have been searched."""
+
+    @property
+    def relaxes(self) -> bool:
+        """Whether the solid relaxes."""
+        return not {EXPONENT, SHARE}.isdisjoint(self.own)
 
     @property
     def is_single(self) -> bool:
@@ -69,7 +76,8 @@ class Rival:
         """Return the likelihood of a curve with this model."""
         free = [p for p in likelihood.free if p != TENSION or self.has_tension]
         free += [p for p in (*self.own, *self.baseline) if p not in free]
-        return replace(likelihood, force_model=self.build(likelihood), free=tuple(free))
+        likelihood = replace(likelihood, free=tuple(free))
+        return replace(likelihood, force_model=self.build(likelihood))
 
     def start(self, chi_squared: ChiSquared, known: Coordinates) -> Coordinates:
         """Return coordinates for all parameters of a χ² of this model."""

@@ -19,11 +19,13 @@ from pellicle.fitting.models.relaxing import (
     RELAXATION_TIME,
     SHARE,
     PowerLawModel,
+    RelaxingModel,
     StandardLinearModel,
 )
 from pellicle.fitting.parameters import (
     OFFSET,
     SLOPE,
+    TENSION,
     THICKNESS,
     Coordinates,
 )
@@ -69,6 +71,11 @@ def _on_history(
     return lambda likelihood: model(elastic_of(likelihood), likelihood.history)
 
 
+def _relaxing(model: type[RelaxingModel]) -> Callable[[Likelihood], ForceModel]:
+    """Return what builds a model of a solid that relaxes."""
+    return lambda member: model(elastic_of(member), member.history, TENSION in member.free)
+
+
 def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
     """Yield the effects, other than a tension, that can bend the curves."""
     if any(p not in member.free for member in members for p in SLOPED.baseline):
@@ -76,7 +83,7 @@ def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
     if not all(isinstance(member.force_model, TensionModel) for member in members):
         return
     if all(member.segment != "retract" for member in members):
-        power_law, standard_linear = map(_on_history, (PowerLawModel, StandardLinearModel))
+        power_law, standard_linear = map(_relaxing, (PowerLawModel, StandardLinearModel))
         yield Rival("power_law", "power-law relaxation", False, power_law, (EXPONENT,))
         own = SHARE, RELAXATION_TIME
         yield Rival("standard_linear", "standard linear relaxation", False, standard_linear, own)
@@ -95,6 +102,17 @@ def _single_effects(members: Sequence[Likelihood]) -> Iterator[Rival]:
         for model in elastic
     ):
         yield Rival("thickness", "a thin layer", False, _layer, (THICKNESS,))
+
+
+def untried_beside_tension(chi_squared: ChiSquared) -> str:
+    """Return which effects are not tried beside a tension, in words; empty if all are."""
+    members = chi_squared.members
+    if not any(member.segment == "both" and member.history.unloading.any() for member in members):
+        return ""
+    return (
+        "relaxation beside a tension, whose force is not known while a contact shrinks, was not "
+        "tried"
+    )
 
 
 def _shapes(members: Sequence[Likelihood], deepest: float) -> Iterator[Rival]:
@@ -119,7 +137,8 @@ def _shapes(members: Sequence[Likelihood], deepest: float) -> Iterator[Rival]:
                 assert shape is not None
                 return ClosedFormModel(shape)
 
-            yield Rival(name, f"a {name}", False, build, of_shape=True)
+            words = f"a cone of {np.degrees(_CONE):g}°" if name == "cone" else f"a {name}"
+            yield Rival(name, words, False, build, of_shape=True, has_size=name != "cone")
 
 
 def _shape(name: str, indenter: object) -> HasForceCurve | None:
@@ -158,6 +177,7 @@ def rivals(chi_squared: ChiSquared, parameters: Coordinates) -> list[Rival]:
     members = chi_squared.members
     depths = [member.deepest(part) for member, part in chi_squared.curves(parameters)]
     effects = [*_single_effects(members), *_shapes(members, max(depths))]
+    untried = untried_beside_tension(chi_squared)
     pairs = [
         replace(
             effect,
@@ -166,6 +186,6 @@ def rivals(chi_squared: ChiSquared, parameters: Coordinates) -> list[Rival]:
             has_tension=True,
         )
         for effect in effects
-        if not effect.of_shape
+        if not (effect.of_shape or (effect.relaxes and untried))
     ]
     return [NONE, *effects, TENSED, *pairs]
