@@ -52,9 +52,10 @@ def _components() -> Iterator[str]:
             yield f"### `{registered.type}`\n"
             yield f"{_paragraphs(registered.component.__doc__)}\n"
             if issubclass(registered.component, pl.Prescription):
-                quantity = registered.component.quantity()
-                values = " ".join([*quantity.bounds, quantity.unit])
-                yield f"Key of `[loading]` for load steps {values}.\n"
+                prescription = registered.component
+                values = ", ".join([prescription.unit, *prescription.quantity().bounds])
+                pulls = "; with an `[interaction]` any" * prescription.may_pull
+                yield f"Key of `[loading]`. Load steps: {values}{pulls}.\n"
             yield fields(registered.component)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import reference_tables
+from scipy.special import beta
 
 import pellicle as pl
 from pellicle.arrays import Array
@@ -298,3 +300,53 @@ def test_a_power_law_solid_is_pressed_and_let_go() -> None:
     last = time[np.flatnonzero(force > 0)[-1]]
     assert last <= entry["t_end"] * t_max * 1.02
     assert last + t_max / steps >= entry["t_end"] * t_max * 0.98
+
+
+def page(name: str) -> str:
+    """Return a page on one line."""
+    return " ".join((DOCS / f"{name}.md").read_text(encoding="utf-8").split())
+
+
+def test_the_page_on_hertz_has_the_numbers_of_the_table() -> None:
+    """At the same depth tension adds to the force of Hertz and takes from the area."""
+    shares = []
+    for s_over_a in (0.03, 0.1, 1.0):
+        contact = row("tensed_paraboloid", s_over_a=s_over_a)
+        depth = contact["depth_over_Hertz"]
+        shares += [contact["F_over_Hertz"] / depth**1.5 - 1, 1 - 1 / depth]
+    claims = re.findall(r"(\d+) %", page("coming-from"))[: len(shares)]
+    assert [round(100 * share) for share in shares] == list(map(int, claims))
+
+
+def test_the_page_on_time_has_the_errors_of_a_first_step() -> None:
+    """The displacement of a first step is taken as linear, where it grows as the contact does."""
+    errors = [1 - 1 / (1.5 * (1 - k) * beta(1.5, 1 - k)) for k in (0.3, 0.5, 0.8)]
+    first, second, last = (f"{100 * error:.0f}" for error in errors)
+    claim = "exponent 0.3, 0.5 and 0.8 the first step gives "
+    assert f"{claim}{first}, {second} and {last} % too small a force" in page("time")
+
+
+@pytest.mark.slow
+def test_the_page_on_loading_says_how_much_too_large_a_counted_area_is() -> None:
+    """The count exceeds the area by a share of a cell over the radius, twice that under tension."""
+    claims = re.search(r"some ([\d.]+) Δ/a of .* contact, ([\d.]+) Δ/a under", page("loading"))
+    assert claims
+    radius = 1e-4
+    for claim, s_over_a in zip(map(float, claims.groups()), (0.0, 1.0), strict=True):
+        depth = row("tensed_paraboloid", s_over_a=s_over_a)["depth_over_Hertz"] * radius**2 / RADIUS
+        excess = []
+        for edge in np.linspace(2.3, 2.9, 24) * radius:
+            data = solved(
+                grid={"points": 48, "size": edge},
+                kernel={
+                    "type": "tensed_membrane",
+                    "reduced_modulus": MODULUS,
+                    "tension": s_over_a * radius * MODULUS / 2,
+                },
+                indenter={"type": "paraboloid", "radius": RADIUS},
+                loading={"depth": depth},
+            )
+            area = float(data["contact_area"][0])
+            excess.append((area / (np.pi * radius**2) - 1) * radius / (edge / 48))
+        # The area jumps by several cells, which scatters the mean by some 0.02.
+        assert abs(np.mean(excess) - claim) < 0.05

@@ -403,7 +403,7 @@ def test_the_example_of_a_type_is_valid(
     assert all(row.meaning and row.default for row in explanation.fields)
     data = tomllib.loads(explanation.example)
     if family == "prescription":
-        assert pl.Loading(**data["loading"]).prescribed == type_
+        assert pl.Loading(**data["loading"]).prescription.type_name == type_
         return
     table = data["study"][family] if "study" in data else data.get(family) or data[f"{family}s"][0]
     if type_ == "topography":
@@ -432,6 +432,16 @@ def test_tables_are_explained(cli: Cli, word: str, name: str) -> None:
         assert pl.Grid(**data["grid"]).points == (256, 256)
     elif word == "fit":
         assert FitConfig(**data).indenter
+
+
+def test_one_prescription_is_required_with_its_own_fields() -> None:
+    """No key of ``[loading]`` is required by itself: one of the prescriptions is."""
+    (explanation,) = explanations("loading", {})
+    default_by_name = {row.name: row.default for row in explanation.fields}
+    prescriptions = {name for name, default in default_by_name.items() if default == "one of these"}
+    assert prescriptions == {*pl.registry().components["prescription"]}
+    assert default_by_name["spring_constant"] == "with base_displacement"
+    assert "required" not in default_by_name.values()
 
 
 def test_explain_lists_what_it_explains(cli: Cli) -> None:

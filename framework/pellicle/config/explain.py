@@ -16,9 +16,10 @@ from pydantic.fields import FieldInfo
 from pellicle.components import FAMILIES, Component, Prescription
 from pellicle.errors import ConfigError, shown
 from pellicle.grid import Grid
+from pellicle.loading import OPTIONS
 from pellicle.model.messages import similar
 from pellicle.plugins import Registered, registry
-from pellicle.units import example, quantity_of, readable
+from pellicle.units import quantity_of, readable
 
 from .loading import Loading, loading_model
 from .run import Run
@@ -115,13 +116,18 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
         row for row in fields_of(model) if (model, row.name.partition(".")[0]) != (Study, "run")
     ]
     if model is Loading:
-        prescriptions = registry().components["prescription"]
-        rows = [
-            *(row for type_ in prescriptions for row in fields_of(loading_model(type_))[:1]),
-            *rows,
-        ]
+        rows = [*_prescription_rows(), *rows]
     table = _EXAMPLES.get(model, {})
     return Explanation(name, "table", "", _documentation(model), rows, _toml(table))
+
+
+def _prescription_rows() -> Iterator[FieldRow]:
+    """Yield the keys of which ``[loading]`` has one, each with the fields that it brings."""
+    for type_ in registry().components["prescription"]:
+        for row in fields_of(loading_model(type_)):
+            required = "one of these" if row.name == type_ else f"with {type_}"
+            if row.name not in OPTIONS:
+                yield row._replace(default=row.default.replace("required", required))
 
 
 def _of_family(family: str) -> Explanation:
@@ -134,18 +140,17 @@ def _of_family(family: str) -> Explanation:
 
 
 def _of_component(entry: Registered) -> Explanation:
-    model: type[BaseModel] = entry.component
     family = entry.component.family
-    if family == "prescription":
-        model = loading_model(entry.type)
+    model = loading_model(entry.type) if family == "prescription" else entry.component
     origin = f"{entry.origin.distribution} {entry.origin.version}"
+    refusal = "".join(f"\n# {line}" for line in refusal_of_example(entry.component).splitlines())
     return Explanation(
         entry.type,
         family,
         origin,
         _documentation(entry.component),
         fields_of(model),
-        _toml(example_table(entry)),
+        f"# none; it would be refused:{refusal}" if refusal else _toml(example_table(entry)),
     )
 
 
@@ -191,6 +196,10 @@ def _is_list(annotation: Any) -> bool:
     return get_origin(annotation) in (tuple, list) or any(map(_is_list, get_args(annotation)))
 
 
+def _takes_file(annotation: Any) -> bool:
+    return annotation is Path or any(map(_takes_file, get_args(annotation)))
+
+
 def _kind(annotation: Any) -> str:
     """Return the kind of value of a field without a unit, in words."""
     if get_origin(annotation) is Literal:
@@ -210,12 +219,25 @@ def _kind(annotation: Any) -> str:
     return " or ".join(kinds)
 
 
+def refusal_of_example(component: type[Component]) -> str:
+    """Return why a component refuses the values of its example; empty if it takes them."""
+    files = {name for name, i in component.model_fields.items() if _takes_file(i.annotation)}
+    try:
+        component(**dict(example_values(component)))
+    except ConfigError as error:
+        # The file that it names is the user's to give.
+        return "" if files.issuperset(field for field, _ in error.problems) else str(error)
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+    return ""
+
+
 def example_table(entry: Registered) -> Mapping[str, Any]:
     """Return a table of a run file that uses a component, with its required fields only."""
     component = entry.component
     values = dict(example_values(component))
     if issubclass(component, Prescription):
-        return {"loading": {entry.type: [example(component.unit)], **values}}
+        return {"loading": {entry.type: [component.quantity().example], **values}}
     table = {"type": entry.type, **values}
     if component.family == "executor":
         return {"study": {"executor": table}}

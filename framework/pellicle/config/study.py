@@ -83,7 +83,7 @@ def _same_length(table: Axes) -> None:
 class Study(FromFile):
     """A run whose parameters vary: one run for each combination of values.
 
-    All runs are created, and so validated, with the study; they are in `points`.
+    All runs are created, and so validated, with the study.
     """
 
     run: Annotated[

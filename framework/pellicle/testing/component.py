@@ -14,6 +14,7 @@ import tomli_w
 from pydantic import ValidationError
 
 from pellicle.components import FAMILIES, Component
+from pellicle.config.explain import refusal_of_example
 from pellicle.errors import ConfigError, PellicleError
 from pellicle.plugins import GROUP, checked_type, registry
 from pellicle.units import Quantity
@@ -161,6 +162,12 @@ def schema_tells_the_fields(component: Component) -> None:
     require(_table(component).keys() <= fields, f"a component is written as {_table(component)}")
 
 
+def takes_its_example(component: Component) -> None:
+    """The class takes the values that `pellicle explain` prints as its example."""
+    reason = refusal_of_example(type(component))
+    require(not reason, f"{reason}; give tied fields Field(examples=[…]) that agree")
+
+
 def libraries_are_installed(component: Component) -> None:
     """Each of the class's `libraries`, whose versions results record, is installed."""
     for name in component.libraries:
@@ -211,5 +218,6 @@ RULES: list[Rule] = [
     goes_through_toml,
     unknown_field_is_refused,
     schema_tells_the_fields,
+    takes_its_example,
     libraries_are_installed,
 ]

@@ -123,10 +123,9 @@ class ActiveSet(ScaledSolver):
 
     1. An inner solve ends as soon as it is certain which cells are misclassified. Cells of
        uncertain sign stay as they are, so that an inexact solve does not scatter the contact.
-    2. The pressure of cells that leave is transferred to those around them (see
-       `OnContact.transferred`).
+    2. The pressure of cells that leave is transferred to those around them.
     3. With bending stiffness the state of one cell decides that of the next ones, and cells change
-       sides together in a local relaxation (see `relaxed`).
+       sides together in a local relaxation.
     4. When a contact recurs, one cell at a time changes sides (Murty 1974) until fewer cells are
        misclassified than ever before.
     """

@@ -4,15 +4,18 @@ The built-in components, which break none, are checked in tests/contracts.
 """
 
 import threading
+import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import pytest
-from pydantic import ConfigDict, Field, SerializationInfo, model_serializer
+from pydantic import ConfigDict, Field, SerializationInfo, model_serializer, model_validator
 
 import pellicle as pl
+from pellicle import ConfigError
+from pellicle.config import explain
 from pellicle.plugins import registry
 from pellicle.testing import component as component_rules
 from pellicle.units import Length
@@ -123,6 +126,26 @@ class TwoFaced(Paraboloid):
         return {"type": "two_faced", "radius": factor * self.radius}
 
 
+class Tied(Paraboloid):
+    """Paraboloid of two radii whose units give both the same example."""
+
+    type: Literal["tied"] = "tied"
+    outer: Annotated[Length, Field(description="radius beyond the flat [m]")]
+
+    @model_validator(mode="after")
+    def _check_radii(self) -> Self:
+        if self.outer <= self.radius:
+            raise ConfigError("has to exceed radius", "outer")
+        return self
+
+
+class Agreeing(Tied):
+    """Paraboloid of two radii with examples that agree."""
+
+    type: Literal["agreeing"] = "agreeing"  # type: ignore[assignment]
+    outer: Annotated[Length, Field(examples=["1 cm"], description="radius beyond the flat [m]")]
+
+
 class Welcoming(Paraboloid):
     """Paraboloid that takes any field."""
 
@@ -156,6 +179,7 @@ GENERAL: dict[str, tuple[Callable[[], Any], str]] = {
     "no TOML": (partial(Holey, radius=1e-3), "goes_through_toml"),
     "other schema": (partial(Hospitable, radius=1e-3), "schema_tells_the_fields"),
     "no such library": (partial(Wishful, radius=1e-3), "libraries_are_installed"),
+    "no such example": (partial(Tied, radius=1e-3, outer=1e-2), "takes_its_example"),
     "unknown fields": (partial(Welcoming, radius=1e-3), "unknown_field_is_refused"),
     "not registered": (partial(Stranger, radius=1e-3), "is_registered"),
     "type is taken": (partial(Usurper, radius=1e-3), "is_registered"),
@@ -173,6 +197,42 @@ def test_general_rule_is_checked(name: str) -> None:
     """What is wrong with a component of any family is caught by the rule that says so."""
     make, rule = GENERAL[name]
     assert f"breaks the rule {rule}\n" in complaint("indenter", make())
+
+
+def test_an_example_is_printed_only_if_it_makes_the_component(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where fields are tied their units give no example; examples that agree are printed."""
+    ours = registry()
+    more = {
+        component.model_fields["type"].default: replace(
+            ours.components["indenter"]["paraboloid"],
+            component=component,
+            type=component.model_fields["type"].default,
+        )
+        for component in (Tied, Agreeing)
+    }
+    changed = replace(ours, components={**ours.components, "indenter": more})
+    monkeypatch.setattr(explain, "registry", lambda: changed)
+    (tied,) = explain.explanations("tied", {})
+    assert tomllib.loads(tied.example) == {}
+    assert "outer: has to exceed radius" in tied.example
+    (agreeing,) = explain.explanations("agreeing", {})
+    table = tomllib.loads(agreeing.example)["indenter"]
+    assert Agreeing(**table).outer == 1e-2
+
+
+def test_the_example_of_a_prescription_is_one_of_its_values() -> None:
+    """The example of a pure number has no unit."""
+
+    class Share(base("prescription", "contact_area")):  # type: ignore[misc]
+        """Share of the domain in contact."""
+
+        unit: ClassVar[str] = "1"
+
+    entry = replace(registry().components["prescription"]["contact_area"], component=Share)
+    (value,) = explain.example_table(entry)["loading"]["contact_area"]
+    assert Share.quantity()(value) > 0
 
 
 def test_the_registry_makes_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
