@@ -89,6 +89,7 @@ def test_new_does_not_overwrite(cli: Cli) -> None:
     """`pellicle new` leaves a file that is there alone."""
     Path("mine.toml").write_text("mine", encoding="utf-8")
     assert "mine.toml exists already" in cli("new", "mine.toml", code=2).stderr
+    assert "mine.toml exists already" in cli("new", "mine", code=2).stderr
     assert Path("mine.toml").read_text(encoding="utf-8") == "mine"
     assert "no/mine.toml: cannot be written" in cli("new", "no/mine.toml", code=2).stderr
 

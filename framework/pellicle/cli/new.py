@@ -42,6 +42,9 @@ def new(
     ] = None,
 ) -> None:
     """Write a commented starter file, an example, or the package of a plugin."""
+    if path is not None and plugin is None and not path.suffix:
+        # The folder of results is named after the file without its suffix.
+        path = path.with_suffix(".toml")
     if example is not None:
         if plugin is not None:
             raise ConfigError("and --plugin exclude each other; give one of them", "--example")

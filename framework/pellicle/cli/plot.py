@@ -9,7 +9,6 @@ from typing import Annotated
 import typer
 
 from .printing import echo
-from .results import file_of_run
 
 
 class Format(StrEnum):
@@ -38,7 +37,7 @@ def plot(
 ) -> None:
     """Draw the figures of a result or of a study."""
     from pellicle.report.plotting import save_figures, save_study_figures
-    from pellicle.results.result import load
+    from pellicle.results.result import file_of_run, load
     from pellicle.studies.runner import is_table, read
 
     chosen = [str(format_) for format_ in formats or [Format.PNG]]

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from pellicle.errors import StorageError
-from pellicle.files import for_document, is_folder
+from pellicle.files import for_document
 
 from .exits import NOT_CONVERGED
 from .printing import echo, print_columns, print_json, print_warning
@@ -19,21 +18,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from pellicle.results.result import Result
-
-
-def file_of_run(path: Path) -> Path:
-    """Return the result file of a run's folder, or the path itself if it is not such a folder.
-
-    Raises
-    ------
-    StorageError
-        The folder holds several result files.
-    """
-    files = sorted(path.glob("*.h5")) if is_folder(path) else []
-    if len(files) > 1:
-        names = ", ".join(for_document(file.name) for file in files)
-        raise StorageError(f"{path}: holds several result files; give one of them: {names}")
-    return files[0] if files else path
 
 
 def print_origin(data: xr.Dataset) -> None:

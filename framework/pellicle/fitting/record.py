@@ -136,7 +136,7 @@ def repetition(path: Path) -> Repetition:
     StorageError
         The file cannot be read.
     """
-    content = _content(path)
+    content = content_of(path)
     rows = content.get("curves", [content])
     entries = [row.get("data") for row in rows if isinstance(row, dict)]
     hashes = {
@@ -158,7 +158,8 @@ def repetition(path: Path) -> Repetition:
     return Repetition(config, hashes, recorded if isinstance(recorded, dict) else {})
 
 
-def _content(path: Path) -> dict[str, Any]:
+def content_of(path: Path) -> dict[str, Any]:
+    """Return what the JSON file of a fit holds; it raises what `repetition` does."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:

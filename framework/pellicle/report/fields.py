@@ -125,13 +125,14 @@ def profile(result: Result, axes: Axes, step: int | None = None) -> None:
     """Draw pressure and gap along a line of cells in x, by default of `default_step`.
 
     The line goes through the centre of the domain, or, where it meets no contact there, through the
-    greatest pressure. With an interaction the contact is shaded.
+    greatest pressure, if there is any. With an interaction the contact is shaded.
     """
     step = default_step(result.dataset) if step is None else step
     data = without_round_off(result.dataset.isel(step=step))
     row = data.sizes["y"] // 2
-    if not data["contact"].isel(y=row).any():
-        row = int(np.abs(data["pressure"].values).max(axis=0).argmax())
+    peaks = np.abs(data["pressure"].values).max(axis=0)
+    if peaks.any() and not data["contact"].isel(y=row).any():
+        row = int(peaks.argmax())
     line = data.isel(y=row)
     gap = line["gap"].values
     pulls = has_interaction(data)

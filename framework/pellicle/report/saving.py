@@ -58,7 +58,12 @@ def save_pages(
     """
     from matplotlib.backends.backend_pdf import PdfPages
 
-    with atomic_write(path) as part, PdfPages(part, metadata={"CreationDate": None}) as file:
+    # The fonts are embedded as the file is closed, after the figures.
+    with (
+        atomic_write(path) as part,
+        FigureStyle().applied(),
+        PdfPages(part, metadata={"CreationDate": None}) as file,
+    ):
         for draw in draws:
             with _figure(draw, size) as figure:
                 file.savefig(figure)

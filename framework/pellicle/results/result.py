@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from pellicle.analysis import Oscillation
 from pellicle.errors import ConfigError, StorageError
+from pellicle.files import for_document, is_folder
 from pellicle.grid import Grid
 from pellicle.model.html import summary
 from pellicle.model.legs import number_of_steps
@@ -227,15 +228,30 @@ def first_message(steps: Sequence[tuple[int, str]]) -> str:
     return f"step {number}{f' and {len(others)} more' if others else ''}: {message}"
 
 
+def file_of_run(path: Path) -> Path:
+    """Return the result file of a run's folder, or the path itself if it is not such a folder.
+
+    Raises
+    ------
+    StorageError
+        The folder holds several result files.
+    """
+    files = sorted(path.glob("*.h5")) if is_folder(path) else []
+    if len(files) > 1:
+        names = ", ".join(for_document(file.name) for file in files)
+        raise StorageError(f"{path}: holds several result files; give one of them: {names}")
+    return files[0] if files else path
+
+
 def load(path: str | Path) -> Result:
-    """Return the result in a file that `Result.save` or a run wrote.
+    """Return the result in a file that `Result.save` or a run wrote, or in the folder of a run.
 
     Raises
     ------
     StorageError
         The file does not exist, is damaged, has another schema version, or is not a result.
     """
-    dataset = storage.read(Path(path))
+    dataset = storage.read(file_of_run(Path(path)))
     if problem := _damage(dataset):
         raise StorageError(f"{path}: {problem}, so it is damaged; run it again")
     return Result(dataset)

@@ -54,8 +54,13 @@ def opened(path: Path, kind: Literal["result", "table"] = "result") -> Iterator[
             raise ValueError("its configuration is not a table")
         if kind == "result" and "axes" in attributes:
             raise StorageError(
-                f"{path}: the table of a study, not a result; open it with xarray, or give one "
-                "of the results in runs/"
+                f"{path}: the table of a study, not a result; pellicle.run_study returns it, "
+                "xarray.load_dataset reads it, and runs/ holds the results"
+            )
+        if kind == "result" and "curve" in file:
+            raise StorageError(
+                f"{path}: the table of fits, not a result; pellicle show {path.parent} prints it, "
+                f"pellicle fit --again {path.with_suffix('.json')} -o {path.parent} draws figures"
             )
         if kind == "table" and "axes" not in attributes:
             raise StorageError(f"{path}: a result, not the table of a study")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import tempfile
 import threading
@@ -20,7 +21,7 @@ from pellicle.components import Output, Runs, Say
 from pellicle.components.calls import outcomes_of
 from pellicle.config.run import Run
 from pellicle.config.study import Study
-from pellicle.errors import ConfigError, ConvergenceWarning, StorageError
+from pellicle.errors import ConfigError, ConvergenceWarning, PluginError, StorageError
 from pellicle.files import check_writable, is_file, is_folder
 from pellicle.results import storage
 from pellicle.results.dimensions import with_paths, with_python_names
@@ -303,7 +304,25 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
     dataset = storage.table(whole)
     if problem := table.damage(dataset):
         raise StorageError(f"{whole}: {problem}, so it is damaged; run the study again")
-    return with_paths(dataset), whole.parent
+    rows = with_paths(dataset)
+    if Status.NOT_RUN.name in rows["status_code"].values:
+        rows = _completed(rows, whole.parent)
+    return rows, whole.parent
+
+
+def _completed(rows: xr.Dataset, directory: Path) -> xr.Dataset:
+    """Return the table with the steps in the files of its runs, which a kill leaves ahead of it."""
+    try:
+        study = Study.of(json.loads(rows.attrs["configuration"]))
+    except (ConfigError, PluginError):
+        # A file that it reads, or a plugin, may be gone.
+        return rows
+    current = table.StudyTable(study)
+    of_steps = rows[[name for name in rows.data_vars if "step" in rows[name].dims]]
+    for task in tasks(study, directory):
+        current.put(task.index, of_steps.isel(dict(zip(study.dimensions, task.index, strict=True))))
+        _collect(task, current)
+    return current.dataset().assign_attrs(rows.attrs)
 
 
 def is_table(path: Path) -> bool:

@@ -150,7 +150,7 @@ class Html(Output):
         return [
             Section("In short", [*sentences, _status(result), _setup(configuration)]),
             Section("Maps", [maps]),
-            Section("Curves", curves_of_run(result, chosen)),
+            Section("Curves", curves_of_run(result, chosen, maps.begin)),
             Section("Numbers", [*chain.from_iterable(numbers)]),
             Section("Inputs", [input_table(list(inputs(configuration)))]),
         ]

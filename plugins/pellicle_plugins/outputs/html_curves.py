@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pellicle.report.fields import default_step, profile
+from pellicle.report.fields import profile
 from pellicle.report.page import Picture
 from pellicle.report.plotting import TIME, drawings, study_curves, study_figures
 from pellicle.report.saving import svg
@@ -26,26 +26,28 @@ if TYPE_CHECKING:
 _PROFILES = 16
 """Largest number of load steps whose profile is on the page."""
 _CURVES = {
-    "profile": "Pressure and gap along x through the centre, at {step}.",
+    "profile": "Pressure and gap along x, at {step}.",
     "force_depth": "Force against depth over the load steps.",
     "area_force": "Contact area, of the cells and corrected, against force over the load steps.",
     TIME: "Force, depth and contact area over time.",
 }
 
 
-def curves_of_run(result: Result, chosen: list[int]) -> list[Picture]:
-    """Return the curves of a run, with marks at the ``chosen`` steps, which are mapped."""
+def curves_of_run(result: Result, chosen: list[int], begin: int) -> list[Picture]:
+    """Return the curves of a run, marked at ``chosen`` steps; the ``begin``-th is shown first."""
     fills = {name: fill for name, fill in drawings(result).items() if name in _CURVES}
     several = result.dataset.sizes["step"] > 1
     marks = partial(_marks, data=result.dataset, chosen=chosen)
     return [
-        _profiles(result, chosen) if name == "profile" else _picture(fill, _CURVES[name], marks)
+        _profiles(result, chosen, begin)
+        if name == "profile"
+        else _picture(fill, _CURVES[name], marks)
         for name, fill in fills.items()
         if several or name == "profile"
     ]
 
 
-def _profiles(result: Result, chosen: list[int]) -> Picture:
+def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
     """Return the profile of a step, and those that take its place while another is mapped.
 
     Where many steps are mapped, some have the profile of the nearest one, as the caption says.
@@ -57,12 +59,10 @@ def _profiles(result: Result, chosen: list[int]) -> Picture:
         caption = _CURVES["profile"].format(step=label)
         return _picture(lambda figure: profile(result, figure.add_subplot(), index), caption)
 
-    # The last step is drawn, and every `count`-th before it.
-    drawn = {index: picture(index) for index in chosen[::-1][::count]}
+    # The step whose map is shown first is drawn, and every `count`-th before and after it.
+    drawn = {index: picture(index) for index in chosen[begin % count :: count]}
     frames = [drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - index))] for index in chosen]
-    shown = default_step(result.dataset) % result.dataset.sizes["step"]
-    first = drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - shown))]
-    return replace(first, by_frame=frames if len(drawn) > 1 else ())
+    return replace(drawn[chosen[begin]], by_frame=frames if len(drawn) > 1 else ())
 
 
 def curves_of_study(table: xr.Dataset) -> list[Picture]:

@@ -262,6 +262,18 @@ def test_fitted_curve_of_a_cantilever_has_no_noise(points: int) -> None:
     assert likelihood.fitted(TRUTH)[0] == pytest.approx(POSITION, abs=1e-8 * FORCE.max() / SPRING)
 
 
+@pytest.mark.parametrize("points", [2 * SEEN[0].size, 501])
+def test_fitted_curve_of_both_passes_reaches_the_deepest_point(points: int) -> None:
+    """It goes in and back out along the true curve, also between the measured positions."""
+    path, pull = (np.concatenate([values, values[::-1]]) for values in (POSITION, FORCE))
+    likelihood = Likelihood(path, pull, tension_model(BEAD), 1e-10, tuple(TRUTH), segment="both")
+    position, force = likelihood.resampled(points).fitted(TRUTH)
+    assert force == pytest.approx(MODULUS * BEAD.force_curve(position, LENGTH).force)
+    assert position[[0, -1]] == pytest.approx(POSITION[0])
+    assert position.max() == pytest.approx(POSITION[-1])
+    assert (np.diff(position) >= 0).sum() == pytest.approx(points / 2, abs=2)
+
+
 def test_fits_of_cantilevers_are_drawn(tmp_path: Path) -> None:
     """Figures of one curve and of a pool know positions that hold the deflection."""
     options: dict[str, Any] = {

@@ -15,8 +15,10 @@ import numpy as np
 import pytest
 from click.testing import Result
 from numpy.typing import NDArray
+from typer.testing import CliRunner
 
 import pellicle as pl
+from pellicle.cli import app
 from pellicle.errors import ConfigError, StorageError
 from pellicle.fitting import many
 from pellicle.fitting.curves.curve import Curve
@@ -192,11 +194,24 @@ def test_files(cli: Cli, tmp_path: Path) -> None:
     with Path("out/fits-groups.csv").open(encoding="utf-8", newline="") as file:
         groups = [(line["group"], line["n"]) for line in csv.DictReader(file)]
     assert groups == [("$a", "2"), ("b", "1"), ("all", "3")]
-    assert Path("out/fits-curves.pdf").read_bytes().startswith(b"%PDF")
+    sheet = Path("out/fits-curves.pdf").read_bytes()
+    assert sheet.startswith(b"%PDF")
+    # Of the letters of a font of Type 3 beyond Latin-1, and of ligatures, no text can be copied.
+    assert b"/Type3" not in sheet
     assert Path("out/fits.png").is_file()
     page = Path("out/fits.html").read_text(encoding="utf-8")
     for words in ("slipped", "lower quartile", "Each curve with its fit"):
         assert words in page
+    shown = CliRunner().invoke(app, ["show", "out"])
+    assert shown.exit_code == 1
+    assert [Path(line.split()[0]).name for line in shown.stdout.splitlines()[1:6]] == list(table)
+    assert "1 fitted curve was rejected" in shown.stderr
+    as_json = CliRunner().invoke(app, ["show", "out", "--json"])
+    assert json.loads(as_json.stdout) == json.loads(Path("out/fits.json").read_bytes())
+    for command in (["show", "out/fits.h5"], ["plot", "out"]):
+        refusal = CliRunner().invoke(app, command)
+        assert refusal.exit_code == 2
+        assert "the table of fits" in refusal.stderr
     # Another choice costs no fit.
     notes = cli(*arguments, "--accept", "r_squared > 2", code=1).stderr
     assert "none of 5 curves was accepted" in notes

@@ -289,7 +289,7 @@ def test_what_was_prescribed_is_named(tmp_path: Path) -> None:
     assert [frame["label"] for frame in page.maps["frames"]] == ["1: force 1 µN", "2: force 2 µN"]
     caption = "Contact pressure and gap at prescribed force, in each load step, "
     assert caption + "each in colours over its own range." in page.words
-    assert "along x through the centre, at force 2 µN." in page.words
+    assert "along x, at force 2 µN." in page.words
     assert re.match(r"At force 2 µN: depth \S+ µm, contact radius", page.maps["frames"][1]["note"])
 
 
@@ -697,7 +697,7 @@ def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset]) -> N
     assert shown_marks(browser) == {"0"}
     assert browser.find_element(By.CSS_SELECTOR, ".note").text.startswith("At depth 5 µm: force")
     profile = browser.find_element(By.CSS_SELECTOR, "figure.follows")
-    assert profile.text == "Pressure and gap along x through the centre, at depth 5 µm."
+    assert profile.text == "Pressure and gap along x, at depth 5 µm."
     of_first = profile.find_element(By.CSS_SELECTOR, "img").get_attribute("src")
     select.send_keys(Keys.ARROW_DOWN)
     WebDriverWait(browser, 20).until(lambda _: profile.text.endswith("at depth 10 µm."))

@@ -270,9 +270,10 @@ class Likelihood(ChiSquared):
         return self._balanced(parameters)[0] - self.force
 
     def resampled(self, points: int) -> Likelihood:
-        """Return the same with forces interpolated at evenly spaced positions of the base."""
-        base = np.linspace(self.base[0], self.base[-1], points)
-        force = np.interp(base, self.base, self.force)
+        """Return the same with positions of the base and forces interpolated between the rows."""
+        row = np.arange(self.force.size)
+        between = np.linspace(0, row[-1], points)
+        base, force = (np.interp(between, row, values) for values in (self.base, self.force))
         position = base - force / self.stiffness if self.stiffness else base
         return replace(self, position=position, force=force)
 
