@@ -5,11 +5,12 @@ from __future__ import annotations
 import pytest
 
 from tests.physics.frozen.fit_curves import CASES
-from tests.physics.frozen.fit_record import LAYERS, differences, fit, stored
+from tests.physics.frozen.fit_layers import LAYERS, differences, fit
+from tests.physics.frozen.store import stored
 
-FROZEN = stored()
+FROZEN = stored("fits")
 AT_ONCE = ("elastic", "adhesion, strong", "layer, thick", "depth known", "slope, baseline fitted")
-AGAIN = "if that is right: python tests/physics/frozen/fit_record.py"
+AGAIN = "if that is right: python tests/physics/frozen/record.py fits"
 
 
 @pytest.mark.parametrize(

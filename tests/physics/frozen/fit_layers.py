@@ -1,26 +1,15 @@
-"""Record the frozen values of fits anew, and print what has changed.
-
-    python tests/physics/frozen/fit_record.py
-
-What has changed by no more than its layer allows is left as it stands.
-"""
+"""What is frozen of fits, in layers of their own tolerances, and what counts as a change."""
 
 from __future__ import annotations
 
-import json
-import sys
 from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-FOLDER = Path(__file__).parent
-sys.path[:0] = [str(FOLDER.parents[2])]
-
-from tests.physics.frozen import fit_reader as reader  # noqa: E402
-from tests.physics.frozen.fit_curves import (  # noqa: E402
+from tests.physics.frozen import fit_reader as reader
+from tests.physics.frozen.fit_curves import (
     CASES,
     DRAG,
     HERTZ,
@@ -32,22 +21,7 @@ from tests.physics.frozen.fit_curves import (  # noqa: E402
     case,
 )
 
-FILE = FOLDER / "fits.json"
 RELAXING = {"power_law", "standard_linear"}
-NOT_FROZEN = {
-    "tension beside relaxation on unloading rows": (
-        "its force is off by 8 to 37 % of the largest; a freeze of wrong answers is no oracle"
-    ),
-    "the interval of one parameter from another noise": (
-        "headline and comparison take noises of their own, the rewrite takes one; the reader "
-        "leaves out the headline's where they differ"
-    ),
-    "adhesion beside a fitted baseline under a cantilever": (
-        "the offset moves the tip for its rivals and not for adhesion, which are two instruments"
-    ),
-}
-"""Not frozen, will change: what the stored values leave out, and why."""
-
 # --- What is recorded ------------------------------------------------------------------------
 
 VALUES = [
@@ -158,7 +132,7 @@ def fit(name: str) -> Any:
 
 
 def _excluded(curve: Case, effects: Collection[str]) -> bool:
-    """Return whether a model is among those that are `NOT_FROZEN`."""
+    """Return whether a model is of those that are not frozen, by the list in `not_frozen`."""
     baseline = curve.options.get("baseline") in ("offset", "slope")
     two_instruments = baseline and "spring_constant" in curve.options and "adhesion" in effects
     unloads = curve.options.get("segment") == "both"
@@ -310,7 +284,7 @@ def table_changes(name: str, old: Any, new: Any) -> Iterator[str]:
         yield f"{before} → {now}"
 
 
-# --- The file --------------------------------------------------------------------------------
+# --- The layers ------------------------------------------------------------------------------
 
 Changes = Callable[[Any, Any], Iterator[str]]
 LAYERS: dict[str, tuple[Callable[[], Iterator[tuple[str, Any]]], Callable[[str], Changes]]] = {
@@ -324,12 +298,6 @@ LAYERS: dict[str, tuple[Callable[[], Iterator[tuple[str, Any]]], Callable[[str],
     "tables": (tables, lambda name: partial(table_changes, name)),
 }
 """Layers of the freeze: what yields their entries, and what compares two of a name."""
-
-
-def stored() -> dict[str, dict[str, Any]]:
-    """Return the recorded layers."""
-    values: dict[str, dict[str, Any]] = json.loads(FILE.read_text(encoding="utf-8"))
-    return values
 
 
 def differences(layer: str, old: Mapping[str, Any], new: Mapping[str, Any]) -> list[str]:
@@ -353,31 +321,3 @@ def rounded(value: Any) -> Any:
 
 def _digits(value: float, digits: int) -> float:
     return float(f"{value:.{digits}g}")
-
-
-def main() -> None:
-    """Write all layers, and print what has changed."""
-    old, new = stored() if FILE.exists() else {layer: {} for layer in LAYERS}, {}
-    for layer, (entries, changes) in LAYERS.items():
-        new[layer] = {name: rounded(value) for name, value in entries()}
-        for name, value in new[layer].items():
-            kept = old[layer].get(name)
-            if kept is not None and not [*changes(name)(kept, value)]:
-                new[layer][name] = kept
-        for text in differences(layer, old[layer], new[layer]):
-            sys.stdout.write(f"{layer}, {text}\n")
-    lines = [
-        f'"{layer}": {{\n'
-        + ",\n".join(
-            f"{json.dumps(name, ensure_ascii=False)}: "
-            + json.dumps(value, ensure_ascii=False, separators=(",", ":"))
-            for name, value in entries.items()
-        )
-        + "\n}"
-        for layer, entries in new.items()
-    ]
-    FILE.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()
