@@ -29,6 +29,8 @@ LONGEST = (
     "tests/physics/test_adhesion.py",
     "tests/framework/fitting/test_checks.py",
     "tests/framework/fitting/test_rivals.py",
+    "tests/physics/frozen/test_fits.py",
+    "tests/framework/sentences/test_sentences.py",
     "tests/contracts/test_kit.py",
     "tests/framework/test_memory.py",
     "tests/docs/test_studies.py",

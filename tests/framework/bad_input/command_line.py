@@ -1,33 +1,9 @@
-"""What the tests of bad input share: the start file, and the command line's answer to it."""
+"""What the tests of bad input share: the command line's answer."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-
-START = """
-title = "bad input"
-[grid]
-points = 16
-size = "0.4472 mm"
-boundary = "free"
-[kernel]
-type = "tensed_membrane"
-reduced_modulus = "10 kPa"
-tension = "1 N/m"
-[indenter]
-type = "paraboloid"
-radius = "1 mm"
-[loading]
-depth = ["10 um", "20 um"]
-[solver]
-type = "conjugate_gradient"
-tolerance = 1e-6
-[[corrections]]
-type = "yastrebov"
-[[outputs]]
-type = "hdf5"
-"""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,8 @@ import pytest
 from typer.testing import CliRunner
 
 from pellicle.cli import app
-from tests.framework.bad_input.command_line import START, Cli, Outcome
+from tests.framework.bad_input.command_line import Cli, Outcome
+from tests.framework.sentences.bad_files import START
 
 
 @pytest.fixture

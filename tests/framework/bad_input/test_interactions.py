@@ -1,6 +1,5 @@
 """Interactions that make no sense, and what does not go together with one."""
 
-from collections.abc import Callable
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -19,77 +18,6 @@ STICKY = {
     "solver": {"type": "active_set", "tolerance": 1e-6},
 }
 PERIODIC = {"points": 32, "size": "0.6 mm", "boundary": "periodic"}
-VALUES = {
-    "no work": (
-        "{type='jkr', work_of_adhesion=0}",
-        ["interaction.work_of_adhesion: 0 is not allowed; give a value > 0 J/m**2", "50 mJ/m^2"],
-    ),
-    "negative work": (
-        "{type='jkr', work_of_adhesion='-1 mJ/m^2'}",
-        ["interaction.work_of_adhesion: '-1 mJ/m^2' is not allowed; give a value > 0 J/m**2"],
-    ),
-    "not a number": (
-        "{type='jkr', work_of_adhesion=nan}",
-        ["interaction.work_of_adhesion: nan is not finite"],
-    ),
-    "force for work": (
-        "{type='jkr', work_of_adhesion='50 mN'}",
-        ["interaction.work_of_adhesion: '50 mN' is a force, not an energy per area", "'50 mJ/m^2'"],
-    ),
-    "work for strength": (
-        "{type='linear', work_of_adhesion='50 mJ/m^2', strength='50 mJ/m^2'}",
-        ["interaction.strength: '50 mJ/m^2' is a force per length, not a pressure", "'10 kPa'"],
-    ),
-    "work without a unit": (
-        "{type='jkr', work_of_adhesion='50'}",
-        ["interaction.work_of_adhesion: '50' is text without a unit"],
-    ),
-    "range and strength": (
-        "{type='linear', work_of_adhesion='50 mJ/m^2', strength='1 kPa', range='1 um'}",
-        ["interaction: range and strength are both given; give one of them"],
-    ),
-    "neither": (
-        "{type='dugdale', work_of_adhesion='50 mJ/m^2'}",
-        ["interaction: range and strength are both missing; give one of them"],
-    ),
-    "no range": (
-        "{type='exponential', work_of_adhesion='50 mJ/m^2'}",
-        ["interaction.range: is missing"],
-    ),
-    "range of nothing": (
-        "{type='exponential', work_of_adhesion='50 mJ/m^2', range=0}",
-        ["interaction.range: 0 is not allowed; give a value > 0 m"],
-    ),
-    "range beyond all": (
-        "{type='linear', work_of_adhesion='50 mJ/m^2', strength=1e-300}",
-        ["interaction 'linear': cutoff() is 1e+299 m; it has to be > 0 and <"],
-    ),
-    "strength beyond all": (
-        "{type='linear', work_of_adhesion='50 mJ/m^2', strength=1e60}",
-        ["interaction: has a strength of 1e+60 Pa", "less than the rounding error", "or", "jkr"],
-    ),
-    "no such law": (
-        "{type='jrk', work_of_adhesion='50 mJ/m^2'}",
-        ["interaction.type: 'jrk'", "did you mean 'jkr'"],
-    ),
-    "no type": (
-        "{work_of_adhesion='50 mJ/m^2'}",
-        ["interaction: has no type; give a table with type = one of: dugdale, exponential"],
-    ),
-    "two interactions": (
-        "[{type='jkr', work_of_adhesion=1}, {type='jkr', work_of_adhesion=1}]",
-        ["interaction: [{'type': 'jkr'", "is not a table"],
-    ),
-    "a name": ("'jkr'", ["interaction: 'jkr' is not a table", "dugdale"]),
-}
-
-
-@pytest.mark.parametrize(("table", "words"), VALUES.values(), ids=VALUES)
-def test_tables_that_make_no_sense(
-    refuse: Callable[..., str], table: str, words: list[str]
-) -> None:
-    """A work of adhesion or a range that means nothing is named with what is allowed."""
-    says(refuse(f"interaction={table}"), *words)
 
 
 @pytest.mark.parametrize("prescribed", ["depth", "force", "mean_pressure", "base_displacement"])
@@ -108,33 +36,6 @@ def test_pulling_takes_an_interaction(prescribed: str) -> None:
         message = str(caught.value)
         says(message, f"loading.{prescribed}.1: -1e-06 is not allowed; give a value ≥ 0")
         says(message, "with an [interaction] it may be negative")
-
-
-REFUSALS: dict[str, tuple[dict[str, Any], list[str]]] = {
-    "solver": (
-        {"solver": {"type": "conjugate_gradient"}},
-        ["solver.type: solver 'conjugate_gradient' cannot solve with an interaction"],
-    ),
-    "area": (
-        {"loading": {"contact_area": [0, "0.01 mm^2"]}},
-        ["loading.contact_area.0: 0 m² is lost at no certain depth", "prescribe depth"],
-    ),
-    "depth of full contact": (
-        {"grid": PERIODIC, "loading": {"depth": ["1 mm"]}},
-        ["loading.depth.0: 1 mm is beyond full contact", "prescribe mean_pressure"],
-    ),
-}
-
-
-@pytest.mark.parametrize(("change", "words"), REFUSALS.values(), ids=REFUSALS)
-def test_what_does_not_go_with_an_interaction(
-    change: dict[str, Any], words: list[str], tmp_path: Any
-) -> None:
-    """It is refused in words, before anything is solved."""
-    with pytest.raises(pl.ConfigError) as caught:
-        pl.run(STICKY | change, progress=False, directory=tmp_path)
-    says(str(caught.value), *words)
-    assert not list(tmp_path.glob("*.h5"))
 
 
 class Lying(pl.Interaction):

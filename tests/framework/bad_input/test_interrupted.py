@@ -16,7 +16,8 @@ from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.cli import app
-from tests.framework.bad_input.command_line import START, says
+from tests.framework.bad_input.command_line import says
+from tests.framework.sentences.bad_files import START
 
 # Where tests run in the background, their processes would ignore Ctrl-C.
 LISTENING = (

@@ -163,39 +163,6 @@ def test_schema() -> None:
     assert not validator.is_valid(table | {"baseline": "cubic"})
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        (f"{BODY}baselin = 1\n", "baselin: is not a field here; did you mean 'baseline'?"),
-        (BODY, "indenter: is missing"),
-        ('[indenter]\ntype = "ball"', "indenter.type: 'ball' is not an indenter"),
-        (
-            '[indenter]\ntype = "sphere"\nradius = "5 N"',
-            "indenter.radius: '5 N' is a force, not a length",
-        ),
-        ('[indenter]\ntype = "sphere"\nradios = 1', "indenter.radios: is not a field here"),
-        ('curves = ["*.csv"]\nindenter = "sphere"', "*.csv: matches no file"),
-        ('curves = ["**.csv"]\nindenter = "sphere"', "**.csv: matches no file"),
-        ('curves = ["a.csv"]\nindenter = "sphere"', "indenter.radius: is missing"),
-        ('curves = [1]\nindenter = "sphere"', "curves.0: 1 is not allowed"),
-        ('indenter = "sphere"\nfix = 1', "fix: 1 is not a table"),
-        ('indenter = "sphere"\n[fix]\nmodulus = 1', "fix.modulus: is not a parameter"),
-        ('indenter = "sphere"\ncontact_points = true', "contact_points: needs pool = true"),
-        ('indenter = "sphere"\nkernel = "winkler"', "kernel: 'winkler' has no field"),
-        ('indenter = "sphere"\nexecutor = "abacus"', "'abacus' is not an executor"),
-        ('indenter = "sphere"\n[per_file]\nradius = "1 um"', "per_file.radius: '1 um'"),
-        ('indenter = "sphere"\n[grid]\npoints = 9', "grid: is not a field here"),
-        ("position [um],force [nN]\n1,2\n", "not valid TOML"),
-    ],
-)
-def test_bad_files(cli: Cli, text: str, words: str) -> None:
-    """What is wrong with a file of a stranger is said in words, and nothing is fitted."""
-    Path("bead.toml").write_text(text, encoding="utf-8")
-    if "*.csv" not in text:
-        measure(Path("a.csv"))
-    assert words in cli("bead.toml", code=2).stderr
-
-
 def test_bad_commands(cli: Cli) -> None:
     """Two configurations, one in another encoding, and one that is not there are refused."""
     Path("a.toml").write_text(FILE, encoding="utf-16")

@@ -333,29 +333,3 @@ def test_radius_of_each(cli: Cli, listed: bool) -> None:
     )
     for row in json.loads(cli(*files, "-i", "paraboloid", "--json").stdout)["curves"]:
         assert row["reduced_modulus"]["low"] < MODULUS < row["reduced_modulus"]["high"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (("empty", *OPTIONS), "holds no file of a known kind"),
-        (("a.csv", "b.csv", *OPTIONS, "--radius", "1 um", "--radius", "2 um"), "3 values for 2"),
-        (("a.csv", "b.csv", "-i", "ball", "--radius", "1 um"), "'ball' is not an indenter"),
-        (("a.csv", "b.csv", "-i", "paraboloid"), "a.csv: indenter.radius: is missing"),
-        (("a.csv", "b.csv", *OPTIONS, "--executor", "abacus"), "'abacus' is not an executor"),
-        (("a.csv", "b.csv", *OPTIONS, "--fix", "tension=1 V"), "is a voltage, not a tension"),
-        (("list.csv", *OPTIONS), "has a row without a file"),
-        (("a.csv", *OPTIONS, "--spring-constant", "1 m"), "spring_constant"),
-        (("a.csv", *OPTIONS, "--pool"), "a pool needs two"),
-        (("a.csv", *OPTIONS, "--contact-points"), "needs pool = true"),
-        (("a.csv", "none.csv", *OPTIONS, "--pool"), "none.csv: cannot be read"),
-        (("a.csv", "b.csv", *OPTIONS, "--pool", "--fix", "contact_point=0"), "is not shared"),
-    ],
-)
-def test_bad_input(cli: Cli, arguments: tuple[str, ...], words: str) -> None:
-    """What is wrong with the command stops it at once."""
-    Path("empty").mkdir()
-    save(Path("a.csv"), *curve(1))
-    save(Path("b.csv"), *curve(2))
-    Path("list.csv").write_text("file,radius [um]\na.csv,1\n,2\n", encoding="utf-8")
-    assert words in cli(*arguments, code=2).stderr

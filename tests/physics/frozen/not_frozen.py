@@ -13,9 +13,13 @@ VARIABLES: Final = {
 CASES: Final = {
     "line contacts that stick": "they stall, and are mended with the adhesive solver",
     "the major axis of a round contact": "any direction is one",
-    "two intervals of one parameter from two noises": "left for the rewrite of fits",
+    "two intervals of one parameter from two noises": (
+        "left for the rewrite of fits; the headline's are left out where its noise is another than "
+        "that of the comparison"
+    ),
     'the offset under `baseline = "offset"`': (
-        "it is another instrument for adhesion than for its rivals; left for the rewrite of fits"
+        "it is another instrument for adhesion than for its rivals, under a cantilever; left for "
+        "the rewrite of fits"
     ),
     "tension beside relaxation on unloading rows": (
         "its force is off by 8 to 37 % of the largest; a freeze of wrong answers is no oracle"

@@ -21,6 +21,7 @@ from tests.physics.frozen import reader  # noqa: E402
 from tests.physics.frozen.benchmarks import CASES  # noqa: E402
 from tests.physics.frozen.comparison import COUNT_TOLERANCE, changes, compact  # noqa: E402
 from tests.physics.frozen.configurations import CONFIGURATIONS  # noqa: E402
+from tests.physics.frozen.fit_layers import LAYERS, differences, rounded  # noqa: E402
 from tests.physics.frozen.store import store, stored  # noqa: E402
 
 ALLOWED = 100
@@ -58,7 +59,27 @@ def applications() -> None:
     store("applications", new)
 
 
-RECORDS: dict[str, Callable[[], None]] = {"runs": runs, "applications": applications}
+def fits() -> None:
+    """Record the layers of the answers of fits."""
+    old, new = stored("fits"), {}
+    for layer, (entries, changed) in LAYERS.items():
+        before = old.get(layer, {})
+        values = {name: rounded(value) for name, value in entries()}
+        _tell({f"{layer}: {text}": "" for text in differences(layer, before, values)})
+        new[layer] = {
+            name: before[name]
+            if name in before and not [*changed(name)(before[name], value)]
+            else value
+            for name, value in values.items()
+        }
+    store("fits", new)
+
+
+RECORDS: dict[str, Callable[[], None]] = {
+    "runs": runs,
+    "applications": applications,
+    "fits": fits,
+}
 
 
 def _tell_names(file: str, old: Any, new: Any) -> None:
@@ -68,7 +89,7 @@ def _tell_names(file: str, old: Any, new: Any) -> None:
 
 def _tell(changed: dict[str, str]) -> None:
     for name, text in changed.items():
-        sys.stdout.write(f"{name}: {text}\n")
+        sys.stdout.write(f"{name}: {text}\n" if text else f"{name}\n")
 
 
 def main() -> None:
