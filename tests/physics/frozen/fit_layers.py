@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.physics.frozen import fit_reader as reader
+from tests.physics.frozen import reader
 from tests.physics.frozen.fit_curves import (
     CASES,
     DRAG,

@@ -22,7 +22,7 @@ CASES: Final = {
         "the rewrite of fits"
     ),
     "tension beside relaxation on unloading rows": (
-        "its force is off by 8 to 37 % of the largest; a freeze of wrong answers is no oracle"
+        "its force is not known, and fits do not try it; the formula was off by 8 to 37 %"
     ),
 }
 """What no configuration and no curve contains."""
