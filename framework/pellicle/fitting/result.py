@@ -201,13 +201,14 @@ class FitResult:
 
     def _chosen_block(self) -> dict[str, Any]:
         """Return the code of the chosen model and its estimates as JSON data."""
+        rivals = self.rivals
         if self.chosen is not None:
             model = self.chosen.rival.code
         else:
             model = "none" if self.tension.held and not self.tension.value else "tension"
         return {
             "model": model,
-            "settled": self.rivals is None or self.rivals.modulus is None,
+            "settled": not rivals or (rivals.modulus is None and rivals.is_decided),
             "parameters": {k: value.to_dict() for k, value in self.chosen_estimates().items()},
         }
 

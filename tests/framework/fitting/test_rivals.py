@@ -695,6 +695,7 @@ def test_relaxation_beside_a_tension_has_no_model_of_retraction(compare: bool) -
     }
     assert "beside a tension" in fit.rivals.untried
     assert fit.rivals.untried in fit.comparison
+    assert not fit.to_dict()["chosen"]["settled"]
     estimates = [*fit.estimates().items(), *fit.chosen_estimates().items()]
     for name, estimate in [pair for model in fit.rivals.fits for pair in model.estimates.items()]:
         estimates.append((name, estimate))
