@@ -145,7 +145,7 @@ def tables() -> Iterator[tuple[str, Any]]:
     """Yield the columns of a population and of a map of 3 × 3 curves."""
     lattice = [
         [case("tension", seed=60 + x + y, points=120, tension=tension * TENSION) for x in range(3)]
-        for y, tension in ((0, 0.0), (3, 0.02), (6, 0.1))
+        for y, tension in ((0, 0.0), (3, 0.0), (6, 0.1))
     ]
     for name, columns in reader.tables(lattice).items():
         for column, values in columns.items():

@@ -17,6 +17,9 @@ CASES: Final = {
         "left for the rewrite of fits; the headline's are left out where its noise is another than "
         "that of the comparison"
     ),
+    "parameters of explanations far behind the best": (
+        "their intervals are those of a curvature, which has no digits where an effect is 0"
+    ),
     'the offset under `baseline = "offset"`': (
         "it is another instrument for adhesion than for its rivals, under a cantilever; left for "
         "the rewrite of fits"

@@ -268,7 +268,11 @@ def fit(case: Case) -> dict[str, Any]:
             _key(rival.rival.code): {
                 "chi_squared": rival.chi_squared,
                 "delta_aic": rival.aic - aic["none"],
-                "parameters": {name: _estimate(e) for name, e in rival.estimates.items()},
+                "parameters": {
+                    name: _estimate(e)
+                    for name, e in rival.estimates.items()
+                    if rival.intervals != "curvature"
+                },
             }
             for rival in found.fits
         },
