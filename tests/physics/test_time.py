@@ -116,7 +116,7 @@ def test_sphere_held_at_a_depth_relaxes_as_the_modulus() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:step 2 and 2 more. converged, but the domain of 800 µm")
+@pytest.mark.filterwarnings("ignore:step 4 and 2 more. converged, but the domain of 800 µm")
 @pytest.mark.parametrize(("boundary", "size"), [("periodic", 4e-4), ("free", 8e-4)])
 def test_plateau_is_tension_alone(boundary: str, size: float) -> None:
     """A liquid at a prescribed contact radius keeps F = 2πτ₀a²/R, at first order in the cell size.

@@ -272,7 +272,7 @@ def test_page_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     interval = rf"\({number} to {number}\)"
     modulus = rf"Young's modulus {number} kPa {interval}, tension"
     point = rf"contact point {number} µm {interval}, with 95 % intervals"
-    tied = f"over the 4 models that .* apart, Young's modulus is {number} to {number} kPa"
+    tied = f"over 4 models that .* apart, Young's modulus is {number} to {number} kPa"
     assert re.search(rf"Result {modulus} {number} mN/m {interval} and {point}; {tied}", texts[0])
     assert re.search(rf"Result {modulus} < {number} µN/m and {point}\.", texts[1])
     assert re.search(rf"does not show tension .* it is below {number} µN/m", texts[1])
